@@ -1,0 +1,56 @@
+# Each target makes what it needs on first use, and nothing twice.
+PYTHON ?= python3
+MODE ?= 2-2
+VENV := .venv
+BIN := $(VENV)/bin
+FMU := build/RlvLanding.fmu
+CORE := $(wildcard fmu_src/rlv_landing/core/*.py fmu_src/rlv_landing/core/*.pxd)
+SLAVE := fmu_src/landing_fmu.py fmu_src/build_fmu.py $(addprefix fmu_src/rlv_landing/,__init__.py errors.py quantities.py parameters.py touchdown.py landing.py)
+
+.PHONY: help run test lint bench coverage docs clean
+help:
+	@echo "make run [MODE=2-2|1-2-1]  land the prototype: FMU, ROS 2 node, MCAP log, table and picture"
+	@echo "make test                  the whole suite"
+	@echo "make bench                 time of a 1 s landing: compiled core, pure core, FMU"
+	@echo "make coverage              coverage, measured on the pure core"
+	@echo "make docs                  the README's picture, made anew"
+	@echo "make clean                 remove .venv and build (logs stay)"
+
+$(VENV)/.packages: pyproject.toml
+	@$(PYTHON) -c 'import sys; v = sys.version_info[:2]; sys.exit(None if (3, 10) <= v <= (3, 13) else "error: python %d.%d found, 3.10 to 3.13 needed; name one: make PYTHON=python3.12" % v)'
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install -q --upgrade pip
+	@echo "installing rlv-landing, ROS 2 and the tools: a few minutes on the first run"
+	$(BIN)/python -m pip install -q -e '.[dev]'
+	@touch $@
+
+$(VENV)/.core: $(VENV)/.packages setup.py fmu_src/core_source.py $(CORE)
+	$(BIN)/python setup.py -q build_ext --inplace
+	@touch $@
+
+$(FMU): $(VENV)/.core $(SLAVE) build_fmu.sh
+	PYTHON=$(BIN)/python ./build_fmu.sh
+
+run: $(FMU)
+	@$(BIN)/rlv-landing node --mode $(MODE) --report
+
+lint: $(VENV)/.packages
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+test: $(FMU) lint
+	$(BIN)/python -m pytest
+
+bench: $(FMU)
+	$(BIN)/python benchmarks/bench_landing.py
+
+coverage: $(FMU)
+	RLV_LANDING_PURE=1 $(BIN)/python -m pytest --cov --cov-report=term tests/core tests/model
+
+docs: $(FMU)
+	$(BIN)/rlv-landing simulate --mode 2-2 --plot docs/landing-2-2.png --force
+
+clean:
+	rm -rf $(VENV) build fmu_src/rlv_landing/core/compiled.*

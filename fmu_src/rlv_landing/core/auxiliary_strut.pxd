@@ -1,0 +1,1 @@
+cdef (double, double) auxiliary(double s, double v, Model p) noexcept nogil

@@ -1,0 +1,77 @@
+"""A landing's history: named columns over time."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import LandingError, unknown
+from .parameters import Parameters
+
+
+class History:
+    """Columns named as the FMU's variables, in SI units, over `time` [s]: `history["leg[1].main_strut.force"]` is an array (n,).
+
+    `parameters` are those of the landing, where they are known.
+    """
+
+    def __init__(
+        self, time: NDArray[np.float64], names: Sequence[str], data: NDArray[np.float64], parameters: Parameters | None = None
+    ) -> None:
+        if data.shape != (len(time), len(names)):
+            raise LandingError(f"a history of {len(time)} times and {len(names)} names cannot hold an array of shape {data.shape}")
+        self.time = time
+        self.names = tuple(names)
+        self.data = data
+        self.parameters = parameters
+        self._index = {name: i for i, name in enumerate(self.names)}
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        if name == "time":
+            return self.time
+        if name not in self._index:
+            raise unknown("column", name, self.names)
+        column: NDArray[np.float64] = self.data[:, self._index[name]]
+        return column
+
+    def __contains__(self, name: object) -> bool:
+        return name == "time" or name in self._index
+
+    def __iter__(self) -> Iterator[str]:
+        yield "time"
+        yield from self.names
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write all columns to a CSV file, SI units, full precision."""
+        with Path(path).open("w", newline="", encoding="utf-8") as f:
+            writer = csv.writer(f)
+            writer.writerow(list(self))
+            for t, row in zip(self.time.tolist(), self.data.tolist()):
+                writer.writerow([repr(t), *map(repr, row)])
+
+
+class Recording:
+    """A history in the making: room for `count` samples of `names`."""
+
+    def __init__(self, names: Sequence[str], count: int) -> None:
+        self._names = names
+        self._time = np.empty(count)
+        self._data = np.empty((count, len(names)))
+        self._filled = 0
+
+    def add(self, time: float, values: Sequence[float]) -> None:
+        """Append one sample."""
+        self._time[self._filled] = time
+        self._data[self._filled] = values
+        self._filled += 1
+
+    def history(self, parameters: Parameters | None) -> History:
+        """What was recorded."""
+        return History(self._time[: self._filled], self._names, self._data[: self._filled], parameters)

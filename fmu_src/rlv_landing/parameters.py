@@ -1,0 +1,226 @@
+"""The vehicle, its ground and its drop: annotated values, checked at the door.
+
+The defaults are the preset `yue2022-figures`; `source` tells the paper's own values from identified ones. Lengths down from the CG
+are given as positive depths, as in the paper's Table 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, fields, replace
+from math import cos, radians, sin
+from typing import Annotated, Any, get_args, get_type_hints
+
+from .errors import LandingError, unknown
+from .quantities import MODES, Quantity
+
+Q = Quantity
+
+# fmt: off
+
+
+@dataclass(frozen=True)
+class Vehicle:
+    """The body and its footpads."""
+
+    mass: Annotated[float, Q("kg", "upper (elastic) mass", 1.0, 1e6, "m_u", "paper")] = 178.0
+    inertia: Annotated[float, Q("kg.m2", "rotational inertia of the upper mass about z through its CG", 0.1, 1e9, "I_u", "identified")] = 197.08869940683806
+    footpad_mass: Annotated[float, Q("kg", "lower (inelastic) mass of one leg, at its footpad", 0.01, 1e4, "m_d", "paper")] = 4.2
+    top_height: Annotated[float, Q("m", "height of the top acceleration sensor above the CG", 0.0, 100.0, "H", "identified")] = 0.8658221199326923
+    transverse_load_at: Annotated[str, Q("", "where the body feels the auxiliary struts' transverse force: footpad (consistent) or joint (the paper's assumption C; creates energy)", source="closure", choices=("footpad", "joint"))] = "footpad"
+
+
+@dataclass(frozen=True)
+class MainStrut:
+    """The main strut with its liquid-spring damper. Eq. (12)."""
+
+    joint_radius: Annotated[float, Q("m", "CG to body joint, radially", 0.0, 50.0, "La", "paper")] = 0.445
+    joint_depth: Annotated[float, Q("m", "CG to body joint, downward", -50.0, 50.0, "Lb", "paper")] = 1.103
+    length: Annotated[float, Q("m", "length, fully extended", 0.05, 100.0, "Lm0", "paper")] = 1.426
+    area_upper: Annotated[float, Q("m2", "piston area in the upper chamber (annulus)", 1e-6, 1.0, "A1", "identified", "mm2")] = 0.0014680146361852884
+    area_lower: Annotated[float, Q("m2", "piston area in the lower chamber (bore)", 1e-6, 1.0, "A2", "identified", "mm2")] = 0.0017783262203023159
+    volume_upper: Annotated[float, Q("m3", "upper chamber's volume, fully extended", 1e-7, 1.0, "V10", "identified", "cm3")] = 8.459753141533603e-05
+    volume_lower: Annotated[float, Q("m3", "lower chamber's volume, fully extended", 1e-7, 1.0, "V20", "identified", "cm3")] = 0.0003956246382439225
+    charge_pressure: Annotated[float, Q("Pa", "absolute pressure in both chambers before touchdown", 1e3, 1e8, "P0", "closure", "MPa")] = 101300.0
+    ambient_pressure: Annotated[float, Q("Pa", "absolute pressure outside", 1e2, 1e7, "Pa", "closure", "MPa")] = 101300.0
+    fluid_density: Annotated[float, Q("kg/m3", "density of the liquid with its air at ambient pressure", 100.0, 3000.0, "rho0", "closure")] = 960.0
+    air_fraction: Annotated[float, Q("", "volume fraction of entrapped air at ambient pressure", 1e-7, 0.2, "x_air", "identified")] = 7.278826884824169e-05
+    air_exponent: Annotated[float, Q("", "polytropic exponent of the air (1.01: nearly isothermal)", 1.01, 1.67, "n_air", "identified")] = 1.2726844644618691
+    bulk_modulus: Annotated[float, Q("Pa", "bulk modulus of the liquid at ambient pressure", 1e7, 1e10, "B0", "identified", "MPa")] = 973394576.7542667
+    bulk_modulus_slope: Annotated[float, Q("", "growth of the bulk modulus with pressure", 1.5, 30.0, "kB", "identified")] = 6.165849129795623
+    orifice_area_compression: Annotated[float, Q("m2", "effective orifice area Cd Ao in compression", 1e-9, 1e-2, "CdAo_c", "identified", "mm2")] = 8.437072379338963e-06
+    orifice_area_rebound: Annotated[float, Q("m2", "effective orifice area Cd Ao in rebound", 1e-9, 1e-2, "CdAo_r", "identified", "mm2")] = 1.277082993074654e-05
+    laminar_pressure: Annotated[float, Q("Pa", "pressure drop below which the orifice flow turns laminar", 1e3, 1e7, "dP_lam", "closure", "MPa")] = 200000.0
+    seal_coulomb: Annotated[float, Q("N", "Coulomb part of the seal friction", 0.0, 1e6, "Fc", "identified")] = 96.42346497601125
+    seal_pressure: Annotated[float, Q("N/Pa", "seal friction per mean gauge pressure of the chambers", 0.0, 1e-2, "kp", "closure")] = 0.0
+    seal_stribeck: Annotated[float, Q("N", "Stribeck part of the seal friction, at low speed", 0.0, 1e6, "Fs", "identified")] = 184.84081648455927
+    seal_stribeck_speed: Annotated[float, Q("m/s", "speed at which the Stribeck part fades", 1e-4, 10.0, "v_str", "identified")] = 0.2992642810493236
+    seal_smoothing_speed: Annotated[float, Q("m/s", "speed below which the seal friction is smoothed", 1e-5, 1.0, "v_sm", "closure")] = 0.02
+    stroke_max: Annotated[float, Q("m", "stroke at which the damper meets its compression stop", 1e-3, 10.0, "s_max", "closure", "mm")] = 0.05
+    stop_stiffness: Annotated[float, Q("N/m", "stiffness of both end stops", 1e3, 1e11, "K_stop", "closure")] = 2e6
+    stop_damping: Annotated[float, Q("s/m", "damping of both end stops: force is K e (1 + c e')", 0.0, 100.0, "c_stop", "closure")] = 1.0
+
+
+@dataclass(frozen=True)
+class AuxiliaryStrut:
+    """The auxiliary strut: nonlinear spring and damper along its axis. Eq. (13)."""
+
+    joint_radius: Annotated[float, Q("m", "CG to body joint, radially", 0.0, 50.0, "Lc", "paper")] = 0.463
+    joint_depth: Annotated[float, Q("m", "CG to body joint, downward", -50.0, 50.0, "Ld", "paper")] = 1.513
+    length: Annotated[float, Q("m", "length, unloaded", 0.05, 100.0, "Ls0", "paper")] = 1.145
+    stiffness: Annotated[float, Q("N/m", "axial stiffness Ka (N/m^ek)", 1e3, 1e11, "Ka", "identified")] = 300000.0
+    exponent: Annotated[float, Q("", "hardening exponent ek", 1.0, 3.0, "ek", "identified")] = 1.0
+    damping: Annotated[float, Q("N.s/m", "axial damping Ca", 0.0, 1e7, "Ca", "identified")] = 7122.2859563499505
+
+
+@dataclass(frozen=True)
+class Ground:
+    """The ground and what a footpad feels on it. Eqs. (14)-(17)."""
+
+    slope: Annotated[float, Q("rad", "slope of the ground at rest, clockwise positive (falling towards +x)", -0.7, 0.7, "alpha", "paper", "deg")] = 0.0
+    gravity: Annotated[float, Q("m/s2", "gravitational acceleration", 0.0, 50.0, "g", "closure")] = 9.81
+    stiffness: Annotated[float, Q("N/m", "normal stiffness Kg (N/m^en)", 1e3, 1e13, "Kg", "identified")] = 231187471.42138943
+    exponent: Annotated[float, Q("", "exponent en of the normal stiffness", 1.0, 3.0, "en", "identified")] = 1.763501759204568
+    damping: Annotated[float, Q("N.s/m", "normal damping Cgmax at full depth", 0.0, 1e8, "Cgmax", "identified")] = 5312.148326303781
+    damping_depth: Annotated[float, Q("m", "penetration at which the normal damping is full", 1e-7, 0.1, "d_ramp", "identified", "mm")] = 2.4828653782163047e-05
+    friction: Annotated[float, Q("", "friction coefficient mu", 0.0, 3.0, "mu", "identified")] = 0.14302178565375734
+    stick_displacement: Annotated[float, Q("m", "displacement s_r0 at which a sticking footpad starts to slip", 1e-6, 0.1, "s_r0", "identified", "mm")] = 0.000673043466467629
+    stribeck_gain: Annotated[float, Q("", "excess ar of the sticking over the sliding friction", 0.0, 2.0, "ar", "identified")] = 0.04075918263440747
+    stribeck_speed: Annotated[float, Q("m/s", "slip speed b_strib at which that excess fades", 1e-4, 10.0, "b_strib", "identified")] = 0.1236900994624185
+    stick_damping: Annotated[float, Q("N.s/m", "damping Cr of a sticking footpad", 0.0, 1e6, "Cr", "identified")] = 2.289365630579422
+    direction_speed: Annotated[float, Q("m/s", "slip speed below which friction is shared evenly between x and z", 1e-5, 0.1, "v_dir", "closure")] = 0.005
+    release_time: Annotated[float, Q("s", "time constant at which the friction displacement returns to 0 out of contact", 1e-5, 1.0, "tau_sr", "closure")] = 0.002
+
+
+@dataclass(frozen=True)
+class Drop:
+    """How the vehicle comes down: its state at the first contact, and how long it has flown freely by then."""
+
+    mode: Annotated[str, Q("", "landing mode: legs that touch first - second - third", source="paper", choices=tuple(MODES))] = "2-2"
+    contact_time: Annotated[float, Q("s", "time of the first contact; the flight before it is free", 0.0, 60.0, source="identified")] = 0.08944083680693991
+    tilt: Annotated[float, Q("rad", "pitch at first contact, clockwise positive", -1.5, 1.5, source="identified", display_unit="deg")] = -0.1329872225650077
+    pitch_rate: Annotated[float, Q("rad/s", "pitch rate at first contact, clockwise positive", -10.0, 10.0, source="identified", display_unit="deg/s")] = 0.1857619401078609
+    horizontal_velocity: Annotated[float, Q("m/s", "velocity of the CG along inertial x at first contact", -50.0, 50.0, source="identified")] = 0.35406699944282244
+    vertical_velocity: Annotated[float, Q("m/s", "velocity of the CG along inertial y (up) at first contact", -50.0, 50.0, source="identified")] = -1.4000775783405817
+
+# fmt: on
+
+GROUPS: dict[str, type] = {
+    "vehicle": Vehicle,
+    "main_strut": MainStrut,
+    "auxiliary_strut": AuxiliaryStrut,
+    "ground": Ground,
+    "drop": Drop,
+}
+
+
+def _table() -> dict[str, Quantity]:
+    table: dict[str, Quantity] = {}
+    for group, owner in GROUPS.items():
+        hints = get_type_hints(owner, include_extras=True)
+        for f in fields(owner):
+            q: Quantity = get_args(hints[f.name])[1]
+            name = f"{group}.{f.name}"
+            table[name] = replace(q, name=name, default=f.default, kind="string" if q.choices else "real")  # type: ignore[arg-type]
+    return table
+
+
+PARAMETER_QUANTITIES: dict[str, Quantity] = _table()
+
+
+def check_value(q: Quantity, value: Any) -> float | str:
+    """`value` as the quantity `q` takes it.
+
+    Raises LandingError naming quantity, value, unit and limit where the type is wrong, the value is not finite or out of bounds.
+    """
+    if q.choices:
+        if not isinstance(value, str) or value not in q.choices:
+            raise LandingError(f"{q.name} = {value!r} is not one of {', '.join(q.choices)}")
+        return value
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise LandingError(f"{q.name} = {value!r} is not a number; give it in {q.unit or 'plain numbers'}")
+    if not q.lo <= value <= q.hi:
+        raise LandingError(f"{q.name} = {value:g} {q.unit}".rstrip() + f" is outside [{q.lo:g}, {q.hi:g}] {q.unit}".rstrip())
+    return float(value)
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """All that a landing needs to be told. `by_mode` holds values that belong to one landing mode only; `sources` says where values come
+    from that are not the table's defaults."""
+
+    vehicle: Vehicle = field(default_factory=Vehicle)
+    main_strut: MainStrut = field(default_factory=MainStrut)
+    auxiliary_strut: AuxiliaryStrut = field(default_factory=AuxiliaryStrut)
+    ground: Ground = field(default_factory=Ground)
+    drop: Drop = field(default_factory=Drop)
+    by_mode: Mapping[str, Mapping[str, float | str]] = field(default_factory=dict)
+    sources: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name, value in self.items():
+            check_value(PARAMETER_QUANTITIES[name], value)
+        self._check_together()
+
+    def items(self) -> Iterator[tuple[str, float | str]]:
+        """Every (name, value), in the table's order."""
+        for name in PARAMETER_QUANTITIES:
+            yield name, self[name]
+
+    def __getitem__(self, name: str) -> float | str:
+        if name not in PARAMETER_QUANTITIES:
+            raise unknown("parameter", name, PARAMETER_QUANTITIES)
+        group, what = name.split(".")
+        value: float | str = getattr(getattr(self, group), what)
+        return value
+
+    def source(self, name: str) -> str:
+        """Where the value of `name` comes from."""
+        return self.sources.get(name, PARAMETER_QUANTITIES[name].source)
+
+    def with_values(self, values: Mapping[str, Any], source: str = "user") -> Parameters:
+        """A copy with `values` by name, each checked; they hold in every mode. Raises LandingError for an unknown name or a bad value."""
+        changed = self._replaced(values, dict.fromkeys(values, source))
+        by_mode = {mode: {n: v for n, v in own.items() if n not in values} for mode, own in self.by_mode.items()}
+        return replace(changed, by_mode=by_mode)
+
+    def for_mode(self, mode: str) -> Parameters:
+        """A copy for the landing `mode`, with the values that belong to that mode."""
+        if mode not in MODES:
+            raise unknown("landing mode", mode, MODES)
+        return self._replaced({**self.by_mode.get(mode, {}), "drop.mode": mode}, {})
+
+    def _replaced(self, values: Mapping[str, Any], sources: Mapping[str, str]) -> Parameters:
+        grouped: dict[str, dict[str, float | str]] = {}
+        for name, value in values.items():
+            if name not in PARAMETER_QUANTITIES:
+                raise unknown("parameter", name, PARAMETER_QUANTITIES)
+            group, what = name.split(".")
+            grouped.setdefault(group, {})[what] = check_value(PARAMETER_QUANTITIES[name], value)
+        parts: dict[str, Any] = {group: replace(getattr(self, group), **changed) for group, changed in grouped.items()}
+        return replace(self, **parts, sources={**self.sources, **sources})
+
+    def _check_together(self) -> None:
+        m, a = self.main_strut, self.auxiliary_strut
+        swept = m.area_lower * m.stroke_max
+        if swept >= 0.95 * m.volume_lower:
+            raise LandingError(
+                f"main_strut.stroke_max = {m.stroke_max:g} m sweeps {swept:g} m3 of main_strut.volume_lower = {m.volume_lower:g} m3; "
+                "at most 95 % may be swept: shorten the stroke or enlarge the volume"
+            )
+        if m.area_upper > m.area_lower:
+            raise LandingError(
+                f"main_strut.area_upper = {m.area_upper:g} m2 (annulus) is above main_strut.area_lower = {m.area_lower:g} m2 (bore)"
+            )
+        apart = ((m.joint_radius - a.joint_radius) ** 2 + (m.joint_depth - a.joint_depth) ** 2) ** 0.5
+        if not abs(m.length - a.length) < apart < m.length + a.length:
+            raise LandingError(
+                f"main_strut.length = {m.length:g} m and auxiliary_strut.length = {a.length:g} m do not meet at a footpad: "
+                f"their joints are {apart:g} m apart; check lengths, joint radii and depths"
+            )
+
+
+def azimuth(degrees: int) -> tuple[float, float]:
+    """Sine and cosine of an azimuth, exactly 0 where they should be."""
+    s, c = sin(radians(degrees)), cos(radians(degrees))
+    return (0.0 if abs(s) < 1e-15 else s), (0.0 if abs(c) < 1e-15 else c)

@@ -1,0 +1,178 @@
+"""Presets, and TOML in and out."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from ..errors import LandingError, unknown
+from ..parameters import GROUPS, PARAMETER_QUANTITIES, Parameters, check_value
+from ..quantities import DISPLAY_UNITS, MODES, Quantity
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+FOLDER = Path(__file__).parent
+DEFAULT_PRESET = "yue2022-figures"
+
+
+def preset_names() -> list[str]:
+    """The presets that come with the package."""
+    return sorted(p.stem for p in FOLDER.glob("*.toml"))
+
+
+def load_preset(name: str, mode: str | None = None) -> Parameters:
+    """The parameters of a preset, for the landing `mode` (default: the preset's own). Raises LandingError for an unknown name."""
+    if name not in preset_names():
+        raise unknown("preset", name, preset_names())
+    parameters = read_toml(FOLDER / f"{name}.toml")
+    return parameters.for_mode(mode if mode is not None else parameters.drop.mode)
+
+
+def read_toml(path: str | Path) -> Parameters:
+    """Parameters from a TOML file: tables `vehicle`, `main_strut`, `auxiliary_strut`, `ground`, `drop`; `mode.X.drop` for one mode only.
+
+    A value is a number in SI units, a text with a unit ("-2 deg"), or `{ value = ..., source = "..." }`. What is not given comes
+    from `preset = "..."` (default yue2022-figures). Raises LandingError: no such file, TOML syntax (with line), unknown names, bad values.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise LandingError(f"there is no parameter file {path}; presets are {', '.join(preset_names())}") from None
+    except (OSError, UnicodeDecodeError) as e:
+        raise LandingError(f"parameter file {path} cannot be read: {e}") from None
+    try:
+        document = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as e:
+        raise LandingError(f"{path}: TOML syntax: {e}") from None
+    try:
+        return _from_document(document)
+    except LandingError as e:
+        raise LandingError(f"{path}: {e}") from None
+
+
+def _from_document(document: dict[str, Any]) -> Parameters:
+    known = ("preset", "mode", *GROUPS)
+    for key in document:
+        if key not in known:
+            raise unknown("table", key, known)
+    base = document.get("preset")
+    parameters = load_preset(base) if base is not None else Parameters()
+    values, sources = _flat({k: v for k, v in document.items() if k in GROUPS})
+    for name, value in values.items():
+        parameters = parameters.with_values({name: value}, sources.get(name, "user"))
+    by_mode = {mode: dict(own) for mode, own in parameters.by_mode.items()}
+    all_sources = dict(parameters.sources)
+    modes = _table(document.get("mode", {}), "mode")
+    for mode, tables in modes.items():
+        if mode not in MODES:
+            raise unknown("landing mode", mode, MODES)
+        own, own_sources = _flat(_table(tables, f"mode.{mode}"))
+        by_mode.setdefault(mode, {}).update(own)
+        all_sources.update(own_sources)
+    parameters = replace(parameters, by_mode=by_mode, sources=all_sources)
+    for mode in by_mode:
+        parameters.for_mode(mode)
+    return parameters.for_mode(parameters.drop.mode)
+
+
+def _table(value: Any, name: str) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise LandingError(f"{name} = {value!r} must be a table: write [{name}] and its values below")
+    return value
+
+
+def _flat(tables: Mapping[str, Any]) -> tuple[dict[str, float | str], dict[str, str]]:
+    values: dict[str, float | str] = {}
+    sources: dict[str, str] = {}
+    for group, table in tables.items():
+        if group not in GROUPS:
+            raise unknown("table", group, GROUPS)
+        for what, entry in _table(table, group).items():
+            name = f"{group}.{what}"
+            if name not in PARAMETER_QUANTITIES:
+                raise unknown("parameter", name, PARAMETER_QUANTITIES)
+            if isinstance(entry, dict):
+                for key in entry:
+                    if key not in ("value", "source"):
+                        raise unknown(f"key of {name}", key, ("value", "source"))
+                if "value" not in entry:
+                    raise LandingError(f'{name} has no value: write {{ value = ..., source = "..." }}')
+                if "source" in entry:
+                    sources[name] = str(entry["source"])
+                entry = entry["value"]
+            values[name] = parse_value(PARAMETER_QUANTITIES[name], entry)
+    return values, sources
+
+
+def parse_value(q: Quantity, value: Any) -> float | str:
+    """`value` of the quantity `q` in SI: a number, or a text with a unit such as "-2 deg" or "36 mm".
+
+    Raises LandingError: not a number, unknown unit, a unit of another dimension, out of bounds.
+    """
+    if isinstance(value, str) and not q.choices:
+        try:
+            value = float(value)
+        except ValueError:
+            value = _with_unit(q, value)
+    return check_value(q, value)
+
+
+def _with_unit(q: Quantity, text: str) -> float:
+    import pint
+
+    registry: pint.UnitRegistry[float] = _registry()
+    try:
+        return float(registry.Quantity(text).to(q.unit.replace(".", "*") or "dimensionless").magnitude)
+    except pint.DimensionalityError:
+        example = q.display_unit or q.unit or "a plain number"
+        raise LandingError(
+            f"{q.name} = {text!r} has the wrong unit; give it in {q.unit or 'plain numbers'}, or as text in {example}"
+        ) from None
+    except Exception:
+        raise LandingError(f"{q.name} = {text!r} is not a number with a unit; write for example {_example(q)}") from None
+
+
+def _registry() -> Any:
+    global _REGISTRY
+    if _REGISTRY is None:
+        import pint
+
+        _REGISTRY = pint.UnitRegistry()
+        for area, length in (("m2", "m"), ("mm2", "mm")):
+            _REGISTRY.define(f"{area} = {length}**2")
+        _REGISTRY.define("m3 = m**3")
+        _REGISTRY.define("cm3 = cm**3")
+    return _REGISTRY
+
+
+_REGISTRY: Any = None
+
+
+def _example(q: Quantity) -> str:
+    unit = q.display_unit or q.unit
+    value = float(q.default) / DISPLAY_UNITS[unit][1] if unit in DISPLAY_UNITS else float(q.default)
+    return f'"{value:g} {unit}"' if unit else f"{value:g}"
+
+
+def to_toml(parameters: Parameters, comments: bool = True) -> str:
+    """The parameters as a TOML text that `read_toml` takes back to the same digits, with unit, meaning, bounds and source a line."""
+    lines: list[str] = []
+    group = ""
+    for name, value in parameters.items():
+        q = PARAMETER_QUANTITIES[name]
+        owner, what = name.split(".")
+        if owner != group:
+            lines += ([""] if lines else []) + [f"[{owner}]"]
+            group = owner
+        written = f'"{value}"' if isinstance(value, str) else repr(value)
+        about = " or ".join(q.choices) if q.choices else f"[{q.lo:g}, {q.hi:g}] {q.unit}".rstrip()
+        comment = f"  # {q.meaning}; {about}; {parameters.source(name)}" if comments else ""
+        lines.append(f'{what} = {{ value = {written}, source = "{parameters.source(name)}" }}{comment}')
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,172 @@
+"""The one table of quantities: what the model takes and gives, with unit, meaning, bounds and source.
+
+Everything that names a quantity is made from here or from the annotated parameters in `parameters.py`: the FMU's variables, the
+TOML reader, `--set`, the columns of a history and the reference pages.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import inf
+from typing import Literal
+
+Source = Literal["paper", "derived", "closure", "identified", "user"]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One named number (or choice) of the model.
+
+    `unit` is SI and what the number is in; `display_unit` what people like to read. `lo <= value <= hi` must hold. `symbol` is the
+    paper's, and the kernel's, name. `source` says where a default comes from: the paper, derived from it, a closure that the paper
+    leaves open, or identified from the paper's printed numbers.
+    """
+
+    unit: str
+    meaning: str
+    lo: float = -inf
+    hi: float = inf
+    symbol: str = ""
+    source: Source = "closure"
+    display_unit: str = ""
+    choices: tuple[str, ...] = ()
+    name: str = ""
+    default: float | str = 0.0
+    kind: Literal["real", "integer", "boolean", "string"] = "real"
+
+
+# display unit -> (SI unit, factor): value_SI = factor * value_display
+DISPLAY_UNITS = {
+    "deg": ("rad", 0.017453292519943295),
+    "deg/s": ("rad/s", 0.017453292519943295),
+    "mm": ("m", 1e-3),
+    "kN": ("N", 1e3),
+    "MPa": ("Pa", 1e6),
+    "mm2": ("m2", 1e-6),
+    "cm3": ("m3", 1e-6),
+}
+
+# SI unit -> exponents of its base units, for FMI's UnitDefinitions
+BASE_UNITS: dict[str, dict[str, int]] = {
+    "m": {"m": 1},
+    "m2": {"m": 2},
+    "m3": {"m": 3},
+    "s": {"s": 1},
+    "kg": {"kg": 1},
+    "rad": {"rad": 1},
+    "rad/s": {"rad": 1, "s": -1},
+    "rad/s2": {"rad": 1, "s": -2},
+    "m/s": {"m": 1, "s": -1},
+    "m/s2": {"m": 1, "s": -2},
+    "s/m": {"s": 1, "m": -1},
+    "N": {"kg": 1, "m": 1, "s": -2},
+    "N.m": {"kg": 1, "m": 2, "s": -2},
+    "N/m": {"kg": 1, "s": -2},
+    "N.s/m": {"kg": 1, "s": -1},
+    "N/Pa": {"m": 2},
+    "J": {"kg": 1, "m": 2, "s": -2},
+    "Pa": {"kg": 1, "m": -1, "s": -2},
+    "kg/m3": {"kg": 1, "m": -3},
+    "kg.m2": {"kg": 1, "m": 2},
+}
+
+INPUT_QUANTITIES: tuple[Quantity, ...] = (
+    Quantity("N", "external force on the body at its CG, along inertial x", -1e7, 1e7, name="external.force_x", display_unit="kN"),
+    Quantity("N", "external force on the body at its CG, along inertial y (up)", -1e7, 1e7, name="external.force_y", display_unit="kN"),
+    Quantity("N.m", "external moment on the body, clockwise positive, as the pitch", -1e7, 1e7, name="external.moment"),
+    Quantity("m", "lift of the ground along inertial y", -100.0, 100.0, name="ground.heave"),
+    Quantity("m/s", "rate of the lift; the ground goes on at it until inputs are set again", -100.0, 100.0, name="ground.heave_rate"),
+    Quantity("rad", "tilt of the ground about the inertial origin, on top of ground.slope, clockwise positive", -1.0, 1.0,
+             name="ground.tilt", display_unit="deg"),
+    Quantity("rad/s", "rate of the tilt; the ground goes on at it until inputs are set again", -10.0, 10.0,
+             name="ground.tilt_rate", display_unit="deg/s"),
+)  # fmt: skip
+
+BODY_QUANTITIES: tuple[Quantity, ...] = (
+    Quantity("m", "CG of the upper mass along inertial x", name="body.x"),
+    Quantity("m", "CG of the upper mass along inertial y (up)", name="body.y"),
+    Quantity("rad", "pitch psi, clockwise positive", name="body.pitch", display_unit="deg"),
+    Quantity("m/s", "velocity of the CG along inertial x", name="body.vx"),
+    Quantity("m/s", "velocity of the CG along inertial y", name="body.vy"),
+    Quantity("rad/s", "pitch rate, clockwise positive", name="body.pitch_rate", display_unit="deg/s"),
+    Quantity("m/s2", "acceleration of the CG along inertial x", name="body.ax"),
+    Quantity("m/s2", "acceleration of the CG along inertial y", name="body.ay"),
+    Quantity("rad/s2", "pitch acceleration, clockwise positive", name="body.pitch_acceleration"),
+    Quantity("m/s2", "inertial acceleration of the top sensor along the body's axis: -g in free fall, 0 at rest",
+             name="body.top_axial_acceleration"),
+)  # fmt: skip
+
+ENERGY_QUANTITIES: tuple[Quantity, ...] = (
+    Quantity("J", "kinetic energy of body and footpads", name="energy.kinetic"),
+    Quantity("J", "potential energy of body and footpads above the inertial origin", name="energy.potential"),
+    Quantity("J", "energy held by the dampers' liquid", name="energy.liquid"),
+    Quantity("J", "energy held by the auxiliary struts' springs", name="energy.auxiliary"),
+    Quantity("J", "energy held by the ground's normal elasticity", name="energy.contact"),
+    Quantity("J", "energy held by the dampers' end stops", name="energy.stop"),
+    Quantity("J", "dissipated so far in the orifices", name="energy.dissipated_orifice"),
+    Quantity("J", "dissipated so far by seal friction", name="energy.dissipated_seal"),
+    Quantity("J", "dissipated so far by the end stops", name="energy.dissipated_stop"),
+    Quantity("J", "dissipated so far by the auxiliary struts' dampers", name="energy.dissipated_auxiliary"),
+    Quantity("J", "dissipated so far by the ground's normal damping", name="energy.dissipated_contact"),
+    Quantity("J", "taken so far by ground friction (a little of it held while sticking)", name="energy.dissipated_friction"),
+    Quantity("J", "work done so far by the external force and moment", name="energy.work_external"),
+    Quantity("J", "work done so far by the moving ground", name="energy.work_ground"),
+    Quantity("J", "work created so far by transverse_load_at = joint (0 for footpad)", name="energy.work_transverse"),
+    Quantity("J", "sum of all that was dissipated", name="energy.dissipated"),
+    Quantity("J", "energy balance: held + dissipated - work - held at the start; 0 but for the integrator's error", name="energy.balance"),
+)
+
+STATUS_QUANTITIES: tuple[Quantity, ...] = (
+    Quantity("", "0 falling, 1 contact, 2 settled, 3 toppled", 0, 3, name="status.phase", kind="integer"),
+    Quantity("m", "horizontal distance from the CG to the nearer outermost footpad, negative beyond it", name="status.stability_margin"),
+)  # fmt: skip
+
+LEG_QUANTITIES: tuple[Quantity, ...] = (
+    Quantity("N", "axial force, negative in compression", name="main_strut.force", display_unit="kN"),
+    Quantity("m", "damper stroke, positive in compression", name="main_strut.stroke", display_unit="mm"),
+    Quantity("m/s", "stroke rate, positive in compression", name="main_strut.stroke_rate"),
+    Quantity("Pa", "absolute pressure in the upper chamber (1)", name="main_strut.pressure_upper", display_unit="MPa"),
+    Quantity("Pa", "absolute pressure in the lower chamber (2)", name="main_strut.pressure_lower", display_unit="MPa"),
+    Quantity("kg", "mass of the liquid in both chambers", name="main_strut.liquid_mass"),
+    Quantity("N", "axial force, tension positive", name="auxiliary_strut.force", display_unit="kN"),
+    Quantity("m", "stroke, positive in compression", name="auxiliary_strut.stroke", display_unit="mm"),
+    Quantity("m/s", "stroke rate, positive in compression", name="auxiliary_strut.stroke_rate"),
+    Quantity("m", "position along inertial x", name="footpad.x"),
+    Quantity("m", "position along inertial y (up)", name="footpad.y"),
+    Quantity("m", "position along inertial z", name="footpad.z"),
+    Quantity("N", "force of the ground on the footpad along inertial x", name="contact.force_x", display_unit="kN"),
+    Quantity("N", "force of the ground on the footpad along inertial y (up)", name="contact.force_y", display_unit="kN"),
+    Quantity("N", "force of the ground on the footpad along inertial z", name="contact.force_z", display_unit="kN"),
+    Quantity("m", "penetration of the ground, positive in contact", name="contact.penetration", display_unit="mm"),
+    Quantity("", "whether the footpad touches the ground", name="contact.active", kind="boolean"),
+)
+
+LEGS = (1, 2, 3, 4)
+Z_TURNS = ("footpad.z", "contact.force_z")
+
+
+def _leg_quantity(leg: int, q: Quantity) -> Quantity:
+    owner, what = q.name.split(".")
+    meaning = f"leg {leg}, {owner.replace('_', ' ')}: {q.meaning}"
+    return Quantity(q.unit, meaning, q.lo, q.hi, name=f"leg[{leg}].{owner}.{what}", display_unit=q.display_unit, kind=q.kind)
+
+
+SHARED_QUANTITIES = BODY_QUANTITIES + ENERGY_QUANTITIES + STATUS_QUANTITIES
+OUTPUT_QUANTITIES: tuple[Quantity, ...] = SHARED_QUANTITIES + tuple(_leg_quantity(leg, q) for leg in LEGS for q in LEG_QUANTITIES)
+OUTPUT_NAMES: tuple[str, ...] = tuple(q.name for q in OUTPUT_QUANTITIES)
+INPUT_NAMES: tuple[str, ...] = tuple(q.name for q in INPUT_QUANTITIES)
+
+
+@dataclass(frozen=True)
+class LegGroup:
+    """Legs that are each other's mirror image: `legs` of (number, side), side -1 where Z is turned; `azimuth` [deg] of side +1."""
+
+    azimuth: int
+    legs: tuple[tuple[int, int], ...] = field(default=())
+
+
+# The landing modes. Legs are numbered round the body; the mode exists in this table and nowhere else.
+MODES: dict[str, tuple[LegGroup, ...]] = {
+    "2-2": (LegGroup(135, ((1, 1), (2, -1))), LegGroup(45, ((4, 1), (3, -1)))),
+    "1-2-1": (LegGroup(180, ((1, 1),)), LegGroup(90, ((4, 1), (2, -1))), LegGroup(0, ((3, 1),))),
+}

@@ -1,0 +1,105 @@
+"""The command line in a process of its own: what it prints, what it writes, how it ends."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rlv_landing import Landing, load_preset
+from rlv_landing.quantities import OUTPUT_NAMES
+
+
+def run(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-c", "from rlv_landing.cli import main; main()", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=120, env={**os.environ, "COLUMNS": "120"})
+
+
+def test_simulate_writes_csv_with_landings_digits_and_a_picture(tmp_path, mode):
+    done = run("simulate", "--mode", mode, "--output", "l.csv", "--plot", "l.png", "--json", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    summary = json.loads(done.stdout)
+    history = Landing(load_preset("yue2022-figures"), mode).run(1.0)
+    assert summary["legs"][0]["main_strut_force_min"] == history["leg[1].main_strut.force"].min()
+    data = np.loadtxt(tmp_path / "l.csv", delimiter=",", skiprows=1)
+    assert (tmp_path / "l.csv").read_text().splitlines()[0].split(",") == ["time", *OUTPUT_NAMES]
+    assert np.array_equal(data[:, 1:], history.data)
+    assert (tmp_path / "l.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_compare_prints_every_printed_scalar_of_the_mode(mode):
+    done = run("simulate", "--mode", mode, "--compare")
+    assert done.returncode == 0, done.stderr
+    assert f"of {20 if mode == '2-2' else 28}" in done.stdout
+    assert "maximum tension" in done.stdout
+
+
+def test_parameters_as_toml_come_back_as_parameters(tmp_path):
+    done = run("parameters", "--mode", "1-2-1", "--set", "ground.friction=0.3", "--toml")
+    assert done.returncode == 0, done.stderr
+    (tmp_path / "mine.toml").write_text(done.stdout)
+    back = run("parameters", "--parameters", str(tmp_path / "mine.toml"), "--json")
+    values = {record["name"]: record for record in json.loads(back.stdout)}
+    assert values["ground.friction"]["value"] == 0.3
+    assert values["ground.friction"]["source"] == "user"
+    assert values["drop.contact_time"]["value"] == 0.08883591904140851
+    assert values["drop.mode"]["value"] == "1-2-1"
+
+
+def test_tables_of_parameters_inputs_and_outputs_name_units():
+    assert "main_strut.orifice_area_compression" in run("parameters").stdout
+    assert "ground.heave_rate" in run("parameters", "--inputs").stdout
+    assert "leg[4].contact.active" in run("parameters", "--outputs").stdout
+
+
+@pytest.mark.parametrize("command", [(), ("simulate",), ("parameters",)])
+def test_help_teaches(command):
+    done = run(*command, "--help")
+    assert done.returncode == 0
+    assert "rlv-landing" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("simulat",), "did you mean simulate?"),
+        (("simulate", "--untill", "2"), "--until"),
+        (("simulate", "--mode", "3-1"), "unknown landing mode '3-1'; known are 2-2, 1-2-1"),
+        (("simulate", "--preset", "yue2022"), "unknown preset 'yue2022'"),
+        (("simulate", "--set", "ground.fricton=0.3"), "did you mean ground.friction?"),
+        (("simulate", "--set", "ground.friction"), "has no '='"),
+        (("simulate", "--set", "ground.friction=-0.1"), "ground.friction = -0.1 is outside [0, 3]"),
+        (("simulate", "--set", "ground.friction=nan"), "ground.friction = nan is outside [0, 3]"),
+        (("simulate", "--set", "drop.tilt=5 m"), "wrong unit"),
+        (("simulate", "--input", "external.force_z=5"), "did you mean external.force_"),
+        (("simulate", "--parameters", "none.toml"), "there is no parameter file none.toml"),
+        (("simulate", "--every", "-0.001"), "every = -0.001 s must be finite and above 0 s"),
+        (("simulate", "--until", "nan"), "until = nan s must be finite"),
+        (("simulate", "--until", "abc"), "not a valid float"),
+        (("simulate", "--rtol", "3"), "rtol = 3 is outside"),
+        (("simulate", "--output", "x.txt"), "must end in .csv"),
+        (("simulate", "--output", "no/such/x.csv"), "there is no folder no/such"),
+        (("simulate", "--compare", "--until", "0.3"), "the paper's scalars need it until"),
+    ],
+)
+def test_bad_input_is_one_clear_line_and_exit_code_2(tmp_path, arguments, message):
+    done = run(*arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert "Traceback" not in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_files_are_not_overwritten_unless_told(tmp_path):
+    (tmp_path / "l.csv").write_text("precious")
+    done = run("simulate", "--until", "0.1", "--output", "l.csv", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "l.csv exists; --force overwrites it" in done.stderr
+    assert (tmp_path / "l.csv").read_text() == "precious"
+    assert run("simulate", "--until", "0.1", "--output", "l.csv", "--force", cwd=tmp_path).returncode == 0

@@ -1,0 +1,130 @@
+"""Damper, auxiliary strut and contact against their laws."""
+
+from math import sqrt
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pytest import approx
+
+from rlv_landing import Parameters
+from rlv_landing.core.auxiliary_strut import auxiliary
+from rlv_landing.core.contact import contact, damping_ramp, friction, normal_force
+from rlv_landing.core.damper import damper, orifice_flow, seal_friction, stop_force
+from rlv_landing.landing import build_model
+
+P = build_model(Parameters())
+speeds = st.floats(-5.0, 5.0)
+
+
+@given(st.floats(-3e7, 3e7))
+def test_orifice_flow_goes_down_the_pressure_drop_and_dissipates(dP):
+    assert orifice_flow(dP, 1.0, P) * dP >= 0.0
+
+
+def test_orifice_flow_follows_the_square_root_law_far_from_zero():
+    assert orifice_flow(2e7, 1.0, P) == approx(P.CdAo_c * sqrt(2.0 * 2e7 / P.rho0), rel=1e-4)
+    assert orifice_flow(-2e7, 1.0, P) == approx(-P.CdAo_r * sqrt(2.0 * 2e7 / P.rho0), rel=1e-4)
+
+
+@given(speeds, st.floats(1e3, 2e7), st.floats(1e3, 2e7))
+def test_seal_friction_opposes_the_motion(v, P1, P2):
+    assert seal_friction(v, P1, P2, P) * v >= 0.0
+
+
+@given(st.floats(0.0, P.s_max), speeds)
+def test_end_stops_are_silent_between_the_ends(s, v):
+    assert stop_force(s, v, P) == (0.0, 0.0)
+
+
+@given(st.floats(1e-6, 0.01), speeds)
+def test_end_stops_only_push_back_and_only_dissipate(overlap, v):
+    extension, power = stop_force(-overlap, v, P)
+    assert extension <= 0.0
+    assert power >= -1e-9
+    compression, power = stop_force(P.s_max + overlap, v, P)
+    assert compression >= 0.0
+    assert power >= -1e-9
+
+
+@given(st.floats(0.0, 0.03), speeds, st.floats(2e3, 1e7), st.floats(2e3, 1e7))
+def test_chambers_keep_the_liquid_mass(s, v, P1, P2):
+    """d(rho V)/dt of both chambers together is zero whatever the state: rho = rho0/v(P)."""
+    from rlv_landing.core.fluid import fluid
+
+    _, dP1, dP2, *_ = damper(s, v, P1, P2, P)
+    constants = (P.x_air, P.n_air, P.B0, P.kB, P.Pa)
+    v1, dv1, _ = fluid(P1, *constants)
+    v2, dv2, _ = fluid(P2, *constants)
+    V1, V2 = P.V10 + P.A1 * s, P.V20 - P.A2 * s
+    rates = (P.A1 * v / v1, -V1 * dv1 * dP1 / v1**2, -P.A2 * v / v2, -V2 * dv2 * dP2 / v2**2)
+    assert sum(rates) == approx(0.0, abs=1e-12 * max(map(abs, rates)) + 1e-18)
+
+
+@given(st.floats(0.0, 0.03), speeds, st.floats(2e3, 1e7), st.floats(2e3, 1e7))
+def test_damper_dissipates_in_orifice_and_seal(s, v, P1, P2):
+    _, _, _, orifice, seal, _ = damper(s, v, P1, P2, P)
+    assert orifice >= 0.0
+    assert seal >= 0.0
+
+
+@given(st.floats(-0.01, 0.01), speeds)
+def test_auxiliary_strut_is_odd_and_dissipates(s, v):
+    force, power = auxiliary(s, v, P)
+    opposite, _ = auxiliary(-s, -v, P)
+    assert opposite == approx(-force)
+    assert power >= 0.0
+
+
+@given(st.floats(-0.01, 0.01), speeds)
+def test_ground_never_pulls_and_its_damping_dissipates(d, v):
+    force, power = normal_force(d, v, P)
+    assert force >= 0.0
+    assert power >= -1e-9 * max(1.0, abs(force * v))
+    if d <= 0.0:
+        assert force == 0.0
+
+
+def test_damping_ramp_is_smooth_at_both_ends():
+    assert damping_ramp(0.0, P) == 0.0
+    assert damping_ramp(P.d_ramp, P) == 1.0
+    for end in (1e-6, 1.0 - 1e-6):
+        slope = (damping_ramp((end + 1e-7) * P.d_ramp, P) - damping_ramp((end - 1e-7) * P.d_ramp, P)) / 2e-7
+        assert slope == approx(0.0, abs=1e-4)
+
+
+@given(st.floats(1e-5, 2e-3), speeds, speeds, st.sampled_from([0.5, 1.0]))
+def test_sliding_friction_stays_within_the_cone(d, vx, vz, share):
+    """Both directions in slip: the friction is at most (1 + ar) mu Fn, and opposes the slip."""
+    if share == 1.0:
+        vz = 0.0
+    sx, sz = (P.s_r0 if vx > 0.0 else -P.s_r0), (P.s_r0 if vz > 0.0 else -P.s_r0)
+    Fn, Fx, Fz, *_ = contact(d, 0.0, vx, vz, sx, sz, share, P)
+    stick_damping = P.Cr * (abs(vx) + abs(vz))
+    assert sqrt(Fx * Fx + Fz * Fz) <= (1.0 + P.ar) * P.mu * Fn * (1.0 + 1e-9) + stick_damping
+    assert Fx * vx + Fz * vz <= 0.0
+
+
+def test_friction_slips_only_where_it_has_reached_its_limit_in_the_sense_of_motion():
+    Fn = 1000.0
+    assert friction(1e-3, Fn, P.mu, 0.1, P.s_r0, P)[1] == 0.0
+    assert friction(1e-3, Fn, P.mu, 0.1, 0.5 * P.s_r0, P)[1] == 0.1
+    assert friction(1e-3, Fn, P.mu, -0.1, P.s_r0, P)[1] == -0.1
+    assert friction(-1e-3, 0.0, P.mu, 0.1, P.s_r0, P) == (0.0, -P.s_r0 / P.tau_sr)
+
+
+def test_friction_at_rest_is_shared_evenly_in_space_and_whole_in_the_symmetric_plane():
+    s = 0.5 * P.s_r0
+    Fn, Fx, Fz, *_ = contact(1e-3, 0.0, 0.0, 0.0, s, s, 0.5, P)
+    assert Fx == Fz == approx(-P.mu / sqrt(2.0) * Fn * (1.0 + P.ar) * 0.5)
+    Fn, Fx, Fz, *_ = contact(1e-3, 0.0, 0.0, 0.0, s, 0.0, 1.0, P)
+    assert Fx == approx(-P.mu * Fn * (1.0 + P.ar) * 0.5)
+    assert Fz == 0.0
+
+
+@pytest.mark.parametrize("v", [1e-9, 1e-3, 1.0])
+def test_stick_damping_has_faded_where_slip_begins(v):
+    """So the force just below and just at the limit differ only by the Stribeck term."""
+    below = friction(1e-3, 1000.0, P.mu, v, P.s_r0 * (1.0 - 1e-12), P)[0]
+    expected = -P.mu * 1000.0 * (1.0 + P.ar)
+    assert below == approx(expected, rel=1e-9)
