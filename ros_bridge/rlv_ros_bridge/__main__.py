@@ -1,0 +1,35 @@
+"""`python -m rlv_ros_bridge node|replay|log`: the bridge's commands without the `rlv-landing` front."""
+
+from __future__ import annotations
+
+import sys
+
+import click
+
+from rlv_landing.errors import LandingError
+
+from .cli import log, node, replay
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+def main() -> None:
+    """Land, record and replay with ROS 2."""
+
+
+main.add_command(node)
+main.add_command(replay)
+main.add_command(log)
+
+
+def run() -> int:
+    """The commands, with a user's error as one line on stderr and exit code 2."""
+    try:
+        main.main(prog_name="rlv_ros_bridge", standalone_mode=True)
+    except LandingError as e:
+        print(f"error: {e}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(run())

@@ -1,0 +1,89 @@
+"""Message definitions as a log needs them: the `.msg` texts of a type and of all it is made of, and its hash."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import sys
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from rlv_landing.errors import LandingError
+
+SEPARATOR = "=" * 80
+INTEGERS = tuple(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))
+PRIMITIVES = frozenset(("bool", "byte", "char", "float32", "float64", "string", "wstring", *INTEGERS))
+FIELD = re.compile(r"^\s*([A-Za-z][A-Za-z0-9_/]*)(?:<=\d+)?(?:\[[^\]]*\])?\s+[A-Za-z]\w*")
+
+
+@dataclass(frozen=True)
+class Definition:
+    """A message type `pkg/msg/Type`: its text in the form of MCAP's `ros2msg` schema, and its hash (`RIHS01_...`)."""
+
+    name: str
+    text: str
+    type_hash: str
+
+
+@cache
+def definition(name: str) -> Definition:
+    """The definition of the type `pkg/msg/Type`. Raises LandingError where its package is not installed."""
+    done: dict[str, str] = {}
+    queue = [name]
+    while queue:
+        current = queue.pop(0)
+        if current not in done:
+            done[current] = _folder(current).joinpath(current.rsplit("/", 1)[1] + ".msg").read_text(encoding="utf-8")
+            queue += dependencies(current, done[current])
+    parts = [done.pop(name)]
+    for dependency, text in done.items():
+        package, _, short = dependency.split("/")
+        parts.append(f"{SEPARATOR}\nMSG: {package}/{short}\n{text}")
+    return Definition(name, "\n".join(parts), _type_hash(name))
+
+
+def dependencies(name: str, text: str) -> list[str]:
+    """The types `pkg/msg/Type` that the `.msg` text of the type `name` mentions, in its order."""
+    package = name.split("/")[0]
+    found: list[str] = []
+    for line in text.splitlines():
+        match = FIELD.match(line.split("#", 1)[0])
+        if match is None or match[1] in PRIMITIVES:
+            continue
+        parts = match[1].split("/")
+        found.append(f"{parts[0]}/msg/{parts[-1]}" if len(parts) > 1 else f"{package}/msg/{parts[0]}")
+    return list(dict.fromkeys(found))
+
+
+def _type_hash(name: str) -> str:
+    file = _folder(name) / (name.rsplit("/", 1)[1] + ".json")
+    try:
+        hashes = json.loads(file.read_text(encoding="utf-8"))["type_hashes"]
+        return next(str(h["hash_string"]) for h in hashes if h["type_name"] == name)
+    except (OSError, ValueError, LookupError, StopIteration):
+        return ""
+
+
+def _folder(name: str) -> Path:
+    package, _, short = name.split("/")
+    tried = _shares(package)
+    for share in tried:
+        if (share / "msg" / f"{short}.msg").is_file():
+            return share / "msg"
+    raise LandingError(
+        f"the definition of {name} is not installed (looked in {', '.join(map(str, tried))}); "
+        f"install the ROS 2 package {package}, or source your ROS 2"
+    )
+
+
+def _shares(package: str) -> list[Path]:
+    shares: list[Path] = []
+    if os.environ.get("AMENT_PREFIX_PATH"):
+        from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
+
+        with suppress(PackageNotFoundError):
+            shares.append(Path(get_package_share_directory(package)))
+    return [*shares, Path(sys.prefix) / "share" / package]

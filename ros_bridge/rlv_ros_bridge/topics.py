@@ -1,0 +1,49 @@
+"""The topics of a landing: names, types, how often, and which field of which message carries which output.
+
+Both directions are made from here: `messages.py` fills messages, `columns.py` reads them back.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rlv_landing.quantities import LEGS
+
+WORLD_FRAME = "map"
+BODY_FRAME = "base_link"
+TOP_FRAME = "top_sensor"
+
+JOINTS: tuple[str, ...] = tuple(f"leg_{leg}_{strut}" for leg in LEGS for strut in ("main_strut", "auxiliary_strut"))
+
+
+@dataclass(frozen=True)
+class Topic:
+    """A topic: `name` (relative to the node's namespace unless it starts with a slash), message type, and its period.
+
+    `period` is in seconds of simulation time; 0 means every step.
+    """
+
+    name: str
+    type_name: str
+    period: float = 0.0
+
+
+STRUTS = Topic("struts", "sensor_msgs/msg/JointState")
+POSE = Topic("pose", "geometry_msgs/msg/PoseStamped")
+RPY = Topic("rpy", "geometry_msgs/msg/Vector3Stamped")
+TWIST = Topic("twist", "geometry_msgs/msg/TwistStamped")
+ACCEL = Topic("accel", "geometry_msgs/msg/AccelStamped")
+TOP_ACCEL = Topic("top/accel", "geometry_msgs/msg/AccelStamped")
+CONTACTS = tuple(Topic(f"leg_{leg}/contact", "geometry_msgs/msg/WrenchStamped") for leg in LEGS)
+ODOM = Topic("odom", "nav_msgs/msg/Odometry")
+MARKERS = Topic("markers", "visualization_msgs/msg/MarkerArray", 0.033)
+DIAGNOSTICS = Topic("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", 0.1)
+CLOCK = Topic("/clock", "rosgraph_msgs/msg/Clock")
+
+# What is recorded, in the order it is published at one instant. The clock is not: a replay makes its own.
+RECORDED: tuple[Topic, ...] = (STRUTS, POSE, RPY, TWIST, ACCEL, TOP_ACCEL, *CONTACTS, ODOM, MARKERS, DIAGNOSTICS)
+
+
+def resolve(namespace: str, name: str) -> str:
+    """The full name of a topic under `namespace`."""
+    return name if name.startswith("/") else f"/{namespace.strip('/')}/{name}".replace("//", "/")

@@ -1,0 +1,119 @@
+"""Samples to messages and back: axes, attitude, stamps, and not one digit changed."""
+
+from __future__ import annotations
+
+import struct
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from rclpy.serialization import deserialize_message, serialize_message
+from scipy.spatial.transform import Rotation
+
+from rlv_landing import Landing, load_preset
+from rlv_landing.quantities import OUTPUT_NAMES
+from rlv_ros_bridge.axes import from_ros, pitch_quaternion, to_ros, world_to_body
+from rlv_ros_bridge.columns import COLUMN_NAMES, sample_columns
+from rlv_ros_bridge.markers import Wireframe
+from rlv_ros_bridge.messages import SampleMessages
+
+FINITE = st.floats(allow_nan=False, allow_infinity=False)
+# The paper's x forward, y up, z right, each in ROS's x forward, y left, z up.
+PAPER_TO_ROS = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+
+
+def sample(values: dict[str, float]) -> list[float]:
+    return [values.get(name, 0.0) for name in OUTPUT_NAMES]
+
+
+def filled(values: list[float], nanoseconds: int = 0) -> SampleMessages:
+    messages = SampleMessages()
+    messages.fill(nanoseconds, values)
+    return messages
+
+
+def bits(value: float) -> bytes:
+    return struct.pack("<d", value)
+
+
+@given(FINITE, FINITE, FINITE)
+def test_axes_turn_as_the_rotation_matrix_says(x: float, y: float, z: float) -> None:
+    assert np.array_equal(to_ros(x, y, z), PAPER_TO_ROS @ [x, 0.0, 0.0] + PAPER_TO_ROS @ [0.0, y, 0.0] + PAPER_TO_ROS @ [0.0, 0.0, z])
+    assert tuple(map(bits, from_ros(*to_ros(x, y, z)))) == tuple(map(bits, (x, y, z)))
+
+
+def test_the_turn_of_axes_is_a_rotation_not_a_mirror() -> None:
+    forward, up, right = (np.array(to_ros(*axis)) for axis in np.eye(3))
+    assert np.array_equal(np.cross(forward, up), right)
+
+
+@given(st.floats(-3.0, 3.0))
+def test_pitch_is_a_turn_about_ros_y_that_takes_the_nose_forward_and_down(pitch: float) -> None:
+    # Clockwise positive in the paper's x-y plane: its rotation matrix, told in the paper's axes.
+    c, s = np.cos(pitch), np.sin(pitch)
+    paper = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    expected = PAPER_TO_ROS @ paper @ PAPER_TO_ROS.T
+    assert np.allclose(Rotation.from_quat(pitch_quaternion(pitch)).as_matrix(), expected, atol=1e-15)
+
+
+@given(st.floats(-3.0, 3.0), st.floats(-10.0, 10.0), st.floats(-10.0, 10.0))
+def test_odometry_tells_the_velocity_in_the_body(pitch: float, vx: float, vy: float) -> None:
+    messages = filled(sample({"body.pitch": pitch, "body.vx": vx, "body.vy": vy}))
+    seen = messages.odom.twist.twist.linear
+    expected = Rotation.from_quat(pitch_quaternion(pitch)).inv().apply(to_ros(vx, vy, 0.0))
+    assert np.allclose([seen.x, seen.y, seen.z], expected, atol=1e-12)
+    assert np.allclose(world_to_body(vx, vy, pitch), (expected[0], expected[2]), atol=1e-12)
+
+
+@given(st.integers(0, 2**31 * 10**9 - 1))
+def test_stamps_are_exact_to_the_nanosecond(nanoseconds: int) -> None:
+    messages = filled([0.0] * len(OUTPUT_NAMES), nanoseconds)
+    for message in (*(m for _, m in messages.messages),):
+        stamp = message.header.stamp
+        assert stamp.sec * 10**9 + stamp.nanosec == nanoseconds
+    assert messages.clock.clock.sec * 10**9 + messages.clock.clock.nanosec == nanoseconds
+
+
+@settings(max_examples=50)
+@given(st.lists(FINITE, min_size=len(COLUMN_NAMES), max_size=len(COLUMN_NAMES)))
+def test_columns_from_messages_are_the_sample_bit_for_bit(numbers: list[float]) -> None:
+    values = dict(zip(COLUMN_NAMES, numbers))
+    messages = filled(sample(values))
+    sent: dict[str, Any] = {
+        topic.name: deserialize_message(serialize_message(message), type(message)) for topic, message in messages.messages
+    }
+    back = sample_columns(sent)
+    assert {name: bits(value) for name, value in back.items()} == {name: bits(value) for name, value in values.items()}
+
+
+def test_message_objects_are_filled_again_without_leftovers() -> None:
+    first, second = [float(i) for i in range(len(OUTPUT_NAMES))], [-float(i) for i in range(len(OUTPUT_NAMES))]
+    reused = SampleMessages()
+    reused.fill(5, first)
+    reused.fill(7, second)
+    fresh = filled(second, 7)
+    for (_, a), (_, b) in zip(reused.messages, fresh.messages):
+        assert serialize_message(a) == serialize_message(b)
+
+
+@pytest.mark.parametrize("mode", ["2-2", "1-2-1"])
+def test_wireframe_struts_have_their_length_less_the_stroke(mode: str) -> None:
+    parameters = load_preset("yue2022-figures", mode)
+    landing = Landing(parameters)
+    landing.advance_to(0.16)
+    wireframe = Wireframe(parameters)
+    markers = {m.ns: [to_tuple(p) for p in m.points] for m in wireframe.fill(0, landing.values()).markers}
+    for name, strut, length in (
+        ("main_struts", "main_strut", parameters.main_strut.length),
+        ("auxiliary_struts", "auxiliary_strut", parameters.auxiliary_strut.length),
+    ):
+        for leg in (1, 2, 3, 4):
+            joint, foot = markers[name][2 * leg - 2], markers[name][2 * leg - 1]
+            stroke = landing.get(f"leg[{leg}].{strut}.stroke")
+            assert np.linalg.norm(np.subtract(joint, foot)) == pytest.approx(length - stroke, abs=1e-9)
+
+
+def to_tuple(point: Any) -> tuple[float, float, float]:
+    return point.x, point.y, point.z

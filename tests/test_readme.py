@@ -1,0 +1,42 @@
+"""What the README tells people to do works as it stands."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from rlv_landing.cli import cli
+
+ROOT = Path(__file__).resolve().parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+SNIPPETS = re.findall(r"```python\n(.*?)```", README, re.S)
+COMMANDS = re.findall(r"\.venv/bin/rlv-landing ([^\n#]+)", README)
+
+
+@pytest.mark.parametrize("snippet", SNIPPETS, ids=lambda s: s.split("\n", 1)[0])
+def test_python_snippets_run(snippet, fmu):
+    subprocess.run([sys.executable, "-c", snippet], cwd=ROOT, check=True, capture_output=True, timeout=120)
+
+
+@pytest.mark.parametrize("line", COMMANDS)
+def test_every_command_and_option_that_is_shown_exists(line):
+    words = line.split(">")[0].split()
+    path = [w for w in words[:2] if re.fullmatch("[a-z]+", w)] if words[0] == "log" else words[:1]
+    told = CliRunner().invoke(cli, [*path, "--help"])
+    assert told.exit_code == 0, told.output
+    for option in (w.split("=")[0] for w in words if w.startswith("--")):
+        assert option in told.output, option
+
+
+def test_every_linked_file_exists():
+    for target in re.findall(r"\]\(([^)#]+)\)", README):
+        assert (ROOT / target).is_file(), target
+
+
+def test_readme_names_every_make_target_it_relies_on():
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    for target in re.findall(r"`?make (\w+)", README):
+        assert re.search(rf"^{target}:", makefile, re.M), target
