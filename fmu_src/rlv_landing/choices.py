@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 from .errors import LandingError, unknown
-from .parameters import PARAMETER_QUANTITIES, Parameters
+from .parameters import Parameters
 from .presets import DEFAULT_PRESET, load_preset, parse_value, read_toml
 from .quantities import Quantity
 
@@ -25,15 +26,16 @@ def parse_pairs(pairs: Iterable[str], table: Mapping[str, Quantity], what: str) 
 
 
 def choose_parameters(
-    preset: str | None = None, file: str | Path | None = None, mode: str | None = None, pairs: Iterable[str] = ()
+    preset: str | None = None, file: str | Path | None = None, mode: str | None = None, values: Mapping[str, Any] | None = None
 ) -> Parameters:
-    """The parameters that a user asks for: a TOML file or a preset, for a mode, with single values on top.
+    """The parameters that a user asks for: a TOML file or a preset, for a mode, with single `values` by name on top.
 
     Raises LandingError: both a preset and a file, a file that is missing or wrong, unknown preset, mode or name, bad values.
     """
     if preset is not None and file is not None:
         raise LandingError('give a preset or a parameter file, not both; a file names its preset itself: preset = "..."')
     parameters = read_toml(file) if file is not None else load_preset(preset or DEFAULT_PRESET)
-    values = parse_pairs(pairs, PARAMETER_QUANTITIES, "parameter")
-    wanted = mode if mode is not None else values.get("drop.mode", parameters.drop.mode)
-    return parameters.for_mode(str(wanted)).with_values({n: v for n, v in values.items() if n != "drop.mode"})
+    changes = dict(values or {})
+    given = changes.pop("drop.mode", None)
+    wanted = mode if mode is not None else given if given is not None else parameters.drop.mode
+    return parameters.for_mode(wanted).with_values(changes)

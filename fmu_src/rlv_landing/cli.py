@@ -102,11 +102,12 @@ def simulate(
 
     from .choices import choose_parameters, parse_pairs
     from .landing import Landing
+    from .parameters import PARAMETER_QUANTITIES
     from .quantities import INPUT_QUANTITIES
 
     for path, ending in ((output, ".csv"), (plot, ".png")):
         _check_writable(path, ending, force)
-    parameters = choose_parameters(preset, file, mode, pairs)
+    parameters = choose_parameters(preset, file, mode, parse_pairs(pairs, PARAMETER_QUANTITIES, "parameter"))
     landing = Landing(parameters, rtol=rtol)
     landing.set_inputs(parse_pairs(inputs, {q.name: q for q in INPUT_QUANTITIES}, "input"))
     with tqdm(
@@ -163,7 +164,8 @@ def parameters(
     rlv-landing parameters --preset yue2022-table2 --mode 1-2-1
     rlv-landing parameters --toml > mine.toml
     """
-    from .choices import choose_parameters
+    from .choices import choose_parameters, parse_pairs
+    from .parameters import PARAMETER_QUANTITIES
     from .presets import to_toml
     from .quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES
     from .tables import parameter_records, parameter_table, quantity_table
@@ -175,7 +177,7 @@ def parameters(
         else:
             click.echo(quantity_table(what, quantities), nl=False)
         return
-    chosen = choose_parameters(preset, file, mode, pairs)
+    chosen = choose_parameters(preset, file, mode, parse_pairs(pairs, PARAMETER_QUANTITIES, "parameter"))
     if toml:
         click.echo(to_toml(chosen), nl=False)
     elif as_json:

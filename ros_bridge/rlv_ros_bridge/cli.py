@@ -10,27 +10,13 @@ from typing import Any
 
 import click
 
-from rlv_landing.errors import LandingError, nearest, unknown
+from rlv_landing.choices import parse_pairs
+from rlv_landing.errors import LandingError, nearest
 from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.presets import parse_value
 
 PASS_ON: dict[str, Any] = {"ignore_unknown_options": True, "help_option_names": ["-h", "--help"], "max_content_width": 120}
 EXIT_RECORDING_FAILED = 1
 EXIT_CUT = 3
-
-
-def parse_changes(pairs: tuple[str, ...]) -> dict[str, float | str]:
-    """`name=value` pairs as parameters. Raises LandingError: no equals sign, unknown name, bad value."""
-    changes: dict[str, float | str] = {}
-    for pair in pairs:
-        name, sign, value = pair.partition("=")
-        name = name.strip()
-        if not sign:
-            raise LandingError(f"--set {pair} has no value; write --set name=value, for example --set vehicle.mass=200")
-        if name not in PARAMETER_QUANTITIES:
-            raise unknown("parameter", name, PARAMETER_QUANTITIES)
-        changes[name] = parse_value(PARAMETER_QUANTITIES[name], value.strip())
-    return changes
 
 
 def split_ros_args(arguments: tuple[str, ...]) -> list[str]:
@@ -91,7 +77,7 @@ def node(
             raise LandingError(f"--no-record and {'--record' if record else '--report'} contradict each other; leave one out")
         where = {} if no_record else {"record": record} if record else {"log_root": log_root}
         chosen = {name: value for name, value in given.items() if value is not None}
-        changed = parse_changes(changes)
+        changed = parse_pairs(changes, PARAMETER_QUANTITIES, "parameter")
         require_ros()
         from .landing_node import land
 

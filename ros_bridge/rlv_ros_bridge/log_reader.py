@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -122,15 +121,10 @@ class LogReader:
 
     def parameters(self) -> Parameters | None:
         """The parameters that the log carries, once its start has been read."""
-        from rlv_landing.presets import read_toml
+        from rlv_landing.presets import parse_toml
 
         data = self.attachments.get("parameters.toml")
-        if data is None:
-            return None
-        with tempfile.TemporaryDirectory(prefix="rlv-landing-") as folder:
-            file = Path(folder) / "parameters.toml"
-            file.write_bytes(data)
-            return read_toml(file)
+        return None if data is None else parse_toml(data.decode("utf-8", "replace"), f"{self.path}: parameters.toml")
 
     def history(self) -> History:
         """The landing as columns named as the FMU's variables, SI, one row an instant; digit for digit what the FMU gave.

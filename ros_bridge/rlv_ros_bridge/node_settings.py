@@ -10,10 +10,11 @@ from math import inf, isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rlv_landing import Parameters, load_preset
+from rlv_landing import Parameters
+from rlv_landing.choices import choose_parameters
 from rlv_landing.errors import LandingError, unknown
 from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.presets import DEFAULT_PRESET, read_toml
+from rlv_landing.presets import DEFAULT_PRESET
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -74,9 +75,13 @@ def read_settings(node: Node) -> Settings:
     if MODE in given:
         given.setdefault("mode", given.pop(MODE))
     values = {name: check_setting(name, given.get(name, SETTINGS[name][0])) for name in SETTINGS}
-    parameters, preset = resolve_parameters(
-        values["preset"], values["parameters_file"], values["mode"], {n: v for n, v in given.items() if n in PARAMETER_QUANTITIES}
+    parameters = choose_parameters(
+        values["preset"] or None,
+        values["parameters_file"] or None,
+        values["mode"] or None,
+        {n: v for n, v in given.items() if n in PARAMETER_QUANTITIES},
     )
+    preset = values["parameters_file"] or values["preset"] or DEFAULT_PRESET
     step_ns = whole_nanoseconds(values["step_size"])
     if values["stop_time"] < values["step_size"]:
         raise LandingError(f"stop_time = {values['stop_time']:g} s is below the step of {values['step_size']:g} s; land for longer")
@@ -128,21 +133,6 @@ def whole_nanoseconds(step: float) -> int:
     if nanoseconds < 1 or nanoseconds / 1e9 != step:
         raise LandingError(f"step_size = {step!r} s is not a whole number of nanoseconds, which stamps are counted in; round it to 1e-9 s")
     return nanoseconds
-
-
-def resolve_parameters(preset: str, file: str, mode: str, changes: Mapping[str, Any]) -> tuple[Parameters, str]:
-    """The parameters of a preset or a TOML file for `mode`, with `changes`; and the name of what they come from.
-
-    Raises LandingError: both are given, no such preset, file or mode, a bad value.
-    """
-    if preset and file:
-        raise LandingError(f'preset {preset} and parameter file {file} are both given; write preset = "{preset}" into the file instead')
-    if file:
-        parameters = read_toml(file)
-        parameters = parameters.for_mode(mode) if mode else parameters
-    else:
-        parameters = load_preset(preset or DEFAULT_PRESET, mode or None)
-    return (parameters.with_values(changes) if changes else parameters), (file or preset or DEFAULT_PRESET)
 
 
 def _declare(node: Node, values: Mapping[str, Any], parameters: Parameters) -> None:

@@ -50,7 +50,7 @@ class Qos:
         )
 
 
-# A stopped subscriber must not slow the node: the last second is kept for it, never everything.
+# The last second is kept for a slow subscriber, never everything: a writer that keeps all waits for its slowest reader.
 TELEMETRY = Qos()
 CLOCK = Qos(depth=1)
 

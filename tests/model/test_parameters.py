@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from rlv_landing import LandingError, Parameters, load_preset
-from rlv_landing.choices import choose_parameters
+from rlv_landing.choices import choose_parameters, parse_pairs
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.presets import parse_value, preset_names, read_toml, to_toml
 from rlv_landing.quantities import BASE_UNITS, DISPLAY_UNITS, INPUT_QUANTITIES, OUTPUT_QUANTITIES
@@ -59,7 +59,8 @@ def test_what_the_user_sets_wins_over_what_belongs_to_a_mode():
     p = load_preset("yue2022-figures").with_values({"drop.tilt": 0.05})
     assert p.for_mode("1-2-1").drop.tilt == 0.05
     assert p.source("drop.tilt") == "user"
-    chosen = choose_parameters(mode="1-2-1", pairs=["drop.tilt=-2 deg", "ground.friction=0.4"])
+    values = parse_pairs(["drop.tilt=-2 deg", "ground.friction=0.4"], PARAMETER_QUANTITIES, "parameter")
+    chosen = choose_parameters(mode="1-2-1", values=values)
     assert chosen.drop.tilt == approx(-0.0349065850398866)
     assert chosen.ground.friction == 0.4
     assert chosen.drop.mode == "1-2-1"

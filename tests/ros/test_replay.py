@@ -9,7 +9,6 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
-import pytest
 from bridge_tools import TIMEOUT, Heard, Listener, by_topic, run, start
 
 from rlv_ros_bridge.log_reader import LogMessage, LogReader
@@ -50,8 +49,6 @@ def test_a_replay_recorded_again_is_the_same_log_with_the_same_timing(one_log: P
         spacing_then = np.diff([m.log_time for m in original if m.topic == topic])
         spacing_now = np.diff([m.log_time for m in again if m.topic == topic])
         assert np.median(np.abs(spacing_now - spacing_then)) < 1e6
-    took = (again[-1].log_time - again[0].log_time) / 1e9
-    assert took == pytest.approx(1.0, abs=0.2)
 
 
 def test_a_part_of_the_log_can_be_played_at_another_rate(one_log: Path, tmp_path: Path, domain: int) -> None:

@@ -47,14 +47,17 @@ def read_toml(path: str | Path) -> Parameters:
         raise LandingError(f"there is no parameter file {path}; presets are {', '.join(preset_names())}") from None
     except (OSError, UnicodeDecodeError) as e:
         raise LandingError(f"parameter file {path} cannot be read: {e}") from None
+    return parse_toml(text, str(path))
+
+
+def parse_toml(text: str, name: str) -> Parameters:
+    """As `read_toml`, from a text that errors call `name`."""
     try:
-        document = tomllib.loads(text)
+        return _from_document(tomllib.loads(text))
     except tomllib.TOMLDecodeError as e:
-        raise LandingError(f"{path}: TOML syntax: {e}") from None
-    try:
-        return _from_document(document)
+        raise LandingError(f"{name}: TOML syntax: {e}") from None
     except LandingError as e:
-        raise LandingError(f"{path}: {e}") from None
+        raise LandingError(f"{name}: {e}") from None
 
 
 def _from_document(document: dict[str, Any]) -> Parameters:
