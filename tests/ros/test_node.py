@@ -85,11 +85,9 @@ def test_a_signal_in_mid_landing_leaves_a_complete_log(
     assert f"interrupted: {len(logged)} samples" in out
 
 
-def test_a_subscriber_that_freezes_does_not_slow_a_landing_of_one_second(
+def test_a_subscriber_that_freezes_does_not_keep_the_node_from_its_end(
     fmu: Path, tmp_path: Path, domain: int, processes: list[subprocess.Popen[str]]
 ) -> None:
-    # No longer than that: 2 to 3 s after the freeze Fast DDS makes the frozen reader's shared-memory port anew at every write, which
-    # slows the node to about a third of real time, whatever the depth of the history.
     listener = Listener(TOPICS, tmp_path, domain, announce=100)
     try:
         node = start("node", "--fmu", fmu, "--no-record", "--wait-for-subscribers", 1, domain=domain)
@@ -101,8 +99,7 @@ def test_a_subscriber_that_freezes_does_not_slow_a_landing_of_one_second(
         os.kill(listener.process.pid, signal.SIGCONT)
         listener.stop()
     assert node.returncode == 0, err
-    # Held up by the subscriber, each of 22,000 messages would wait 100 ms: the node would not have ended in time.
-    assert "finished: 2001 samples" in out
+    assert "finished: 1001 samples" in out
     assert "not every reliable subscriber has acknowledged" in err
 
 
