@@ -130,7 +130,7 @@ def parse_value(q: Quantity, value: Any) -> float | str:
 def _with_unit(q: Quantity, text: str) -> float:
     import pint
 
-    registry: pint.UnitRegistry[float] = _registry()
+    registry = _registry()
     try:
         return float(registry.Quantity(text).to(q.unit.replace(".", "*") or "dimensionless").magnitude)
     except pint.DimensionalityError:
