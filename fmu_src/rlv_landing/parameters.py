@@ -6,7 +6,7 @@ are given as positive depths, as in the paper's Table 1.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from math import cos, radians, sin
 from typing import Annotated, Any, get_args, get_type_hints
@@ -178,11 +178,24 @@ class Parameters:
         """Where the value of `name` comes from."""
         return self.sources.get(name, PARAMETER_QUANTITIES[name].source)
 
-    def with_values(self, values: Mapping[str, Any], source: str = "user") -> Parameters:
-        """A copy with `values` by name, each checked; they hold in every mode. Raises LandingError for an unknown name or a bad value."""
-        changed = self._replaced(values, dict.fromkeys(values, source))
+    def with_values(self, values: Mapping[str, Any], source: str | Mapping[str, str] = "user") -> Parameters:
+        """A copy with `values` by name, each checked; they hold in every mode. `source` is one for all, or by name (default `user`).
+
+        Raises LandingError for an unknown name or a bad value.
+        """
+        changed = self._replaced(values, _sources(values, source))
         by_mode = {mode: {n: v for n, v in own.items() if n not in values} for mode, own in self.by_mode.items()}
         return replace(changed, by_mode=by_mode)
+
+    def with_mode_values(self, values: Mapping[str, Mapping[str, Any]], source: str | Mapping[str, str] = "user") -> Parameters:
+        """A copy with `values` that belong to one mode each: mode -> name -> value. They come in with `for_mode`. `source` as above."""
+        by_mode = {mode: dict(own) for mode, own in self.by_mode.items()}
+        sources = dict(self.sources)
+        for mode, own in values.items():
+            self.for_mode(mode)._replaced(own, {})
+            by_mode.setdefault(mode, {}).update(own)
+            sources.update(_sources(own, source))
+        return replace(self, by_mode=by_mode, sources=sources)
 
     def for_mode(self, mode: str) -> Parameters:
         """A copy for the landing `mode`, with the values that belong to that mode."""
@@ -218,6 +231,10 @@ class Parameters:
                 f"main_strut.length = {m.length:g} m and auxiliary_strut.length = {a.length:g} m do not meet at a footpad: "
                 f"their joints are {apart:g} m apart; check lengths, joint radii and depths"
             )
+
+
+def _sources(names: Iterable[str], source: str | Mapping[str, str]) -> dict[str, str]:
+    return {name: source if isinstance(source, str) else source.get(name, "user") for name in names}
 
 
 def azimuth(degrees: int) -> tuple[float, float]:

@@ -148,6 +148,13 @@ def test_a_bad_file_says_where_it_is_bad(tmp_path, text, message):
     assert "\n" not in str(e.value)
 
 
+def test_values_of_a_file_are_checked_together_not_one_after_the_other(tmp_path):
+    """Joints and lengths that fit each other, but not the defaults."""
+    file = tmp_path / "long.toml"
+    file.write_text("[auxiliary_strut]\njoint_depth = 4.0\nlength = 3.0\n[main_strut]\nlength = 2.0\n")
+    assert read_toml(file).auxiliary_strut.joint_depth == 4.0
+
+
 def test_missing_file_unreadable_file_and_unknown_preset(tmp_path):
     with pytest.raises(LandingError, match="there is no parameter file"):
         read_toml(tmp_path / "none.toml")

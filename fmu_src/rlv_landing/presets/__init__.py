@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -68,20 +67,12 @@ def _from_document(document: dict[str, Any]) -> Parameters:
     base = document.get("preset")
     parameters = load_preset(base) if base is not None else Parameters()
     values, sources = _flat({k: v for k, v in document.items() if k in GROUPS})
-    for name, value in values.items():
-        parameters = parameters.with_values({name: value}, sources.get(name, "user"))
-    by_mode = {mode: dict(own) for mode, own in parameters.by_mode.items()}
-    all_sources = dict(parameters.sources)
-    modes = _table(document.get("mode", {}), "mode")
-    for mode, tables in modes.items():
+    parameters = parameters.with_values(values, sources)
+    for mode, tables in _table(document.get("mode", {}), "mode").items():
         if mode not in MODES:
             raise unknown("landing mode", mode, MODES)
         own, own_sources = _flat(_table(tables, f"mode.{mode}"))
-        by_mode.setdefault(mode, {}).update(own)
-        all_sources.update(own_sources)
-    parameters = replace(parameters, by_mode=by_mode, sources=all_sources)
-    for mode in by_mode:
-        parameters.for_mode(mode)
+        parameters = parameters.with_mode_values({mode: own}, own_sources)
     return parameters.for_mode(parameters.drop.mode)
 
 
