@@ -11,7 +11,7 @@ SLAVE := fmu_src/landing_fmu.py fmu_src/build_fmu.py $(addprefix fmu_src/rlv_lan
 help:
 	@echo "make run [MODE=2-2|1-2-1]  land the prototype: FMU, ROS 2 node, MCAP log, table and picture"
 	@echo "make test                  the whole suite"
-	@echo "make bench                 time of a 1 s landing: compiled core, pure core, FMU"
+	@echo "make bench                 time of a landing: compiled core, pure core, FMU; and of a full 3-D model"
 	@echo "make coverage              coverage, measured on the pure core"
 	@echo "make docs                  the README's picture, made anew"
 	@echo "make clean                 remove .venv and build (logs stay)"
@@ -45,6 +45,7 @@ test: $(FMU) lint
 
 bench: $(FMU)
 	$(BIN)/python benchmarks/bench_landing.py
+	$(BIN)/python benchmarks/bench_quasi3d.py
 
 coverage: $(FMU)
 	RLV_LANDING_PURE=1 $(BIN)/python -m pytest --cov --cov-report=term tests/core tests/model

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable
 from importlib.metadata import entry_points
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import click
 
 from . import __version__
+from .commands.audit import audit
+from .commands.identify import identify
+from .commands.options import check_writable, parameter_options
+from .commands.validate import validate
 from .errors import LandingError, nearest
 
-F = TypeVar("F", bound=Callable[..., Any])
 BAD_INPUT = 2
 INTERRUPTED = 130
 
@@ -50,6 +52,9 @@ def cli() -> None:
     \b
     rlv-landing simulate --mode 1-2-1 --compare        land in this process; compare with the paper
     rlv-landing parameters --toml > mine.toml          a parameter file to edit
+    rlv-landing validate --html report.html            every printed number and figure beside ours
+    rlv-landing identify --work identification         estimate what the paper does not print, or your vehicle's own
+    rlv-landing audit                                  energy, mass, momentum, rest, convergence
     rlv-landing node --mode 2-2                        the ROS 2 node: steps the FMU, publishes, records
     rlv-landing log info logs/NAME                     what a log holds
     rlv-landing replay logs/NAME                       publish it again
@@ -57,21 +62,6 @@ def cli() -> None:
     SI units and radians throughout; a value may carry its unit: --set drop.tilt="-2 deg".
     Exit codes: 0 done, 2 bad input, 1 failed, 130 interrupted.
     """
-
-
-def parameter_options(command: F) -> F:
-    """Options that choose vehicle, ground and drop."""
-    options = (
-        click.option("--preset", metavar="NAME", help="Named parameters [default: yue2022-figures]; also yue2022-table2."),
-        click.option("--parameters", "file", metavar="FILE.toml", help="Parameters from a TOML file instead."),
-        click.option("--mode", metavar="MODE", help="Landing mode: 2-2 or 1-2-1 (legs that touch first, second, third)."),
-        click.option(
-            "--set", "pairs", metavar="NAME=VALUE", multiple=True, help='One parameter, SI or with a unit: drop.tilt="-2 deg". Repeat.'
-        ),
-    )
-    for option in reversed(options):
-        command = option(command)
-    return command
 
 
 @cli.command()
@@ -106,7 +96,7 @@ def simulate(
     from .quantities import INPUT_QUANTITIES
 
     for path, ending in ((output, ".csv"), (plot, ".png")):
-        _check_writable(path, ending, force)
+        check_writable(path, ending, force)
     parameters = choose_parameters(preset, file, mode, parse_pairs(pairs, PARAMETER_QUANTITIES, "parameter"))
     landing = Landing(parameters, rtol=rtol)
     landing.set_inputs(parse_pairs(inputs, {q.name: q for q in INPUT_QUANTITIES}, "input"))
@@ -136,17 +126,6 @@ def simulate(
             save_overview(history, plot, title)
     except OSError as e:
         raise LandingError(f"{e.filename or output or plot} cannot be written: {e.strerror or e}") from None
-
-
-def _check_writable(path: Path | None, ending: str, force: bool) -> None:
-    if path is None:
-        return
-    if path.suffix != ending:
-        raise LandingError(f"{path} must end in {ending}")
-    if path.exists() and not force:
-        raise LandingError(f"{path} exists; --force overwrites it")
-    if not path.resolve().parent.is_dir():
-        raise LandingError(f"there is no folder {path.parent} to write {path.name} to")
 
 
 @cli.command()
@@ -184,6 +163,11 @@ def parameters(
         click.echo(json.dumps(parameter_records(chosen), indent=1))
     else:
         click.echo(parameter_table(chosen), nl=False)
+
+
+cli.add_command(validate)
+cli.add_command(audit)
+cli.add_command(identify)
 
 
 def main() -> None:

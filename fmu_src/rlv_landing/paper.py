@@ -1,28 +1,39 @@
-"""The numbers that Yue, Lin, Zheng and Du (2022) print in their section 5, and how each is read off a landing.
+"""The numbers that Yue, Lin, Zheng and Du (2022) print in their section 5, and how each is read off a landing and judged.
 
-What a printed scalar is taken to mean is written here once. Times are from the start of the landing, as the paper's axes.
+What a printed scalar is taken to mean is written once, in `reading.py`, and the scale on which a difference from it is judged here: the
+printed simulation value itself, or its curve's largest where the value is near zero. Times are from the start of the landing, as the
+paper's axes.
 """
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .errors import LandingError
 from .history import History
+from .reading import RUN_AFTER_CONTACT, Reading
+
+__all__ = [
+    "MEANINGS",
+    "RUN_AFTER_CONTACT",
+    "Comparison",
+    "Reading",
+    "Scalar",
+    "compare",
+    "counts",
+    "paper_counts_against_test",
+    "printed_scalars",
+]
 
 NUMBERS = Path(__file__).with_name("paper_numbers.csv")
-FIRST_PEAK_WINDOW = 0.012
-STROKE_WINDOW = 0.22
-REBOUND_WINDOW = 0.25
-UNLOADED = -250.0
-RUN_AFTER_CONTACT = 0.8
+NEAR_ZERO = 0.1
+LEVELS = (5, 10, 20)
 NAN = float("nan")
 
 
@@ -40,17 +51,44 @@ class Scalar:
     test_a: float
     test_b: float
 
+    @property
+    def test(self) -> float:
+        """Mean of the tests that are printed; NaN where there is none."""
+        tests = [v for v in (self.test_a, self.test_b) if not np.isnan(v)]
+        return sum(tests) / len(tests) if tests else NAN
+
+    @property
+    def near_zero(self) -> bool:
+        """Whether the printed simulation is below 10 % of the largest printed of the same quantity, unit and mode."""
+        return abs(self.simulation) < NEAR_ZERO * _curve_scale(self.quantity, self.unit, self.mode)
+
+    @property
+    def scale(self) -> float:
+        """What a difference from this scalar is divided by: |simulation|, or its curve's largest printed value where it is near zero."""
+        return _curve_scale(self.quantity, self.unit, self.mode) if self.near_zero else abs(self.simulation)
+
+    @property
+    def paper_error_test(self) -> float:
+        """The paper's own (simulation - test)/scale, a fraction; NaN without a test."""
+        return (self.simulation - self.test) / self.scale
+
 
 @dataclass(frozen=True)
 class Comparison:
-    """One printed number beside ours; `error` is (ours - simulation)/|simulation|, a fraction."""
+    """One printed number beside ours. Errors are fractions on the scalar's `scale`, one scale for simulation and test alike."""
 
     scalar: Scalar
     ours: float
 
     @property
     def error(self) -> float:
-        return (self.ours - self.scalar.simulation) / abs(self.scalar.simulation)
+        """(ours - simulation)/scale."""
+        return (self.ours - self.scalar.simulation) / self.scalar.scale
+
+    @property
+    def error_test(self) -> float:
+        """(ours - test)/scale; NaN where the paper prints no test."""
+        return (self.ours - self.scalar.test) / self.scalar.scale
 
 
 @cache
@@ -69,152 +107,9 @@ def printed_scalars() -> tuple[Scalar, ...]:
     )  # fmt: skip
 
 
-class Reading:
-    """Reads the printed scalars off one landing's history (at least 0.8 s after the first contact, sampled at 1 kHz or finer)."""
-
-    def __init__(self, history: History) -> None:
-        self.h = history
-        self.t = history.time
-        self._contact = {leg: self._contact_time(leg) for leg in (1, 2, 3, 4)}
-        first = min(self._contact.values())
-        if not np.isfinite(first):
-            raise LandingError("no footpad touches the ground in this history; run it longer")
-        self.end = first + RUN_AFTER_CONTACT
-        if self.t[-1] < self.end - 1e-3:
-            raise LandingError(f"the history ends at {self.t[-1]:g} s; the paper's scalars need it until {self.end:g} s")
-
-    def _contact_time(self, leg: int) -> float:
-        depth = f"leg[{leg}].contact.penetration"
-        d = self.h[depth] if depth in self.h else self.h[f"leg[{leg}].contact.force_y"]
-        touching = np.flatnonzero(d > 0.0)
-        if not len(touching):
-            return float("inf")
-        i = int(touching[0])
-        if i == 0 or depth not in self.h:
-            return float(self.t[i])
-        return float(self.t[i - 1] + (self.t[i] - self.t[i - 1]) * d[i - 1] / (d[i - 1] - d[i]))
-
-    def _between(self, start: float, end: float) -> NDArray[np.intp]:
-        return np.flatnonzero((self.t >= start) & (self.t <= end))
-
-    def contact_time(self, leg: int) -> float:
-        """The penetration passes 0."""
-        return self._contact[leg]
-
-    def contact_force(self, leg: int) -> float:
-        """The most negative strut force within 12 ms after that leg's contact."""
-        t = self._contact[leg]
-        return float(self._force(leg)[self._between(t, t + FIRST_PEAK_WINDOW)].min())
-
-    def _force(self, leg: int) -> NDArray[np.float64]:
-        return self.h[f"leg[{leg}].main_strut.force"]
-
-    def _stroke(self, leg: int) -> NDArray[np.float64]:
-        return self.h[f"leg[{leg}].main_strut.stroke"]
-
-    def _auxiliary(self, leg: int) -> NDArray[np.float64]:
-        return self.h[f"leg[{leg}].auxiliary_strut.force"]
-
-    def _maximum(self, leg: int) -> int:
-        t = self._contact[leg]
-        window = self._between(t, t + STROKE_WINDOW)
-        return int(window[np.argmax(self._stroke(leg)[window])])
-
-    def maximum_stroke(self, leg: int) -> float:
-        """Largest stroke within 0.22 s after contact [mm]."""
-        return float(1e3 * self._stroke(leg)[self._maximum(leg)])
-
-    def maximum_stroke_time(self, leg: int) -> float:
-        """Its time [s]."""
-        return float(self.t[self._maximum(leg)])
-
-    def maximum_stroke_force(self, leg: int) -> float:
-        """The strut force then [N]."""
-        return float(self._force(leg)[self._maximum(leg)])
-
-    def _first(self, condition: NDArray[np.bool_], start: float) -> float:
-        found = np.flatnonzero(condition & (self.t >= start))
-        return float(self.t[found[0]]) if len(found) else NAN
-
-    def unloaded_from(self, leg: int) -> float:
-        """First time after the maximum stroke with the force above -250 N."""
-        return self._first(self._force(leg) > UNLOADED, self.maximum_stroke_time(leg))
-
-    def unloaded_until(self, leg: int) -> float:
-        """First time at least 40 ms later with the force below -250 N."""
-        return self._first(self._force(leg) < UNLOADED, self.unloaded_from(leg) + 0.04)
-
-    def _rebound(self, leg: int) -> int:
-        t = self.maximum_stroke_time(leg)
-        window = self._between(t, t + REBOUND_WINDOW)
-        return int(window[np.argmin(self._stroke(leg)[window])])
-
-    def rebound_stroke(self, leg: int) -> float:
-        """Smallest stroke within 0.25 s after the maximum [mm]."""
-        return float(1e3 * self._stroke(leg)[self._rebound(leg)])
-
-    def rebound_time(self, leg: int) -> float:
-        """Its time [s]."""
-        return float(self.t[self._rebound(leg)])
-
-    def settled_stroke(self, leg: int) -> float:
-        """Mean stroke over the last 0.15 s of the 0.8 s after first contact [mm]."""
-        return float(1e3 * self._stroke(leg)[self._between(self.end - 0.15, self.end)].mean())
-
-    def _first_valley(self, leg: int) -> int:
-        window = self._between(self._contact[leg] + FIRST_PEAK_WINDOW, self.maximum_stroke_time(leg) - 0.02)
-        return int(window[np.argmin(self._force(leg)[window])]) if len(window) else -1
-
-    def first_valley_force(self, leg: int) -> float:
-        """Most negative strut force from 12 ms after contact to 20 ms before the maximum stroke [N]."""
-        i = self._first_valley(leg)
-        return float(self._force(leg)[i]) if i >= 0 else NAN
-
-    def first_valley_time(self, leg: int) -> float:
-        """Its time [s]."""
-        i = self._first_valley(leg)
-        return float(self.t[i]) if i >= 0 else NAN
-
-    def auxiliary_compression(self, leg: int) -> float:
-        """Smallest auxiliary strut force within 30 ms after contact [N]."""
-        t = self._contact[leg]
-        return float(self._auxiliary(leg)[self._between(t, t + 0.03)].min())
-
-    def auxiliary_tension(self, leg: int) -> float:
-        """Largest auxiliary strut force of all [N]."""
-        return float(self._auxiliary(leg)[self._between(0.0, self.end)].max())
-
-    def _auxiliary_peak_time(self, leg: int, start: float, end: float) -> float:
-        window = self._between(start, end)
-        return float(self.t[window[np.argmax(self._auxiliary(leg)[window])]])
-
-    def auxiliary_first_peak_time(self, leg: int) -> float:
-        """Time of the largest auxiliary strut force until 0.306 s."""
-        return self._auxiliary_peak_time(leg, self._contact[leg], 0.306)
-
-    def auxiliary_second_peak_time(self, leg: int) -> float:
-        """Time of the largest auxiliary strut force from 0.31 to 0.40 s."""
-        return self._auxiliary_peak_time(leg, 0.31, 0.40)
-
-    def _acceleration(self, leg: int) -> int:
-        t = self._contact[leg]
-        window = self._between(t, t + FIRST_PEAK_WINDOW)
-        return int(window[np.argmax(self.h["body.top_axial_acceleration"][window])])
-
-    def acceleration_peak(self, leg: int) -> float:
-        """Largest axial acceleration at the top within 12 ms after that leg's contact [m/s2]."""
-        return float(self.h["body.top_axial_acceleration"][self._acceleration(leg)])
-
-    def acceleration_peak_time(self, leg: int) -> float:
-        """Its time [s]."""
-        return float(self.t[self._acceleration(leg)])
-
-    def rest_time(self, _leg: int) -> float:
-        """Last time the pitch is more than 0.5 deg off its mean over the last 0.1 s."""
-        pitch = self.h["body.pitch"]
-        settled = pitch[self._between(self.end - 0.1, self.end)].mean()
-        moving = np.flatnonzero((np.abs(pitch - settled) > np.radians(0.5)) & (self.t <= self.end))
-        return float(self.t[moving[-1]]) if len(moving) else 0.0
+@cache
+def _curve_scale(quantity: str, unit: str, mode: str) -> float:
+    return max(abs(s.simulation) for s in printed_scalars() if (s.quantity, s.unit, s.mode) == (quantity, unit, mode))
 
 
 # what each printed scalar is: the id's end, and the leg whose contact it follows where the paper's row names none
@@ -281,7 +176,21 @@ def compare(history: History, mode: str) -> list[Comparison]:
     return found
 
 
-def counts(comparisons: list[Comparison]) -> dict[str, int]:
-    """How many scalars are within 5, 10 and 20 % of the paper's simulation, and how many there are."""
-    errors = [abs(c.error) for c in comparisons]
-    return {**{f"within_{p}": sum(e <= p / 100.0 for e in errors) for p in (5, 10, 20)}, "of": len(errors)}
+def counts(comparisons: Iterable[Comparison], against: Literal["simulation", "test"] = "simulation") -> dict[str, int]:
+    """How many scalars are within 5, 10 and 20 % of the paper's simulation or of its test, and of how many.
+
+    Scalars that the landing does not have (NaN) count as missed; those without a printed test are left out against tests.
+    """
+    if against == "test":
+        return _counts(c.error_test for c in comparisons if not np.isnan(c.scalar.test))
+    return _counts(c.error for c in comparisons)
+
+
+def paper_counts_against_test(mode: str | None = None) -> dict[str, int]:
+    """The paper's own simulation against its tests, counted by the same rule; of one mode, or of both."""
+    return _counts(s.paper_error_test for s in printed_scalars() if mode in (None, s.mode) and not np.isnan(s.test))
+
+
+def _counts(errors: Iterable[float]) -> dict[str, int]:
+    sizes = [abs(e) for e in errors]
+    return {**{f"within_{p}": sum(e <= p / 100.0 for e in sizes) for p in LEVELS}, "of": len(sizes)}

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from .history import History
@@ -24,18 +25,20 @@ def render(table: Table, width: int = 140) -> str:
     return out.getvalue()
 
 
-def _table(title: str, left: Iterable[str], right: Iterable[str], more: Iterable[str] = ()) -> Table:
-    table = Table(title=title, title_justify="left", title_style="bold")
+def new_table(title: str, left: Iterable[str], right: Iterable[str], more: Iterable[str] = ()) -> Table:
+    """An empty table: columns set left, set right (numbers), and left again."""
+    table = Table(title=escape(title), title_justify="left", title_style="bold")
     for name in left:
-        table.add_column(name)
+        table.add_column(escape(name))
     for name in right:
-        table.add_column(name, justify="right")
+        table.add_column(escape(name), justify="right")
     for name in more:
-        table.add_column(name)
+        table.add_column(escape(name))
     return table
 
 
-def _number(value: float | None, unit: str) -> str:
+def number(value: float | None, unit: str) -> str:
+    """A number as it is read in its unit: N without decimals, s with three, else two; a dash for none."""
     if value is None or math.isnan(value):
         return "-"
     return f"{value:.0f}" if unit == "N" else f"{value:.3f}" if unit == "s" else f"{value:.2f}"
@@ -44,33 +47,54 @@ def _number(value: float | None, unit: str) -> str:
 def comparison_table(history: History, mode: str) -> str:
     """Our numbers beside the paper's simulation and tests, a line a printed scalar, and the counts within 5, 10 and 20 %."""
     comparisons: list[Comparison] = compare(history, mode)
-    table = _table(
+    table = new_table(
         f"{mode} drop test: this landing beside Yue, Lin, Zheng, Du (2022), section 5",
         ("quantity", "leg", "event"),
         ("ours", "simulation", "test", "unit", "ours - simulation"),
     )
     for c in comparisons:
         s = c.scalar
-        tests = " / ".join(_number(v, s.unit) for v in (s.test_a, s.test_b) if not math.isnan(v)) or "-"
+        tests = " / ".join(number(v, s.unit) for v in (s.test_a, s.test_b) if not math.isnan(v)) or "-"
         table.add_row(
             s.quantity.replace("_", " "),
             str(s.leg or ""),
             s.event,
-            _number(c.ours, s.unit),
-            _number(s.simulation, s.unit),
+            number(c.ours, s.unit),
+            number(s.simulation, s.unit),
             tests,
             s.unit,
-            f"{100.0 * c.error:+.1f} %",
+            percent(c.error) + ("*" if s.near_zero else ""),
         )
-    n = counts(comparisons)
-    total = f"within 5 / 10 / 20 % of the paper's simulation: {n['within_5']} / {n['within_10']} / {n['within_20']} of {n['of']}\n"
-    return render(table) + total
+    return (
+        render(table)
+        + f"within 5 / 10 / 20 % of the paper's simulation: {counts_line(counts(comparisons))}\n"
+        + near_zero_note(comparisons)
+    )
+
+
+def percent(fraction: float) -> str:
+    """A signed fraction in per cent; a dash for none."""
+    return "-" if math.isnan(fraction) else f"{100.0 * fraction:+.1f} %"
+
+
+def counts_line(n: dict[str, int]) -> str:
+    """Counts within 5, 10 and 20 % as text."""
+    return f"{n['within_5']} / {n['within_10']} / {n['within_20']} of {n['of']}"
+
+
+def near_zero_note(comparisons: Iterable[Comparison]) -> str:
+    """What the asterisk behind an error means, with the scales; nothing where no scalar is near zero."""
+    marked = [c.scalar for c in comparisons if c.scalar.near_zero]
+    if not marked:
+        return ""
+    scales = ", ".join(f"{number(s.simulation, s.unit)} on {number(s.scale, s.unit)} {s.unit}" for s in marked)
+    return f"* near zero, so judged on the scale of its curve, the largest that the paper prints of it: {scales}\n"
 
 
 def summary_table(history: History, title: str) -> str:
     """Peaks of every leg, and the outcome below."""
     s = summarise(history)
-    table = _table(
+    table = new_table(
         title,
         ("leg",),
         ("contact at [s]", "main strut force [kN]", "at [s]", "stroke [mm]", "at [s]", "auxiliary strut force [kN]"),
@@ -78,7 +102,7 @@ def summary_table(history: History, title: str) -> str:
     for leg in s["legs"]:
         table.add_row(
             str(leg["leg"]),
-            _number(leg["contact_time"], "s"),
+            number(leg["contact_time"], "s"),
             f"{leg['main_strut_force_min'] / 1e3:.2f}",
             f"{leg['main_strut_force_min_time']:.3f}",
             f"{leg['main_strut_stroke_max'] * 1e3:.2f}",
@@ -99,7 +123,7 @@ def summary_table(history: History, title: str) -> str:
 
 def parameter_table(parameters: Parameters) -> str:
     """Every parameter with value, unit, bounds, source and meaning."""
-    table = _table("parameters", ("name",), ("value",), ("unit", "bounds or choices", "source", "meaning"))
+    table = new_table("parameters", ("name",), ("value",), ("unit", "bounds or choices", "source", "meaning"))
     for name, value in parameters.items():
         q = PARAMETER_QUANTITIES[name]
         bounds = " | ".join(q.choices) if q.choices else f"[{q.lo:g}, {q.hi:g}]"
@@ -109,7 +133,7 @@ def parameter_table(parameters: Parameters) -> str:
 
 def quantity_table(title: str, quantities: Iterable[Quantity]) -> str:
     """Names, units and meanings of inputs or outputs."""
-    table = _table(title, ("name", "unit", "meaning"), ())
+    table = new_table(title, ("name", "unit", "meaning"), ())
     for q in quantities:
         table.add_row(q.name.replace("[", r"\["), q.unit, q.meaning)
     return render(table)

@@ -57,7 +57,7 @@ def test_tables_of_parameters_inputs_and_outputs_name_units():
     assert "leg[4].contact.active" in run("parameters", "--outputs").stdout
 
 
-@pytest.mark.parametrize("command", [(), ("simulate",), ("parameters",)])
+@pytest.mark.parametrize("command", [(), ("simulate",), ("parameters",), ("validate",), ("audit",)])
 def test_help_teaches(command):
     done = run(*command, "--help")
     assert done.returncode == 0

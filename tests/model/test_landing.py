@@ -160,13 +160,13 @@ def all_comparisons(every: float, rtol: float = 1e-6):
     return [c for mode in ("2-2", "1-2-1") for c in compare(Landing(load_preset(FIGURES), mode, rtol).run(1.0, every), mode)]
 
 
-def test_preset_reproduces_at_least_36_41_45_of_the_48_printed_scalars():
+def test_preset_reproduces_at_least_37_42_46_of_the_48_printed_scalars():
     """Within 5, 10, 20 % of the paper's simulation: what the identification that the preset stems from claims."""
     found = counts(all_comparisons(2e-4))
     assert found["of"] == 48
-    assert found["within_5"] >= 36
-    assert found["within_10"] >= 41
-    assert found["within_20"] >= 45
+    assert found["within_5"] >= 37
+    assert found["within_10"] >= 42
+    assert found["within_20"] >= 46
 
 
 def test_every_printed_scalar_has_a_meaning_and_reads_finite():

@@ -208,6 +208,14 @@ def test_a_strong_moment_topples_the_vehicle():
     assert landing.get("status.stability_margin") < 0.0
 
 
+def test_a_vehicle_that_has_turned_over_is_toppled_however_it_comes_to_lie():
+    thrown = load_preset(FIGURES).with_values({"drop.pitch_rate": 4.0, "drop.contact_time": 0.0})
+    history = Landing(thrown, rtol=1e-12).run(2.0, 0.01)
+    over = np.abs(history["body.pitch"]) > np.pi / 2
+    assert over.any()
+    assert np.all(history["status.phase"][over] == 3.0)
+
+
 def pure_model(parameters: Parameters) -> Model:
     """The kernels' numbers in the pure core's own class."""
     built = build_model(parameters)

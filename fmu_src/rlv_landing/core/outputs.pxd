@@ -1,4 +1,4 @@
-cdef double FALLING, CONTACT, SETTLED, TOPPLED, REST_SPEED, REST_ACCELERATION
+cdef double FALLING, CONTACT, SETTLED, TOPPLED, TURNED_OVER, REST_SPEED, REST_ACCELERATION
 cdef int BODY_OUTPUTS, ENERGY_OUTPUTS, STATUS_OUTPUTS, LEG_OUTPUTS
 cdef double stability_margin(double x, Model p, double[::1] w) noexcept nogil
 cdef double phase(double[::1] y, double[::1] dy, Model p, double[::1] w, double margin) noexcept nogil

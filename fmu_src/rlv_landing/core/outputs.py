@@ -47,6 +47,7 @@ STATUS_OUTPUTS = 2
 LEG_OUTPUTS = 17
 
 FALLING, CONTACT, SETTLED, TOPPLED = 0.0, 1.0, 2.0, 3.0
+TURNED_OVER = 1.5707963267948966
 REST_SPEED = 2e-3
 REST_ACCELERATION = 0.05
 
@@ -65,11 +66,11 @@ def stability_margin(x, p, w):
 
 
 def phase(y, dy, p, w, margin):
-    """0 falling, 1 contact, 2 settled, 3 toppled (the CG is beyond the outermost footpad).
+    """0 falling, 1 contact, 2 settled, 3 toppled (the CG is beyond the outermost footpad, or the body has turned over).
 
     Settled: a footpad touches, the kinetic energy is that of 2 mm/s at most, and the body's acceleration is below 0.05 m/s2.
     """
-    if margin < 0.0:
+    if margin < 0.0 or fabs(y[PITCH]) > TURNED_OVER:
         return TOPPLED
     touching = FALLING
     for i in range(p.n_groups):

@@ -156,7 +156,10 @@ def _example(q: Quantity) -> str:
 
 
 def to_toml(parameters: Parameters, comments: bool = True) -> str:
-    """The parameters as a TOML text that `read_toml` takes back to the same digits, with unit, meaning, bounds and source a line."""
+    """The parameters as a TOML text that `read_toml` takes back to the same digits, with unit, meaning, bounds and source a line.
+
+    Values that belong to one landing mode (of the drop) follow in tables of their own.
+    """
     lines: list[str] = []
     group = ""
     for name, value in parameters.items():
@@ -169,4 +172,8 @@ def to_toml(parameters: Parameters, comments: bool = True) -> str:
         about = " or ".join(q.choices) if q.choices else f"[{q.lo:g}, {q.hi:g}] {q.unit}".rstrip()
         comment = f"  # {q.meaning}; {about}; {parameters.source(name)}" if comments else ""
         lines.append(f'{what} = {{ value = {written}, source = "{parameters.source(name)}" }}{comment}')
+    for mode, own in parameters.by_mode.items():
+        lines += ["", f"[mode.{mode}.drop]"] if own else []
+        for name, value in own.items():
+            lines.append(f'{name.split(".")[1]} = {{ value = {value!r}, source = "{parameters.source(name)}" }}')
     return "\n".join(lines) + "\n"

@@ -1,0 +1,273 @@
+"""What the quasi-3D formulation saves: the core against a full three-dimensional Newton-Euler model of the same vehicle, at equal error.
+
+The 3-D model is that of `tests/independent/vehicle_3d.py`: numpy over four legs, no symmetry used, 45 states, 18 linear equations a
+call, integrated by scipy's RK45, which is the core's method (Dormand-Prince 5(4)) with the core's scales of error. The error of either
+is the largest difference of any main strut stroke from its own landing at a far tighter tolerance. Both are run at several tolerances;
+calls of the right-hand side at equal error are read off by interpolation between them, and seconds are calls times seconds a call.
+
+Seconds compare languages as much as models: a compiled core, a plain Python one, numpy. So the work of one right-hand side is
+counted too, by running both on numbers that count their operations, at the same moment of the landing: + - * / sqrt on one hand,
+powers, exp, sin, cos, tanh on the other. The core's includes its energy accounts, which the 3-D model has not; the 3-D model's is given
+with and without its dense elimination, because a cleverer one would cost less. Compiled like the core, the 3-D model would be slower
+by about the ratio of the work. Prints a table and appends a row a case to `results.jsonl`.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import subprocess
+import sys
+import time
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from bench_landing import STROKES, provenance
+from rich.console import Console
+from rich.table import Table
+from scipy.integrate import solve_ivp
+
+from rlv_landing import Landing, load_preset
+from rlv_landing.core import layout
+from rlv_landing.core.model import Model
+from rlv_landing.core.vehicle import right_hand_side
+from rlv_landing.landing import build_model
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE.parent / "tests" / "independent"))
+from vehicle_3d import LEGS, SCALE, Vehicle3D  # noqa: E402
+
+PRESET = "yue2022-figures"
+BODY = ("x", "y", "pitch", "vx", "vy", "pitch_rate")
+UNTIL = 0.5
+TIMES = np.arange(501) * 1e-3
+MOMENT = 0.3  # s, at which the work is counted: all footpads have landed
+TARGETS = (1e-6, 1e-8)  # m
+TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
+REPEATS = 5
+PURE = """
+import json, sys, time
+from rlv_landing import Landing, load_preset
+landing = Landing(load_preset("yue2022-figures"), sys.argv[1])
+start = time.perf_counter()
+landing.advance_to(float(sys.argv[2]))
+print((time.perf_counter() - start) / landing.statistics["rhs_calls"])
+"""
+
+Runs = list[tuple[float, int]]  # (error [m], calls) at each tolerance
+
+
+class Count:
+    """A number that counts what is done with it."""
+
+    operations = 0
+    functions = 0
+
+    def __init__(self, value: float) -> None:
+        self.value = float(value)
+
+    def __float__(self) -> float:
+        return self.value
+
+    def __neg__(self) -> Count:
+        return Count(-self.value)
+
+    def __abs__(self) -> Count:
+        return Count(abs(self.value))
+
+
+def _operator(name: str, function: bool) -> None:
+    def apply(self: Count, other: Any) -> Any:
+        if isinstance(other, np.ndarray):
+            return NotImplemented
+        Count.functions += function
+        Count.operations += not function
+        return Count(getattr(float, name)(self.value, float(other)))
+
+    setattr(Count, name, apply)
+
+
+def _comparison(name: str) -> None:
+    setattr(Count, name, lambda self, other: getattr(float, name)(self.value, float(other)))
+
+
+def _method(name: str) -> None:
+    def apply(self: Count) -> Count:
+        Count.functions += name != "sqrt"
+        Count.operations += name == "sqrt"
+        return Count(getattr(math, name)(self.value))
+
+    setattr(Count, name, apply)
+
+
+for _name in ("add", "radd", "sub", "rsub", "mul", "rmul", "truediv", "rtruediv"):
+    _operator(f"__{_name}__", False)
+for _name in ("pow", "rpow"):
+    _operator(f"__{_name}__", True)
+for _name in ("lt", "le", "gt", "ge"):
+    _comparison(f"__{_name}__")
+for _name in ("sqrt", "exp", "sin", "cos", "tanh"):
+    _method(_name)
+
+
+class Counted3D(Vehicle3D):
+    """The 3-D model with the elimination's work written down instead of done: 2/3 n^3 + 2 n^2."""
+
+    elimination = 2 * 18**3 // 3 + 2 * 18**2
+
+    def solve(self, A: Any, b: Any) -> Any:
+        return np.array([Count(v) for v in np.linalg.solve(A.astype(float), b.astype(float))], dtype=object)
+
+
+def count(work: Any) -> tuple[int, int]:
+    """(operations, functions) that `work` takes."""
+    Count.operations = Count.functions = 0
+    work()
+    return Count.operations, Count.functions
+
+
+def work_of_core(landing: Landing) -> tuple[int, int]:
+    """Work of one right-hand side of the plain core at the landing's present state."""
+    replaced = []
+    for part in ("vehicle", "leg", "damper", "fluid", "contact", "auxiliary_strut"):
+        module = import_module(f"rlv_landing.core.{part}")
+        for name in ("sin", "cos", "sqrt", "exp", "tanh", "fabs", "pow"):
+            if hasattr(module, name):
+                replaced.append((module, name, getattr(module, name)))
+                special = {"fabs": abs, "pow": lambda a, b: (a if isinstance(a, Count) else Count(a)) ** b}
+                setattr(module, name, special.get(name, lambda a, name=name: getattr(a if isinstance(a, Count) else Count(a), name)()))
+    built = build_model(landing.parameters)
+    model = Model(built.sin_g, built.cos_g, built.count, built.share_x)
+    for name in dir(built):
+        if not name.startswith("_") and isinstance(getattr(built, name), float):
+            setattr(model, name, getattr(built, name))
+    landing.values()
+    y: list[Any] = [Count(v) for v in landing._y]
+    u: list[Any] = [Count(0.0) for _ in range(layout.INPUTS)]
+    try:
+        return count(lambda: right_hand_side(y, u, model, [0.0] * len(y), [0.0] * 200))
+    finally:
+        for module, name, function in replaced:
+            setattr(module, name, function)
+
+
+def core(mode: str, rtol: float) -> tuple[np.ndarray, int, float]:
+    """Strokes, calls, and best seconds a call of the compiled core."""
+    best = math.inf
+    for _ in range(REPEATS):
+        landing = Landing(load_preset(PRESET), mode, rtol)
+        start = time.perf_counter()
+        landing.advance_to(UNTIL)
+        best = min(best, time.perf_counter() - start)
+    calls = landing.statistics["rhs_calls"]
+    history = Landing(load_preset(PRESET), mode, rtol).run(UNTIL, 1e-3)
+    return np.array([history[n] for n in STROKES]), calls, best / calls
+
+
+def space(mode: str, rtol: float, method: str = "RK45") -> tuple[np.ndarray, int, float, np.ndarray]:
+    """Strokes, calls, seconds a call and states of the 3-D model."""
+    landing = Landing(load_preset(PRESET), mode)
+    model = Vehicle3D(landing.parameters)
+    y0 = model.start([landing.get(f"body.{n}") for n in BODY])
+    start = time.perf_counter()
+    done = solve_ivp(model, (0.0, UNTIL), y0, method, TIMES, rtol=rtol, atol=rtol * SCALE, max_step=2e-3)
+    seconds = time.perf_counter() - start
+    r, h = done.y[LEGS : LEGS + 4], done.y[LEGS + 4 : LEGS + 8]
+    m = landing.parameters.main_strut
+    return m.length - np.hypot(r - m.joint_radius, h + m.joint_depth), model.calls, seconds / model.calls, done.y
+
+
+def calls_at(runs: Runs, error: float) -> float:
+    """Calls at which `error` [m] would be met, by interpolation in logarithms."""
+    errors, calls = np.log(np.array(sorted(runs))).T
+    if not errors[0] <= math.log(error) <= errors[-1]:
+        raise SystemExit(f"error: {error:g} m is outside the errors found, {np.exp(errors[0]):.1e} to {np.exp(errors[-1]):.1e} m")
+    return float(np.exp(np.interp(math.log(error), errors, calls)))
+
+
+def measure(mode: str) -> list[dict[str, Any]]:
+    """Rows of one landing mode."""
+    exact_core, exact_space = core(mode, 1e-11)[0], space(mode, 1e-10, "DOP853")[0]
+    print(f"{mode}: references differ by {1e3 * np.abs(exact_core - exact_space).max():.1e} mm")
+    ours: Runs = []
+    full: Runs = []
+    for rtol in TOLERANCES:
+        strokes, calls, core_seconds = core(mode, rtol)
+        ours.append((float(np.abs(strokes - exact_core).max()), calls))
+        strokes, calls, space_seconds, states = space(mode, rtol)
+        full.append((float(np.abs(strokes - exact_space).max()), calls))
+        print(f"{mode} rtol {rtol:.0e}: core {ours[-1][0]:.1e} m in {ours[-1][1]} calls, 3-D {full[-1][0]:.1e} m in {full[-1][1]} calls")
+    command = [sys.executable, "-c", PURE, mode, str(UNTIL)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, env={**os.environ, "RLV_LANDING_PURE": "1"})
+    pure_seconds = float(done.stdout)
+
+    landing = Landing(load_preset(PRESET), mode)
+    landing.advance_to(MOMENT)
+    core_work = work_of_core(landing)
+    counted = Counted3D(landing.parameters)
+    state = np.array([Count(v) for v in states[:, round(MOMENT * 1e3)]], dtype=object)
+    space_work = count(lambda: counted(MOMENT, state))
+
+    rows = []
+    for error in TARGETS:
+        cases = (
+            ("compiled core", calls_at(ours, error), core_seconds, core_work, 0),
+            ("pure core", calls_at(ours, error), pure_seconds, core_work, 0),
+            ("3-D, numpy", calls_at(full, error), space_seconds, space_work, Counted3D.elimination),
+        )
+        for case, calls, seconds, (operations, functions), elimination in cases:
+            rows.append(
+                {
+                    "case": f"quasi3d {mode} {case}",
+                    "error": error,
+                    "rhs_calls": round(calls),
+                    "seconds_per_call": seconds,
+                    "seconds": calls * seconds,
+                    "operations": operations,
+                    "elimination": elimination,
+                    "functions": functions,
+                }
+            )
+    return rows
+
+
+def main() -> None:
+    rows = [row for mode in ("2-2", "1-2-1") for row in measure(mode)]
+    table = Table(title=f"Landing to {UNTIL} s at equal error of the strokes", title_justify="left")
+    for name in ("case", "error [mm]", "rhs calls", "us a call", "seconds", "+-*/ a call", "elimination", "functions", "work to core"):
+        table.add_column(name, justify="left" if name == "case" else "right")
+    for i, row in enumerate(rows):
+        base = rows[i - i % 3]
+        ratio = [
+            row["rhs_calls"] * (row["operations"] + extra + 20 * row["functions"])
+            / (base["rhs_calls"] * (base["operations"] + 20 * base["functions"]))
+            for extra in (0, row["elimination"])
+        ]  # fmt: skip
+        row["work_ratio"] = ratio
+        table.add_row(
+            row["case"],
+            f"{1e3 * row['error']:.0e}",
+            str(row["rhs_calls"]),
+            f"{1e6 * row['seconds_per_call']:.2f}",
+            f"{row['seconds']:.4f}",
+            str(row["operations"]),
+            str(row["elimination"]),
+            str(row["functions"]),
+            f"{ratio[0]:.2f}" if ratio[0] == ratio[1] else f"{ratio[0]:.1f} to {ratio[1]:.1f}",
+        )
+    table.caption = (
+        "work to core: calls times (+-*/ + 20 a function), without and with the dense elimination. Seconds compare languages too: "
+        "numpy against compiled or plain Python; the work does not. The core's includes its energy accounts."
+    )
+    Console(width=130).print(table)
+    stamp = provenance()
+    with (HERE / "results.jsonl").open("a", encoding="utf-8") as f:
+        for row in rows:
+            f.write(json.dumps({**stamp, **row}) + "\n")
+
+
+if __name__ == "__main__":
+    main()

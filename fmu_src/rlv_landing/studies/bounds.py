@@ -1,0 +1,125 @@
+"""The bounds that an audit holds a landing to, each with its reason."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+
+class Bound(NamedTuple):
+    """What a measured value is, its unit, its limit, on which side of it the value must be, and why the limit is what it is."""
+
+    what: str
+    unit: str
+    limit: float
+    side: Literal["at most", "at least"]
+    reason: str
+
+
+OF_CHANGE = "of its largest change"
+BOUNDS: dict[str, Bound] = {
+    "energy": Bound(
+        "energy balance at rtol 1e-8, of the energy turned over",
+        "",
+        1e-5,
+        "at most",
+        "all terms follow from one state: only the integrator's error is left",
+    ),
+    "energy_default": Bound(
+        "energy balance at the default rtol, of the energy turned over",
+        "",
+        1e-3,
+        "at most",
+        "a tenth of a per cent is below any use of the balance",
+    ),
+    "liquid_mass": Bound(
+        "change of a damper's liquid mass",
+        "",
+        1e-6,
+        "at most",
+        "mass is conserved by construction: only the integrator's error is left",
+    ),
+    "flight_momentum": Bound(
+        "linear momentum in free flight beyond the weight's, of the weight's",
+        "",
+        1e-9,
+        "at most",
+        "no other force acts: round-off",
+    ),
+    "flight_angular": Bound(
+        "change of angular momentum about the CG in free flight",
+        "",
+        1e-9,
+        "at most",
+        "no moment acts: round-off",
+    ),
+    "momentum_x": Bound(
+        f"horizontal momentum beyond the contact forces' impulse, {OF_CHANGE}",
+        "",
+        1e-4,
+        "at most",
+        "Simpson's rule over samples of 50 us, 1 us around contacts",
+    ),
+    "momentum_y": Bound(
+        f"vertical momentum beyond the impulse of contact forces and weight, {OF_CHANGE}",
+        "",
+        1e-4,
+        "at most",
+        "as above",
+    ),
+    "angular": Bound(
+        f"angular momentum about the origin beyond their moments' impulse, {OF_CHANGE}",
+        "",
+        1e-4,
+        "at most",
+        "as above; transverse_load_at = joint drops a moment and is not held to it",
+    ),
+    "rest_weight": Bound(
+        "vertical contact force at rest beyond the weight, of the weight",
+        "",
+        1e-4,
+        "at most",
+        "what stands still is carried: the rest of the motion after 10 s",
+    ),
+    "rest_speed": Bound(
+        "speed at rest of body and struts",
+        "m/s",
+        1e-4,
+        "at most",
+        "a damper that creeps by 0.1 mm/s moves 1 mm in 10 s",
+    ),
+    "rest_phase": Bound(
+        "settled 10 s after first contact, never toppled (1: yes)",
+        "",
+        1.0,
+        "at least",
+        "a landing ends standing; where a vehicle that topples ends is not in the model",
+    ),
+    "smooth_error": Bound(
+        "strut force and stroke error on a smooth arc at the default rtol, of their largest",
+        "",
+        1e-4,
+        "at most",
+        "a hundred times the tolerance, which holds a step",
+    ),
+    "smooth_slope": Bound(
+        "decades of that error a decade of tolerance on a smooth arc",
+        "",
+        0.8,
+        "at least",
+        "1 for an error in proportion to the tolerance",
+    ),
+    "contacts_error": Bound(
+        "stroke error across contacts at the default rtol, of the largest stroke",
+        "",
+        1e-3,
+        "at most",
+        "0.03 mm of 27 mm: below what the tests resolve",
+    ),
+    "contacts_force": Bound(
+        "strut force error across contacts at the default rtol, of the largest force",
+        "",
+        1e-2,
+        "at most",
+        "an instant's error of a contact's time is a force's error there",
+    ),
+}

@@ -1,0 +1,76 @@
+"""Linear and angular momentum of the whole vehicle, from a history's outputs alone: an account that shares no kernel with the core."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import cumulative_simpson
+
+from ..history import History
+from ..parameters import Parameters, azimuth
+from ..quantities import LEGS, MODES
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Momentum:
+    """Momentum of body and footpads: `x`, `y` [N s] inertial; `about_origin`, `about_cg` [N m s] of the inertial origin and the whole
+    vehicle's CG, clockwise positive as the pitch."""
+
+    x: Array
+    y: Array
+    about_origin: Array
+    about_cg: Array
+
+
+def _mass_points(history: History, parameters: Parameters) -> list[tuple[float, Array, Array, Array, Array]]:
+    """(mass, x, y, vx, vy) of the body and every footpad; footpads' velocities are solved from both struts' stroke rates."""
+    v, m, a = parameters.vehicle, parameters.main_strut, parameters.auxiliary_strut
+    x, y, pitch, vx, vy, rate = (history[f"body.{n}"] for n in ("x", "y", "pitch", "vx", "vy", "pitch_rate"))
+    sine, cosine = np.sin(pitch), np.cos(pitch)
+    points = [(v.mass, x, y, vx, vy)]
+    turns = {leg: azimuth(g.azimuth) for g in MODES[parameters.drop.mode] for leg, _ in g.legs}
+    for leg in LEGS:
+        sin_g, cos_g = turns[leg]
+        dx, dy = history[f"leg[{leg}].footpad.x"] - x, history[f"leg[{leg}].footpad.y"] - y
+        body_x, h = dx * cosine - dy * sine, dx * sine + dy * cosine
+        r = body_x * cos_g + np.abs(history[f"leg[{leg}].footpad.z"]) * sin_g
+        main_r, main_h = r - m.joint_radius, h + m.joint_depth
+        aux_r, aux_h = r - a.joint_radius, h + a.joint_depth
+        main_rate = -history[f"leg[{leg}].main_strut.stroke_rate"] * np.hypot(main_r, main_h)
+        aux_rate = -history[f"leg[{leg}].auxiliary_strut.stroke_rate"] * np.hypot(aux_r, aux_h)
+        determinant = main_r * aux_h - main_h * aux_r
+        vr = (main_rate * aux_h - aux_rate * main_h) / determinant
+        vh = (main_r * aux_rate - aux_r * main_rate) / determinant
+        along, up = vr * cos_g + rate * h, vh - rate * body_x
+        points.append((v.footpad_mass, x + dx, y + dy, vx + along * cosine + up * sine, vy - along * sine + up * cosine))
+    return points
+
+
+def momentum(history: History, parameters: Parameters) -> Momentum:
+    """The momentum at every sample; the history needs the landing's own columns, stroke rates included."""
+    points = _mass_points(history, parameters)
+    total = sum(p[0] for p in points)
+    px: Array = np.sum([m * vx for m, _, _, vx, _ in points], axis=0)
+    py: Array = np.sum([m * vy for m, _, _, _, vy in points], axis=0)
+    cx: Array = np.sum([m * x for m, x, *_ in points], axis=0) / total
+    cy: Array = np.sum([m * y for m, _, y, _, _ in points], axis=0) / total
+    turning: Array = np.sum([m * (y * vx - x * vy) for m, x, y, vx, vy in points], axis=0)
+    origin = parameters.vehicle.inertia * history["body.pitch_rate"] + turning
+    return Momentum(px, py, origin, origin - (cy * px - cx * py))
+
+
+def impulse(history: History, parameters: Parameters) -> Momentum:
+    """What contact forces and weight have given since the first sample, by Simpson's rule over the samples; `about_cg` is left 0."""
+    g, v = parameters.ground.gravity, parameters.vehicle
+    t = history.time
+    force_x, force_y, moment = np.zeros(len(t)), np.full(len(t), -g * v.mass), g * v.mass * history["body.x"]
+    for leg in LEGS:
+        fx, fy = history[f"leg[{leg}].contact.force_x"], history[f"leg[{leg}].contact.force_y"] - g * v.footpad_mass
+        force_x, force_y = force_x + fx, force_y + fy
+        moment = moment + history[f"leg[{leg}].footpad.y"] * fx - history[f"leg[{leg}].footpad.x"] * fy
+    x, y, turn = (np.asarray(cumulative_simpson(f, x=t, initial=0.0)) for f in (force_x, force_y, moment))
+    return Momentum(x, y, turn, np.zeros(len(t)))

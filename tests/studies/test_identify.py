@@ -1,0 +1,198 @@
+"""Identification: it finds what is known, repeats itself, goes on where it stopped, and refuses what makes no sense."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rlv_landing import Landing, LandingError, load_preset
+from rlv_landing.presets import read_toml
+from rlv_landing.studies.objective import CONDITIONS, Objective, Series, paper_targets, read_series, read_targets
+from rlv_landing.studies.priors import BORE, PRIORS, ROD_AREA, FreeNumbers
+
+FIGURES = "yue2022-figures"
+TRUTH = {"main_strut.orifice_area_compression": 1.1e-5, "ground.friction": 0.25}
+COLUMNS = ("leg[1].main_strut.stroke", "leg[3].main_strut.force", "leg[1].auxiliary_strut.force")
+
+
+def command(*arguments: object) -> list[str]:
+    return [sys.executable, "-c", "from rlv_landing.cli import main; main()", "identify", *map(str, arguments)]
+
+
+def run(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command(*arguments), capture_output=True, text=True, cwd=cwd, timeout=300)
+
+
+@pytest.fixture
+def measured(tmp_path: Path) -> Path:
+    """Curves of a 2-2 landing whose orifice and friction are known."""
+    history = Landing(load_preset(FIGURES, "2-2").with_values(TRUTH)).run(0.6, 2e-3)
+    path = tmp_path / "measured.csv"
+    rows = [",".join(["time", *COLUMNS])]
+    rows += [",".join(repr(float(v)) for v in (t, *(history[c][i] for c in COLUMNS))) for i, t in enumerate(history.time)]
+    path.write_text("\n".join(rows) + "\n")
+    return path
+
+
+def test_known_parameters_are_found_again_from_measured_curves(measured, tmp_path):
+    done = run("--series", f"2-2={measured}", "--free", ",".join(TRUTH), "--population", 8, "--evaluations", 150, "--polish", 60,
+               "--sigma", 0.2, cwd=tmp_path)  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    found = read_toml(tmp_path / "identification" / "identified.toml")
+    for name, value in TRUTH.items():
+        assert found[name] == pytest.approx(value, rel=0.02)
+        assert found.source(name) == "identified"
+    report = (tmp_path / "identification" / "report.md").read_text()
+    assert report.count("well determined") == 2
+
+
+def test_the_same_seed_gives_the_same_search_and_resuming_goes_on_with_it(measured, tmp_path):
+    free = ("--series", f"2-2={measured}", "--free", ",".join(TRUTH), "--population", 6, "--polish", 0, "--seed", 5)
+    for work, limits in (("whole", [37]), ("again", [37]), ("parts", [19, 37])):
+        for i, limit in enumerate(limits):
+            done = run(*free, "--work", work, "--evaluations", limit, *(["--resume"] if i else []), cwd=tmp_path)
+            assert done.returncode in (0, 1), done.stderr
+    best = [json.loads((tmp_path / work / "best.json").read_text()) for work in ("whole", "again", "parts")]
+    assert best[0] == best[1] == best[2]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_identification_keeps_its_best_and_can_go_on(tmp_path, number):
+    process = subprocess.Popen(command("--evaluations", 100000), cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    best = tmp_path / "identification" / "best.json"
+    try:
+        while not best.exists():
+            assert process.poll() is None, process.communicate()[1]
+            os.sched_yield()
+        process.send_signal(number)
+        _, err = process.communicate(timeout=120)
+    finally:
+        process.kill()
+    assert process.returncode == 130, err
+    assert "interrupted; --resume goes on" in err
+    assert "Traceback" not in err
+    kept = json.loads(best.read_text())
+    parameters = read_toml(tmp_path / "identification" / "identified.toml")
+    numbers = FreeNumbers(load_preset(FIGURES))
+    assert Objective(numbers, paper_targets()).loss(kept["z"]) == pytest.approx(kept["loss"])
+    assert parameters["vehicle.inertia"] == pytest.approx(numbers.parameters(kept["z"])["vehicle.inertia"])
+
+
+def test_nothing_better_than_the_start_is_said_so(tmp_path):
+    """The compression stop is never met in these landings, so where it is makes no difference."""
+    bound = ("--free", "main_strut.stroke_max", "--bound", "main_strut.stroke_max=0.05..0.06")
+    done = run(*bound, "--evaluations", 5, "--population", 4, "--polish", 0, cwd=tmp_path)
+    assert done.returncode == 1
+    assert "nothing better than the start was found" in done.stderr
+
+
+def test_numbers_and_the_unit_cube_belong_together():
+    numbers = FreeNumbers(load_preset(FIGURES))
+    z = numbers.start()
+    assert all(0.0 <= x <= 1.0 for x in z)
+    inside = [min(max(x, 0.1), 0.9) for x in z]
+    values = numbers.numbers(inside)
+    assert [p.place(v) for (p, _), v in zip(numbers.columns, values)] == pytest.approx(inside)
+    assert numbers.numbers([2.0 - x for x in inside]) == pytest.approx(values)
+    assert numbers.numbers([-x for x in inside]) == pytest.approx(values)
+    parameters = numbers.parameters(inside)
+    labels = dict(zip(numbers.labels, values))
+    assert float(parameters[BORE]) - parameters.main_strut.area_upper == pytest.approx(labels[ROD_AREA])
+    assert parameters.for_mode("1-2-1").drop.tilt == labels["1-2-1: drop.tilt"]
+    assert parameters.for_mode("2-2").drop.tilt == labels["2-2: drop.tilt"]
+
+
+def test_every_prior_has_bounds_and_a_reason_and_table_1_is_never_free():
+    parameters = load_preset(FIGURES)
+    for p in PRIORS:
+        assert p.lo < p.hi
+        assert p.reason
+        if p.name != ROD_AREA:
+            assert parameters.source(p.name) in ("identified", "closure")
+
+
+def test_conditions_are_silent_on_a_sensible_landing_and_speak_up_on_a_hard_one():
+    sensible = Landing(load_preset(FIGURES, "2-2")).run(0.6)
+    hard = Landing(load_preset(FIGURES, "2-2").with_values({"drop.vertical_velocity": -6.0, "drop.contact_time": 0.0})).run(0.6)
+    penetration = next(c for c in CONDITIONS if c.name == "penetration")
+    assert penetration.measure(sensible) < penetration.limit < penetration.measure(hard)
+
+
+def test_a_curve_of_the_landing_itself_is_no_misfit(tmp_path):
+    base = load_preset(FIGURES, "2-2")
+    history = Landing(base, rtol=1e-5).run(0.5)
+    series = Series("2-2", history.time, {name: history[name] for name in COLUMNS})
+    objective = Objective(FreeNumbers(base, ["ground.friction"]), [], [series])
+    assert np.abs(objective.misfits(objective.free.start())[: len(COLUMNS)]).max() < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("id,value,unit\n22-fm1-tdd,-2000,N\n", "did you mean 22-fm1-td"),
+        ("id,value,unit\n22-fm1-td,-2,kN\n", "is in 'kN'; give it in N"),
+        ("id,value,unit\n22-fm1-td,nan,N\n", "must be finite"),
+        ("id,value,unit\n22-fm1-td,much,N\n", "not a number"),
+        ("id,value\n22-fm1-td,-2000\n", "no unit"),
+        ("id,value,unit\n", "holds no targets"),
+    ],
+)
+def test_bad_targets_are_refused_by_line(tmp_path, text, message):
+    (tmp_path / "t.csv").write_text(text)
+    with pytest.raises(LandingError, match=message):
+        read_targets(tmp_path / "t.csv")
+
+
+@pytest.mark.parametrize(
+    ("header", "rows", "message"),
+    [
+        ("time,leg[1].main_strut.forc", [(k * 0.1, 1.0) for k in range(12)], "did you mean leg"),
+        ("t,leg[1].main_strut.force", [(k * 0.1, 1.0) for k in range(12)], "no column time"),
+        ("time,leg[1].main_strut.force", [(k * 0.1, 1.0) for k in range(3)], "at least 10"),
+        ("time,leg[1].main_strut.force", [(-k * 0.1, 1.0) for k in range(12)], "time does not grow"),
+        ("time,leg[1].main_strut.force", [(k * 0.1, "nan") for k in range(12)], "must be finite"),
+        ("time,leg[1].main_strut.force", [(k * 0.1, "") for k in range(12)], "not a number"),
+    ],
+)
+def test_bad_curves_are_refused(tmp_path, header, rows, message):
+    (tmp_path / "s.csv").write_text("\n".join([header, *(f"{t},{v}" for t, v in rows)]))
+    with pytest.raises(LandingError, match=message):
+        read_series(tmp_path / "s.csv", "2-2")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--free", "vehicle.mass"), "has no bounds to be identified between; give them: --bound vehicle.mass=LO..HI"),
+        (("--free", "ground.frictoin"), "did you mean ground.friction?"),
+        (("--bound", "ground.friction=0.5..0.1"), "bounds of ground.friction are empty"),
+        (("--bound", "ground.friction=-1..0.1"), "are outside [0, 3]"),
+        (("--bound", "ground.friction=0.1"), "write NAME=LO..HI"),
+        (("--bound", "drop.mode=1..2"), "only numbers can be identified"),
+        (("--targets", "none.csv"), "cannot be read"),
+        (("--series", "3-3=x.csv"), "unknown landing mode"),
+        (("--resume",), "there is nothing to resume"),
+    ],
+)
+def test_bad_input_is_one_clear_line(tmp_path, arguments, message):
+    done = run(*arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert message in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_holds_a_search_is_not_overwritten(tmp_path):
+    (tmp_path / "identification").mkdir()
+    (tmp_path / "identification" / "best.json").write_text("{}")
+    done = run(cwd=tmp_path)
+    assert done.returncode == 2
+    assert "--resume goes on with it" in done.stderr
+    assert (tmp_path / "identification" / "best.json").read_text() == "{}"
