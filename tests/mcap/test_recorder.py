@@ -132,7 +132,8 @@ def test_a_full_disk_does_not_stop_the_landing_and_what_was_written_is_readable(
     assert reader.metadata["mode"] == "2-2"
     # All but the chunk that did not fit any more.
     announced = int(told[1].split("stopped after ")[1].split()[0])
-    assert announced - 1000 < count <= announced
+    # The message at which the disk was full may have been the last of a chunk that is on it.
+    assert announced - 1000 < count <= announced + 1
     seen = 0
     # Half a record at the end: the stream reader's word for it depends on where it is cut.
     with file.open("rb") as f, suppress(EndOfFile, struct.error, ZstdError):

@@ -23,6 +23,11 @@ from .options import choose, parameter_options
     "--series", metavar="MODE=FILE.csv", multiple=True, help="Measured curves: time, then columns named as our outputs, SI. Repeat."
 )
 @click.option(
+    "--conditions/--no-conditions",
+    default=None,
+    help="Hold landings to sense, by the prototype's limits [default: with the paper's scalars].",
+)
+@click.option(
     "--work", type=click.Path(path_type=Path), default=Path("identification"), show_default=True, help="Folder for state and results."
 )
 @click.option(
@@ -40,7 +45,7 @@ from .options import choose, parameter_options
 def identify(
     preset: str | None, file: str | None, mode: str | None, pairs: tuple[str, ...], free: str | None, bounds: tuple[str, ...],
     targets: Path | None, series: tuple[str, ...], work: Path, evaluations: int, polish: int, sigma: float, population: int, seed: int,
-    workers: int | None, resume: bool, list_priors: bool,
+    workers: int | None, resume: bool, list_priors: bool, conditions: bool | None,
 ) -> None:  # fmt: skip
     """Estimate what the paper does not print, or your own vehicle's parameters, from peaks, times and curves of landings.
 
@@ -60,7 +65,7 @@ def identify(
     from ..presets import to_toml
     from ..studies.identify import Search
     from ..studies.identify_report import write_report
-    from ..studies.objective import Objective, paper_targets, read_series, read_targets
+    from ..studies.objective import CONDITIONS, Objective, paper_targets, read_series, read_targets
     from ..studies.priors import PRIORS, FreeNumbers
 
     if list_priors:
@@ -74,7 +79,8 @@ def identify(
     interrupted = False
     # SIGTERM ends as Ctrl-C does: with everything written
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    with Search(Objective(numbers, wanted, curves), work, seed, workers, resume) as search:
+    held = CONDITIONS if (conditions if conditions is not None else not (targets or curves)) else ()
+    with Search(Objective(numbers, wanted, curves, held), work, seed, workers, resume) as search:
         bar_format = "{desc} {percentage:3.0f}%|{bar}| {n}/{total} [{elapsed}<{remaining}] {postfix}"
         with tqdm(total=evaluations, initial=search.best.evaluations, disable=not sys.stderr.isatty(), bar_format=bar_format) as bar:
 

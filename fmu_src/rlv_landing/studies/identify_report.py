@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from .. import __version__
 from ..parameters import Parameters
 from .identify import Search, folded
-from .objective import CONDITIONS, TOLERANCE, fit_of
+from .objective import TOLERANCE, fit_of
 
 AT_BOUND = 0.01
 # the standard deviation of a uniform prior on [0, 1]: a number not known better than that is not identified
@@ -98,6 +98,7 @@ def write_report(search: Search, parameters: Parameters) -> str:
     for d in known:
         moves = f"{d.partner} ({d.correlation:+.2f})"
         lines.append(f"| {d.label} | {d.value:.4g} | {d.lo:g} ... {d.hi:g} | {d.deviation:.3f} | {d.verdict} | {moves} | {d.scalar} |")
-    lines += ["", "## Conditions", "", "| condition | at most | because |", "|---|---|---|"]
-    lines += [f"| {c.name} | {c.limit:g} {c.unit} | {c.reason} |" for c in CONDITIONS]
+    if search.objective.conditions:
+        lines += ["", "## Conditions", "", "| condition | at most | because |", "|---|---|---|"]
+        lines += [f"| {c.name} | {c.limit:g} {c.unit} | {c.reason} |" for c in search.objective.conditions]
     return "\n".join(lines) + "\n"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,6 +21,7 @@ from .priors import FreeNumbers
 # a misfit of this size counts as one: below it, scalars are as good as reached
 TOLERANCE = 0.045
 LARGEST_MISFIT = 2.0
+CURVE_SAMPLES = 100
 EVERY = 1e-3
 RTOL = 1e-5
 FIELDS = ("id", "value", "unit")
@@ -125,6 +126,11 @@ class Series:
     time: NDArray[np.float64]
     columns: Mapping[str, NDArray[np.float64]]
 
+    @property
+    def samples(self) -> NDArray[np.intp]:
+        """The samples that are compared: all, or CURVE_SAMPLES spread over the curve."""
+        return np.unique(np.linspace(0, len(self.time) - 1, min(len(self.time), CURVE_SAMPLES)).round().astype(np.intp))
+
 
 def read_series(path: Path, mode: str) -> Series:
     """Measured curves from a CSV file: `time` [s], then columns named as our outputs, SI.
@@ -151,17 +157,25 @@ def read_series(path: Path, mode: str) -> Series:
 
 
 class Objective:
-    """Misfits of the landings of both modes (or of those that have targets) as a vector, for numbers on the unit cube."""
+    """Misfits of the landings of both modes (or of those that have targets) as a vector, for numbers on the unit cube.
 
-    def __init__(self, free: FreeNumbers, targets: Iterable[Wanted], series: Iterable[Series] = ()) -> None:
+    One for each scalar; for curves one a sample, so that the squares of a curve's misfits add up to its relative mean square.
+
+    `conditions` hold the landings to sense; their limits are those of the paper's prototype.
+    """
+
+    def __init__(
+        self, free: FreeNumbers, targets: Iterable[Wanted], series: Iterable[Series] = (), conditions: Sequence[Condition] = CONDITIONS
+    ) -> None:
         self.free = free
         self.targets = tuple(targets)
         self.series = tuple(series)
+        self.conditions = tuple(conditions)
         present = {t.mode for t in self.targets} | {s.mode for s in self.series}
         self.modes = [m for m in MODES if m in present]
         self.labels = [t.id for t in self.targets]
-        self.labels += [f"{s.mode}: {n}" for s in self.series for n in s.columns]
-        self.labels += [f"{m}: {c.name}" for m in self.modes for c in CONDITIONS]
+        self.labels += [f"{s.mode}: {n} at {t:g} s" for s in self.series for n in s.columns for t in s.time[s.samples]]
+        self.labels += [f"{m}: {c.name}" for m in self.modes for c in self.conditions]
 
     def misfits(self, z: Iterable[float]) -> NDArray[np.float64]:
         """One number a target, series column and condition; of size one where it is just acceptable. All large where nothing lands."""
@@ -181,10 +195,12 @@ class Objective:
             found.append((error if np.isfinite(error) else LARGEST_MISFIT) / TOLERANCE)
         for s in self.series:
             for name, wanted in s.columns.items():
-                ours = np.interp(s.time, histories[s.mode].time, histories[s.mode][name])
-                found.append(float(np.sqrt(np.mean((ours - wanted) ** 2) / np.mean(wanted**2))) / TOLERANCE)
+                at = s.samples
+                ours = np.interp(s.time[at], histories[s.mode].time, histories[s.mode][name])
+                scale = TOLERANCE * np.sqrt(np.mean(wanted**2) * len(at))
+                found += ((ours - wanted[at]) / scale).tolist()
         for mode in self.modes:
-            for c in CONDITIONS:
+            for c in self.conditions:
                 found.append(max(0.0, (c.measure(histories[mode]) - c.limit) / c.scale))
         return np.array(found)
 
