@@ -76,6 +76,14 @@ def provenance() -> dict[str, str]:
     return {"commit": commit, "cpu": names[0] if names else platform.processor(), "python": platform.python_version()}
 
 
+def append_rows(rows: list[dict[str, Any]]) -> None:
+    """Append the rows, stamped with their provenance, to `results.jsonl`."""
+    stamp = provenance()
+    with (HERE / "results.jsonl").open("a", encoding="utf-8") as f:
+        for row in rows:
+            f.write(json.dumps({**stamp, **row}) + "\n")
+
+
 def main() -> None:
     rows: list[dict[str, Any]] = []
     for mode in ("2-2", "1-2-1"):
@@ -100,10 +108,7 @@ def main() -> None:
     for row in rows:
         table.add_row(row["case"], f"{row['seconds']:.4f}", f"{row['ratio']:.1f}", str(row["rhs_calls"]), f"{1e3 * row['error']:.2e}")
     Console(width=110).print(table)
-    stamp = provenance()
-    with (HERE / "results.jsonl").open("a", encoding="utf-8") as f:
-        for row in rows:
-            f.write(json.dumps({**stamp, **row}) + "\n")
+    append_rows(rows)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,6 @@ by about the ratio of the work. Prints a table and appends a row a case to `resu
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import subprocess
@@ -25,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from bench_landing import STROKES, provenance
+from bench_landing import STROKES, append_rows
 from rich.console import Console
 from rich.table import Table
 from scipy.integrate import solve_ivp
@@ -263,10 +262,7 @@ def main() -> None:
         "numpy against compiled or plain Python; the work does not. The core's includes its energy accounts."
     )
     Console(width=130).print(table)
-    stamp = provenance()
-    with (HERE / "results.jsonl").open("a", encoding="utf-8") as f:
-        for row in rows:
-            f.write(json.dumps({**stamp, **row}) + "\n")
+    append_rows(rows)
 
 
 if __name__ == "__main__":

@@ -25,11 +25,11 @@ HEADER = 10
 FLIGHT_CHECKS = tuple(i / 64.0 for i in range(65))
 
 
-def build_model(parameters: Parameters) -> Model:
-    """The kernels' numbers from the user's parameters."""
+def build_model(parameters: Parameters, kind: type[Model] = Model) -> Model:
+    """The kernels' numbers from the user's parameters; `kind` is the compiled or the pure core's class."""
     groups = MODES[parameters.drop.mode]
     turns = [azimuth(g.azimuth) for g in groups]
-    model = Model(
+    model = kind(
         array("d", (s for s, _ in turns)),
         array("d", (c for _, c in turns)),
         array("d", (float(len(g.legs)) for g in groups)),

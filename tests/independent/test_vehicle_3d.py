@@ -12,7 +12,7 @@ import pytest
 from pytest import approx
 from vehicle_3d import AZIMUTHS, LEGS, POSITION, QUATERNION, SPIN, VELOCITY, Inputs, Vehicle3D, land, rotation
 
-from rlv_landing import Landing, Parameters, load_preset
+from rlv_landing import Landing, load_preset
 from rlv_landing.core import layout
 from rlv_landing.core.model import Model
 from rlv_landing.core.vehicle import right_hand_side
@@ -22,16 +22,6 @@ FIGURES = "yue2022-figures"
 BODY = ("x", "y", "pitch", "vx", "vy", "pitch_rate")
 # leg group of legs 1 to 4 in the kernels' state, and the side on which z is turned
 GROUPS = {"2-2": ((0, 1), (0, -1), (1, -1), (1, 1)), "1-2-1": ((0, 1), (1, -1), (2, 1), (1, 1))}
-
-
-def pure_model(parameters: Parameters) -> Model:
-    """The kernels' numbers in the pure core's own class."""
-    built = build_model(parameters)
-    model = Model(built.sin_g, built.cos_g, built.count, built.share_x)
-    for name in dir(built):
-        if not name.startswith("_") and isinstance(getattr(built, name), float):
-            setattr(model, name, getattr(built, name))
-    return model
 
 
 def random_state(rng: np.random.Generator, mode: str, model: Vehicle3D, upright: float) -> tuple[np.ndarray, np.ndarray]:
@@ -89,7 +79,7 @@ def test_accelerations_and_rates_are_the_same_at_random_states_to_rounding(mode:
         y, state = random_state(rng, mode, model, parameters.ground.slope)
         u = array("d", [*loads.force, loads.moment, loads.heave, loads.heave_rate, loads.tilt, loads.tilt_rate])
         ours = array("d", bytes(8 * len(y)))
-        right_hand_side(array("d", y), u, pure_model(parameters), ours, array("d", bytes(8 * 200)))
+        right_hand_side(array("d", y), u, build_model(parameters, Model), ours, array("d", bytes(8 * 200)))
         e = model.evaluate(0.0, state)
         touching += int((e["penetration"] > 0.0).sum())
 

@@ -216,16 +216,6 @@ def test_a_vehicle_that_has_turned_over_is_toppled_however_it_comes_to_lie():
     assert np.all(history["status.phase"][over] == 3.0)
 
 
-def pure_model(parameters: Parameters) -> Model:
-    """The kernels' numbers in the pure core's own class."""
-    built = build_model(parameters)
-    model = Model(built.sin_g, built.cos_g, built.count, built.share_x)
-    for name in dir(built):
-        if not name.startswith("_") and isinstance(getattr(built, name), float):
-            setattr(model, name, getattr(built, name))
-    return model
-
-
 def inertial_positions(y: np.ndarray, groups: list[tuple[float, float, float]]) -> np.ndarray:
     """(x, y) of the body and of every group's footpads from the state, written from first principles; complex-safe."""
     out = [(y[0], y[1])]
@@ -246,7 +236,9 @@ def test_newton_and_euler_hold_for_the_whole_vehicle(mode, time):
     y = np.array(landing._y)
     groups = [(solver.model.sin_g[i], solver.model.cos_g[i], solver.model.count[i]) for i in range(solver.model.n_groups)]
     dy = array("d", bytes(8 * len(y)))
-    right_hand_side(array("d", y), array("d", bytes(8 * layout.INPUTS)), pure_model(landing.parameters), dy, array("d", bytes(8 * 200)))
+    right_hand_side(
+        array("d", y), array("d", bytes(8 * layout.INPUTS)), build_model(landing.parameters, Model), dy, array("d", bytes(8 * 200))
+    )
     solver_dy = np.array(dy)
     masses = np.array([178.0, *(4.2 * n for *_, n in groups)])
 

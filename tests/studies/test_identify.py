@@ -14,8 +14,9 @@ import numpy as np
 import pytest
 
 from rlv_landing import Landing, LandingError, load_preset
+from rlv_landing.history import History
 from rlv_landing.presets import read_toml
-from rlv_landing.studies.objective import CONDITIONS, Objective, Series, paper_targets, read_series, read_targets
+from rlv_landing.studies.objective import CONDITIONS, Objective, Series, paper_targets, read_targets
 from rlv_landing.studies.priors import BORE, PRIORS, ROD_AREA, FreeNumbers
 
 FIGURES = "yue2022-figures"
@@ -129,11 +130,14 @@ def test_conditions_are_silent_on_a_sensible_landing_and_speak_up_on_a_hard_one(
 def test_a_curve_of_the_landing_itself_is_no_misfit(tmp_path):
     base = load_preset(FIGURES, "2-2")
     history = Landing(base, rtol=1e-5).run(0.5)
-    series = Series("2-2", history.time, {name: history[name] for name in COLUMNS})
+    curves = np.stack([history[name] for name in COLUMNS], axis=1)
+    series = Series("2-2", History(history.time, COLUMNS, curves))
     objective = Objective(FreeNumbers(base, ["ground.friction"]), [], [series])
-    curves = [i for i, label in enumerate(objective.labels) if " at " in label]
-    assert len(curves) == 100 * len(COLUMNS)
-    assert np.abs(objective.misfits(objective.free.start())[curves]).max() < 1e-9
+    with pytest.raises(LandingError, match="unknown landing mode '3-3'"):
+        Series("3-3", series.curves)
+    of_curves = [i for i, label in enumerate(objective.labels) if " at " in label]
+    assert len(of_curves) == 100 * len(COLUMNS)
+    assert np.abs(objective.misfits(objective.free.start())[of_curves]).max() < 1e-9
 
 
 @pytest.mark.parametrize(
@@ -154,23 +158,6 @@ def test_bad_targets_are_refused_by_line(tmp_path, text, message):
 
 
 @pytest.mark.parametrize(
-    ("header", "rows", "message"),
-    [
-        ("time,leg[1].main_strut.forc", [(k * 0.1, 1.0) for k in range(12)], "did you mean leg"),
-        ("t,leg[1].main_strut.force", [(k * 0.1, 1.0) for k in range(12)], "no column time"),
-        ("time,leg[1].main_strut.force", [(k * 0.1, 1.0) for k in range(3)], "at least 10"),
-        ("time,leg[1].main_strut.force", [(-k * 0.1, 1.0) for k in range(12)], "time does not grow"),
-        ("time,leg[1].main_strut.force", [(k * 0.1, "nan") for k in range(12)], "must be finite"),
-        ("time,leg[1].main_strut.force", [(k * 0.1, "") for k in range(12)], "not a number"),
-    ],
-)
-def test_bad_curves_are_refused(tmp_path, header, rows, message):
-    (tmp_path / "s.csv").write_text("\n".join([header, *(f"{t},{v}" for t, v in rows)]))
-    with pytest.raises(LandingError, match=message):
-        read_series(tmp_path / "s.csv", "2-2")
-
-
-@pytest.mark.parametrize(
     ("arguments", "message"),
     [
         (("--free", "vehicle.mass"), "has no bounds to be identified between; give them: --bound vehicle.mass=LO..HI"),
@@ -180,7 +167,7 @@ def test_bad_curves_are_refused(tmp_path, header, rows, message):
         (("--bound", "ground.friction=0.1"), "write NAME=LO..HI"),
         (("--bound", "drop.mode=1..2"), "only numbers can be identified"),
         (("--targets", "none.csv"), "cannot be read"),
-        (("--series", "3-3=x.csv"), "unknown landing mode"),
+        (("--series", "2-2=none.csv"), "there is no file none.csv of measured curves"),
         (("--resume",), "there is nothing to resume"),
     ],
 )

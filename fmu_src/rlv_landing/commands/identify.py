@@ -62,10 +62,11 @@ def identify(
     """
     from tqdm import tqdm
 
+    from ..curves import read_curves
     from ..presets import to_toml
     from ..studies.identify import Search
     from ..studies.identify_report import write_report
-    from ..studies.objective import CONDITIONS, Objective, paper_targets, read_series, read_targets
+    from ..studies.objective import CONDITIONS, Objective, Series, paper_targets, read_targets
     from ..studies.priors import PRIORS, FreeNumbers
 
     if list_priors:
@@ -74,7 +75,7 @@ def identify(
         return
     parameters, modes, _ = choose(preset, file, mode, pairs)
     numbers = FreeNumbers(parameters, free.split(",") if free else None, dict(map(_bound, bounds)))
-    curves = [read_series(Path(path), which) for which, path in map(_pair, series)]
+    curves = [Series(which, read_curves(path)) for which, path in map(_pair, series)]
     wanted = read_targets(targets) if targets else [] if curves else [t for t in paper_targets() if t.mode in modes]
     interrupted = False
     # SIGTERM ends as Ctrl-C does: with everything written

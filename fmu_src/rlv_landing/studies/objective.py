@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from ..history import History
 from ..landing import Landing
 from ..paper import MEANINGS, RUN_AFTER_CONTACT, Reading, compare, printed_scalars
 from ..parameters import Parameters
-from ..quantities import MODES, OUTPUT_NAMES
+from ..quantities import MODES
 from .priors import FreeNumbers
 
 # a misfit of this size counts as one: below it, scalars are as good as reached
@@ -120,40 +120,19 @@ def _finite(text: str, what: str, unit: str) -> float:
 
 @dataclass(frozen=True)
 class Series:
-    """Measured curves of one landing: columns named as our outputs, over `time` [s]."""
+    """Measured curves of one landing of `mode`. Raises LandingError for an unknown mode."""
 
     mode: str
-    time: NDArray[np.float64]
-    columns: Mapping[str, NDArray[np.float64]]
+    curves: History
+
+    def __post_init__(self) -> None:
+        if self.mode not in MODES:
+            raise unknown("landing mode", self.mode, MODES)
 
     @property
     def samples(self) -> NDArray[np.intp]:
         """The samples that are compared: all, or CURVE_SAMPLES spread over the curve."""
-        return np.unique(np.linspace(0, len(self.time) - 1, min(len(self.time), CURVE_SAMPLES)).round().astype(np.intp))
-
-
-def read_series(path: Path, mode: str) -> Series:
-    """Measured curves from a CSV file: `time` [s], then columns named as our outputs, SI.
-
-    Raises LandingError: missing file, unknown names, fewer than 10 samples, values that are not finite, times that do not grow.
-    """
-    if mode not in MODES:
-        raise unknown("landing mode", mode, MODES)
-    rows = list(_rows(path))
-    if len(rows) < 10:
-        raise LandingError(f"{path} holds {len(rows)} samples; at least 10 are needed")
-    names = list(rows[0][1])
-    if "time" not in names:
-        raise LandingError(f"{path} has no column time [s]")
-    for name in names:
-        if name != "time" and name not in OUTPUT_NAMES:
-            raise unknown(f"column in {path}", name, OUTPUT_NAMES)
-    data = {n: np.array([_finite(row[n] or "", f"{path}, line {line}: {n}", "SI units") for line, row in rows]) for n in names}
-    time = data.pop("time")
-    if not np.all(np.diff(time) > 0.0):
-        at = int(np.flatnonzero(np.diff(time) <= 0.0)[0])
-        raise LandingError(f"{path}: time does not grow at line {at + 3} ({time[at + 1]:g} s after {time[at]:g} s); sort the samples")
-    return Series(mode, time, data)
+        return np.unique(np.linspace(0, len(self.curves) - 1, min(len(self.curves), CURVE_SAMPLES)).round().astype(np.intp))
 
 
 class Objective:
@@ -174,7 +153,7 @@ class Objective:
         present = {t.mode for t in self.targets} | {s.mode for s in self.series}
         self.modes = [m for m in MODES if m in present]
         self.labels = [t.id for t in self.targets]
-        self.labels += [f"{s.mode}: {n} at {t:g} s" for s in self.series for n in s.columns for t in s.time[s.samples]]
+        self.labels += [f"{s.mode}: {n} at {t:g} s" for s in self.series for n in s.curves.names for t in s.curves.time[s.samples]]
         self.labels += [f"{m}: {c.name}" for m in self.modes for c in self.conditions]
 
     def misfits(self, z: Iterable[float]) -> NDArray[np.float64]:
@@ -194,9 +173,10 @@ class Objective:
             error = (read(readings[t.mode], leg) - t.value) / t.scale
             found.append((error if np.isfinite(error) else LARGEST_MISFIT) / TOLERANCE)
         for s in self.series:
-            for name, wanted in s.columns.items():
-                at = s.samples
-                ours = np.interp(s.time[at], histories[s.mode].time, histories[s.mode][name])
+            at = s.samples
+            for name in s.curves.names:
+                wanted = s.curves[name]
+                ours = np.interp(s.curves.time[at], histories[s.mode].time, histories[s.mode][name])
                 scale = TOLERANCE * np.sqrt(np.mean(wanted**2) * len(at))
                 found += ((ours - wanted[at]) / scale).tolist()
         for mode in self.modes:
@@ -207,7 +187,7 @@ class Objective:
     def _land(self, parameters: Parameters, mode: str) -> History:
         own = parameters.for_mode(mode)
         end = own.drop.contact_time + RUN_AFTER_CONTACT + 0.02
-        end = max([end, *(float(s.time[-1]) for s in self.series if s.mode == mode)])
+        end = max([end, *(float(s.curves.time[-1]) for s in self.series if s.mode == mode)])
         return Landing(own, rtol=RTOL).run(end, EVERY)
 
     def loss(self, z: Iterable[float]) -> float:
