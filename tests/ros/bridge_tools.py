@@ -17,12 +17,12 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
 TIMEOUT = 60.0
-# Domains 1 to 100 keep their ports below the ephemeral ones; sessions that run side by side begin at different ones.
+# Domains 1 to 100 keep their ports below the ephemeral ones; runs of the suite side by side begin at different ones.
 _DOMAINS = itertools.cycle((os.getpid() * 37 + i) % 100 + 1 for i in range(100))
 
 
 def new_domain() -> int:
-    """A ROS domain that no other test of this session uses at the same time."""
+    """A ROS domain that no other test of this run uses at the same time."""
     return next(_DOMAINS)
 
 
