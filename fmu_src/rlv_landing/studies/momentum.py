@@ -67,10 +67,13 @@ def impulse(history: History, parameters: Parameters) -> Momentum:
     """What contact forces and weight have given since the first sample, by Simpson's rule over the samples; `about_cg` is left 0."""
     g, v = parameters.ground.gravity, parameters.vehicle
     t = history.time
-    force_x, force_y, moment = np.zeros(len(t)), np.full(len(t), -g * v.mass), g * v.mass * history["body.x"]
+    force_x: Array = np.zeros(len(t))
+    force_y: Array = np.full(len(t), -g * v.mass)
+    moment: Array = g * v.mass * history["body.x"]
     for leg in LEGS:
         fx, fy = history[f"leg[{leg}].contact.force_x"], history[f"leg[{leg}].contact.force_y"] - g * v.footpad_mass
-        force_x, force_y = force_x + fx, force_y + fy
+        force_x = force_x + fx
+        force_y = force_y + fy
         moment = moment + history[f"leg[{leg}].footpad.y"] * fx - history[f"leg[{leg}].footpad.x"] * fy
     x, y, turn = (np.asarray(cumulative_simpson(f, x=t, initial=0.0)) for f in (force_x, force_y, moment))
     return Momentum(x, y, turn, np.zeros(len(t)))
