@@ -81,7 +81,7 @@ def node(
         require_ros()
         from .landing_node import land
 
-        summary = land({**chosen, **where, **changed}, passed_on, namespace, stop)
+        summary = land({**chosen, **where, **changed}, passed_on, stop, namespace)
     _tell_landing(summary)
     if report and summary.folder is not None:
         _report(summary.folder)

@@ -254,15 +254,12 @@ class LandingNode(Node):
         super().destroy_node()
 
 
-def land(changes: Mapping[str, Any], ros_args: Sequence[str] = (), namespace: str = NAMESPACE, stop: StopFlag | None = None) -> RunSummary:
+def land(changes: Mapping[str, Any], ros_args: Sequence[str], stop: StopFlag, namespace: str = NAMESPACE) -> RunSummary:
     """One landing with the ROS parameters `changes`, in a ROS 2 started for it with `ros_args`. Raises LandingError as the node does."""
     with ros_context(ros_args):
         node = LandingNode(changes, namespace)
         try:
-            if stop is not None:
-                return node.land(stop)
-            with StopFlag() as own:
-                return node.land(own)
+            return node.land(stop)
         finally:
             node.destroy_node()
 
@@ -272,7 +269,8 @@ def main() -> int:
     from rlv_landing.errors import LandingError
 
     try:
-        summary = land({}, sys.argv[1:])
+        with StopFlag() as stop:
+            summary = land({}, sys.argv[1:], stop)
     except LandingError as e:
         print(f"error: {e}", file=sys.stderr)
         return 2

@@ -227,16 +227,13 @@ def _typical_step(messages: Sequence[LogMessage]) -> int:
     return min((b - a for a, b in pairwise(times)), default=1_000_000)
 
 
-def replay(options: ReplayOptions, ros_args: Sequence[str] = (), stop: StopFlag | None = None) -> ReplaySummary:
+def replay(options: ReplayOptions, ros_args: Sequence[str], stop: StopFlag) -> ReplaySummary:
     """Plays a log in a ROS 2 of its own, started with `ros_args`. Raises LandingError: bad options, a log or a topic that is not there."""
     options.check()
     selection = Selection(LogReader(options.path), options)
     with ros_context(ros_args):
         node = ReplayNode(selection, options)
         try:
-            if stop is not None:
-                return node.play(stop)
-            with StopFlag() as own:
-                return node.play(own)
+            return node.play(stop)
         finally:
             node.destroy_node()
