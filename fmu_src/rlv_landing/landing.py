@@ -21,6 +21,8 @@ BODY_SCALE = (0.1, 0.1, 0.1, 1.0, 1.0, 1.0)
 LEG_SCALE = (0.1, 0.1, 1.0, 1.0, 1e5, 1e5, 1e-3, 1e-3)
 DEFAULT_RTOL = 1e-6
 HEADER = 10
+# where a ground motion's rate is an input of its own
+RATE_INPUTS = {layout.HEAVE: layout.HEAVE_RATE, layout.TILT: layout.TILT_RATE}
 # parts of the free flight, before the first contact, at which the footpads must be above the ground
 FLIGHT_CHECKS = tuple(i / 64.0 for i in range(65))
 
@@ -54,6 +56,12 @@ def output_order(mode: str) -> list[tuple[int, float]]:
         for i, q in enumerate(LEG_QUANTITIES):
             order.append((shared + len(LEG_QUANTITIES) * group + i, float(side) if q.name in Z_TURNS else 1.0))
     return order
+
+
+def _input_index(name: str) -> int:
+    if name not in INPUT_NAMES:
+        raise unknown("input", name, INPUT_NAMES)
+    return INPUT_NAMES.index(name)
 
 
 class Landing:
@@ -113,7 +121,7 @@ class Landing:
         for i, value in enumerate(self._start_state()):
             solver.y[i] = value
         for i in range(layout.INPUTS):
-            solver.u[i] = 0.0
+            solver.u[i] = solver.u_rate[i] = 0.0
         solver.steps = solver.rejected = solver.rhs_calls = 0.0
         solver.h = inf
         solver.energy_start = 0.0
@@ -146,26 +154,35 @@ class Landing:
             y[k + layout.P1] = y[k + layout.P2] = p.main_strut.charge_pressure
         return y
 
-    def set_inputs(self, values: Mapping[str, Any]) -> None:
-        """Set inputs by name from now on; others stay. Heave and tilt of the ground go on from here at their rates.
+    def set_inputs(self, values: Mapping[str, Any], rates: Mapping[str, Any] | None = None) -> None:
+        """Set inputs by name from now on; others go on as they were.
+
+        An input goes on from its value at its rate in `rates` [unit/s], else constant; heave and tilt of the ground always go on at
+        `ground.heave_rate` and `ground.tilt_rate`, and a rate given for them is taken for these.
 
         Raises LandingError for an unknown name, NaN, or a value out of bounds; nothing is changed then.
         """
-        new = [float(v) for v in self._solver.u]
+        solver = self._solver
+        solver.inputs_at(self._time)
+        new, new_rates = list(solver.u_now), list(solver.u_rate)
         for name, value in values.items():
-            if name not in INPUT_NAMES:
-                raise unknown("input", name, INPUT_NAMES)
-            i = INPUT_NAMES.index(name)
-            new[i] = float(check_value(INPUT_QUANTITIES[i], value))
-        if all(v == u for v, u in zip(new, self._solver.u)):
+            i = _input_index(name)
+            new[i], new_rates[i] = float(check_value(INPUT_QUANTITIES[i], value)), 0.0
+        for name, rate in (rates or {}).items():
+            i = _input_index(name)
+            if not isfinite(rate):
+                raise LandingError(f"rate of {name} = {rate:g} {INPUT_QUANTITIES[i].unit}/s must be finite")
+            if i in RATE_INPUTS:
+                new[RATE_INPUTS[i]] = float(check_value(INPUT_QUANTITIES[RATE_INPUTS[i]], rate))
+            else:
+                new_rates[i] = float(rate)
+        if new == list(solver.u_now) and new_rates == list(solver.u_rate):
             return
         before = self.get("energy.contact")
-        solver = self._solver
         solver.interpolate(self._time, self._y)
-        for i, v in enumerate(self._y):
-            solver.y[i] = v
-        for i, v in enumerate(new):
-            solver.u[i] = v
+        for target, numbers in ((solver.y, self._y), (solver.u, new), (solver.u_rate, new_rates)):
+            for i, v in enumerate(numbers):
+                target[i] = v
         solver.restart(self._time)
         self._out_time = inf
         jump = self.get("energy.contact") - before
@@ -211,7 +228,7 @@ class Landing:
         """The whole state, the integrator's included: what `restore` needs to go on with the very same digits."""
         s = self._solver
         header = (self._time, s.t, s.t_old, s.t_input, s.h, s.error_old, s.energy_start, s.steps, s.rejected, s.rhs_calls)
-        return array("d", [*header, *s.u, *s.y, *s.dense])
+        return array("d", [*header, *s.u, *s.u_rate, *s.y, *s.dense])
 
     def restore(self, state: array[float]) -> None:
         """Take up a state that `state()` of a landing with the same parameters gave.
@@ -219,14 +236,14 @@ class Landing:
         Raises LandingError if its length is not that of this landing's state or a number in it is not finite.
         """
         s = self._solver
-        expected = HEADER + layout.INPUTS + 6 * s.n
+        expected = HEADER + 2 * layout.INPUTS + 6 * s.n
         if len(state) != expected:
             raise LandingError(f"state has {len(state)} numbers, this landing's has {expected}; it comes from another mode or version")
         if not all(isfinite(v) for i, v in enumerate(state) if i != 4):
             raise LandingError("state holds numbers that are not finite; take one that state() gave")
         self._time, s.t, s.t_old, s.t_input, s.h, s.error_old, s.energy_start, s.steps, s.rejected, s.rhs_calls = state[:HEADER]
         at = HEADER
-        for target in (s.u, s.y, s.dense):
+        for target in (s.u, s.u_rate, s.y, s.dense):
             for i in range(len(target)):
                 target[i] = state[at + i]
             at += len(target)

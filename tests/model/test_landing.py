@@ -42,7 +42,7 @@ def test_run_samples_counted_times_and_step_reaches_the_same_numbers(mode):
 def test_a_restored_state_goes_on_with_the_same_digits(mode):
     landing = Landing(load_preset(FIGURES), mode)
     landing.advance_to(0.2)
-    landing.set_inputs({"external.force_x": 120.0, "ground.tilt_rate": 0.01})
+    landing.set_inputs({"external.force_x": 120.0, "ground.tilt_rate": 0.01}, {"external.force_x": 30.0})
     landing.advance_to(0.2517)
     saved = landing.state()
     landing.advance_to(0.5)
@@ -131,6 +131,23 @@ def test_bad_inputs_are_refused_and_nothing_changes(values, message):
     before = landing.state()
     with pytest.raises(LandingError, match=message):
         landing.set_inputs({"external.force_y": 5.0, **values})
+    assert landing.state() == before
+
+
+@pytest.mark.parametrize(
+    ("rates", "message"),
+    [
+        ({"external.force_x": nan}, "rate of external.force_x = nan N/s must be finite"),
+        ({"ground.tilt": 50.0}, "ground.tilt_rate = 50 rad/s is outside"),
+        ({"ground.tillt": 0.0}, "did you mean ground.tilt"),
+    ],
+)
+def test_bad_rates_of_inputs_are_refused_and_nothing_changes(rates, message):
+    landing = Landing()
+    landing.advance_to(0.1)
+    before = landing.state()
+    with pytest.raises(LandingError, match=message):
+        landing.set_inputs({"external.force_y": 5.0}, rates)
     assert landing.state() == before
 
 

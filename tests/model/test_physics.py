@@ -181,6 +181,48 @@ def test_an_external_force_accelerates_the_whole_vehicle_as_newton_says():
     assert 2.0 * np.polyfit(history.time, centre(history, "y"), 2)[0] == approx(200.0 / mass - 9.81, rel=1e-5)
 
 
+def test_a_force_that_grows_steadily_moves_the_whole_vehicle_as_newton_says():
+    values = {"drop.pitch_rate": 0.0, "drop.tilt": 0.0, "drop.contact_time": 0.4, "drop.vertical_velocity": -5.0}
+    landing = Landing(load_preset(FIGURES).with_values(values), rtol=1e-9)
+    landing.set_inputs({"external.force_x": 100.0}, {"external.force_x": 900.0})
+    history = landing.run(0.3, 1e-2)
+    t, x = history.time, centre(history, "x")
+    path = (100.0 * t**2 / 2.0 + 900.0 * t**3 / 6.0) / (178.0 + 4 * 4.2)
+    assert x - x[0] - history["body.vx"][0] * t == approx(path, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("values", "rates", "acceleration"),
+    [
+        ({"ground.heave_rate": 0.2}, {}, 0.0),
+        ({"ground.heave": 0.0}, {"ground.heave": 0.2}, 0.0),
+        ({"ground.heave_rate": 0.2}, {"ground.heave_rate": -0.5}, -0.5),
+    ],
+)
+def test_the_deck_goes_on_at_its_rate_whatever_else_is_set(values, rates, acceleration):
+    """In flight the penetration is the deck's height less the footpad's."""
+    start = {"drop.contact_time": 0.4, "drop.vertical_velocity": -5.0}
+    plain, deck = (Landing(load_preset(FIGURES).with_values(start), rtol=1e-9) for _ in range(2))
+    deck.set_inputs(values, rates)
+    for k in range(1, 11):
+        for landing in (plain, deck):
+            landing.advance_to(k * 1e-2)
+        rise = deck.get("leg[1].contact.penetration") - plain.get("leg[1].contact.penetration")
+        assert rise == approx(0.2 * deck.time + 0.5 * acceleration * deck.time**2, abs=1e-12)
+        for landing in (plain, deck):
+            landing.set_inputs({"external.force_x": float(k % 2)})
+
+
+def test_a_load_that_changes_linearly_closes_the_balance(mode):
+    landing = Landing(load_preset(FIGURES), mode, rtol=1e-8)
+    landing.set_inputs(
+        {"external.force_y": 400.0}, {"external.force_y": -800.0, "external.moment": 60.0, "ground.heave_rate": 0.3, "ground.tilt": 0.03}
+    )
+    landing.advance_to(0.5)
+    assert abs(landing.get("energy.balance")) < 1e-3
+    assert landing.get("energy.work_ground") != 0.0
+
+
 def test_a_clockwise_moment_turns_the_vehicle_clockwise():
     values = {"drop.pitch_rate": 0.0, "drop.contact_time": 0.4, "drop.vertical_velocity": -5.0}
     landing = Landing(load_preset(FIGURES).with_values(values))

@@ -5,7 +5,9 @@ cdef class Solver:
     cdef public Model model
     cdef public int n
     cdef public double rtol, t, t_old, t_input, h, error_old, energy_start, steps, rejected, rhs_calls
-    cdef public double[::1] scale, relative, y, y_new, y_stage, k1, k2, k3, k4, k5, k6, k7, dense, u, u_now, w
+    cdef public double[::1] scale, relative, y, y_new, y_stage, k1, k2, k3, k4, k5, k6, k7, dense, u, u_rate, u_now, w
+    cpdef void inputs_at(self, double t) noexcept
+    cdef void move_inputs(self, double t) noexcept nogil
     cdef void slope(self, double t, double[::1] y, double[::1] dy) noexcept nogil
     cpdef void restart(self, double t) noexcept
     cpdef void refresh(self) noexcept

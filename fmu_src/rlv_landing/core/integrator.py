@@ -33,8 +33,9 @@ class Solver:
     """The state of one landing in time: the present state, and the internal step that reaches ahead of it.
 
     `y` [n] is the state at `t` (s), the end of the last internal step; `advance` moves `t` to or past a time, `interpolate` gives the
-    state at any time inside the last step. `u` [INPUTS] holds the inputs at `t_input`; heave and tilt go on from there at their
-    rates. The error of a step is measured by `scale` [n]: rtol times scale_i, or rtol times (scale_i + |y_i|) for pressures.
+    state at any time inside the last step. `u` [INPUTS] holds the inputs at `t_input`, which go on from there at `u_rate` [INPUTS];
+    heave and tilt go on at their own rates. The error of a step is measured by `scale` [n]: rtol times scale_i, or
+    rtol times (scale_i + |y_i|) for pressures.
     """
 
     def __init__(self, model, scale, relative, rtol):
@@ -56,6 +57,7 @@ class Solver:
         self.k7 = array("d", bytes(8 * n))
         self.dense = array("d", bytes(8 * 5 * n))
         self.u = array("d", bytes(8 * INPUTS))
+        self.u_rate = array("d", bytes(8 * INPUTS))
         self.u_now = array("d", bytes(8 * INPUTS))
         self.w = array("d", bytes(8 * (LOADS * model.n_groups + BODY_LOADS)))
         self.t = 0.0
@@ -68,18 +70,26 @@ class Solver:
         self.rejected = 0.0
         self.rhs_calls = 0.0
 
+    def inputs_at(self, t):
+        """Write the inputs at time `t` [s] to `u_now`."""
+        self.move_inputs(t)
+
+    def move_inputs(self, t):
+        """What `inputs_at` does, for the kernels."""
+        dt = t - self.t_input
+        for i in range(INPUTS):
+            self.u_now[i] = self.u[i] + self.u_rate[i] * dt
+        self.u_now[HEAVE] = self.u[HEAVE] + (self.u[HEAVE_RATE] + 0.5 * self.u_rate[HEAVE_RATE] * dt) * dt
+        self.u_now[TILT] = self.u[TILT] + (self.u[TILT_RATE] + 0.5 * self.u_rate[TILT_RATE] * dt) * dt
+
     def slope(self, t, y, dy):
         """Write dy/dt at time `t`."""
-        dt = t - self.t_input
-        self.u_now[HEAVE] = self.u[HEAVE] + self.u[HEAVE_RATE] * dt
-        self.u_now[TILT] = self.u[TILT] + self.u[TILT_RATE] * dt
+        self.move_inputs(t)
         right_hand_side(y, self.u_now, self.model, dy, self.w)
         self.rhs_calls += 1.0
 
     def restart(self, t):
         """Start anew at time `t` from the state in `y` and the inputs in `u`, with no step behind."""
-        for i in range(INPUTS):
-            self.u_now[i] = self.u[i]
         self.t = t
         self.t_old = t
         self.t_input = t
@@ -94,8 +104,6 @@ class Solver:
 
     def refresh(self):
         """Work out again, after the stored numbers were overwritten, what is not stored."""
-        for i in range(INPUTS):
-            self.u_now[i] = self.u[i]
         self.slope(self.t, self.y, self.k1)
 
     def stages(self, h):
@@ -192,11 +200,7 @@ class Solver:
 
     def outputs_at(self, t, y, out):
         """Write the outputs at time `t` [s] and state `y` to `out`; uses and spoils the stage arrays."""
-        dt = t - self.t_input
-        for i in range(INPUTS):
-            self.u_now[i] = self.u[i]
-        self.u_now[HEAVE] += self.u[HEAVE_RATE] * dt
-        self.u_now[TILT] += self.u[TILT_RATE] * dt
+        self.move_inputs(t)
         outputs(y, self.u_now, self.model, self.k2, self.w, self.energy_start, out)
 
 
