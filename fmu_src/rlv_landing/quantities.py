@@ -19,7 +19,7 @@ class Quantity:
 
     `unit` is SI and what the number is in; `display_unit` what people like to read. `lo <= value <= hi` must hold. `symbol` is the
     paper's, and the kernel's, name. `source` says where a default comes from: the paper, derived from it, a closure that the paper
-    leaves open, or identified from the paper's printed numbers.
+    leaves open, or identified from the paper's printed numbers. `nominal` is the order of magnitude of inputs and outputs.
     """
 
     unit: str
@@ -34,6 +34,11 @@ class Quantity:
     default: float | str = 0.0
     kind: Literal["real", "integer", "boolean", "string"] = "real"
 
+    @property
+    def nominal(self) -> float:
+        """Order of magnitude [SI unit], by the unit that people read the quantity in; 1 for plain numbers."""
+        return NOMINALS.get(self.display_unit or self.unit, 1.0)
+
 
 # display unit -> (SI unit, factor): value_SI = factor * value_display
 DISPLAY_UNITS = {
@@ -45,6 +50,9 @@ DISPLAY_UNITS = {
     "mm2": ("m2", 1e-6),
     "cm3": ("m3", 1e-6),
 }
+
+# unit that a quantity is read in -> its order of magnitude [SI unit]; 1 where none is listed
+NOMINALS = {"mm": 1e-2, "deg": 0.1, "kN": 1e3, "N.m": 1e3, "MPa": 1e6, "J": 100.0, "m/s2": 10.0, "rad/s2": 10.0}
 
 # SI unit -> exponents of its base units, for FMI's UnitDefinitions
 BASE_UNITS: dict[str, dict[str, int]] = {
@@ -97,12 +105,12 @@ BODY_QUANTITIES: tuple[Quantity, ...] = (
 )  # fmt: skip
 
 ENERGY_QUANTITIES: tuple[Quantity, ...] = (
-    Quantity("J", "kinetic energy of body and footpads", name="energy.kinetic"),
+    Quantity("J", "kinetic energy of body and footpads", 0.0, name="energy.kinetic"),
     Quantity("J", "potential energy of body and footpads above the inertial origin", name="energy.potential"),
     Quantity("J", "energy held by the dampers' liquid", name="energy.liquid"),
-    Quantity("J", "energy held by the auxiliary struts' springs", name="energy.auxiliary"),
-    Quantity("J", "energy held by the ground's normal elasticity", name="energy.contact"),
-    Quantity("J", "energy held by the dampers' end stops", name="energy.stop"),
+    Quantity("J", "energy held by the auxiliary struts' springs", 0.0, name="energy.auxiliary"),
+    Quantity("J", "energy held by the ground's normal elasticity", 0.0, name="energy.contact"),
+    Quantity("J", "energy held by the dampers' end stops", 0.0, name="energy.stop"),
     Quantity("J", "dissipated so far in the orifices", name="energy.dissipated_orifice"),
     Quantity("J", "dissipated so far by seal friction", name="energy.dissipated_seal"),
     Quantity("J", "dissipated so far by the end stops", name="energy.dissipated_stop"),
@@ -125,9 +133,9 @@ LEG_QUANTITIES: tuple[Quantity, ...] = (
     Quantity("N", "axial force, negative in compression", name="main_strut.force", display_unit="kN"),
     Quantity("m", "damper stroke, positive in compression", name="main_strut.stroke", display_unit="mm"),
     Quantity("m/s", "stroke rate, positive in compression", name="main_strut.stroke_rate"),
-    Quantity("Pa", "absolute pressure in the upper chamber (1)", name="main_strut.pressure_upper", display_unit="MPa"),
-    Quantity("Pa", "absolute pressure in the lower chamber (2)", name="main_strut.pressure_lower", display_unit="MPa"),
-    Quantity("kg", "mass of the liquid in both chambers", name="main_strut.liquid_mass"),
+    Quantity("Pa", "absolute pressure in the upper chamber (1)", 0.0, name="main_strut.pressure_upper", display_unit="MPa"),
+    Quantity("Pa", "absolute pressure in the lower chamber (2)", 0.0, name="main_strut.pressure_lower", display_unit="MPa"),
+    Quantity("kg", "mass of the liquid in both chambers", 0.0, name="main_strut.liquid_mass"),
     Quantity("N", "axial force, tension positive", name="auxiliary_strut.force", display_unit="kN"),
     Quantity("m", "stroke, positive in compression", name="auxiliary_strut.stroke", display_unit="mm"),
     Quantity("m/s", "stroke rate, positive in compression", name="auxiliary_strut.stroke_rate"),
