@@ -1,13 +1,20 @@
-"""Pictures of a landing."""
+"""Pictures of a landing, and pictures for a page."""
 
 from __future__ import annotations
 
+import io
+import re
+from html import escape
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .history import History
 from .quantities import MODES
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 COLOURS = ("#0b6e99", "#c8553d", "#5b8c3e")
 
@@ -43,6 +50,26 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
     axes[0].set_title(title, loc="left")
     axes[-1].set_xlabel("time [s]   (dotted: first contact; forces negative in compression, strokes positive)")
     figure.savefig(path, dpi=120)
+
+
+def inline_svg(figure: Figure, prefix: str, label: str, said: dict[str, str] | None = None) -> str:
+    """A figure as SVG to stand in a page: no links, ids of its own by `prefix`, text as text, and what each mark says as its tooltip."""
+    import matplotlib as mpl
+
+    out = io.StringIO()
+    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": prefix}):
+        figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+    svg = out.getvalue()
+    svg = svg[svg.index("<svg") :]
+    svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.S)
+    svg = re.sub(r'\s+xmlns(:\w+)?="[^"]*"', "", svg).replace("xlink:href", "href")
+    svg = re.sub(r'\bid="', f'id="{prefix}-', svg)
+    svg = re.sub(r'href="#', f'href="#{prefix}-', svg)
+    svg = svg.replace("url(#", f"url(#{prefix}-")
+    for name, text in (said or {}).items():
+        opening = f'<g id="{prefix}-mark-{name}">'
+        svg = svg.replace(opening, f"{opening}<title>{escape(text)}</title>", 1)
+    return svg.replace("<svg ", f'<svg role="img" aria-label="{escape(label)}" ', 1)
 
 
 def _groups(history: History) -> list[tuple[int, ...]]:

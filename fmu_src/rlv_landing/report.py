@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import io
 import math
 import os
-import re
 import tempfile
-from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from . import __version__
 from .errors import LandingError
 from .parameters import Parameters
+from .plots import inline_svg
 from .report_figures import (
     AUXILIARY,
     FORCE,
@@ -28,9 +26,6 @@ from .report_figures import (
 from .report_movement import movement_figure
 from .studies.validate import Validation
 from .tables import counts_line, near_zero_note, number, parameter_records, percent
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 TEMPLATE = Path(__file__).with_name("report.html.j2")
 
@@ -101,26 +96,6 @@ def _mode_figures(found: Validation, mode: str) -> list[dict[str, str]]:
         {"title": title, "note": note, "number": str(n), "svg": inline_svg(figure, f"fig{n}", f"{title}, {mode}", said)}
         for n, (title, note, (figure, said)) in zip(numbers, drawn)
     ]
-
-
-def inline_svg(figure: Figure, prefix: str, label: str, said: dict[str, str] | None = None) -> str:
-    """A figure as SVG to stand in a page: no links, ids of its own by `prefix`, text as text, and what each mark says as its tooltip."""
-    import matplotlib as mpl
-
-    out = io.StringIO()
-    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": prefix}):
-        figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
-    svg = out.getvalue()
-    svg = svg[svg.index("<svg") :]
-    svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.S)
-    svg = re.sub(r'\s+xmlns(:\w+)?="[^"]*"', "", svg).replace("xlink:href", "href")
-    svg = re.sub(r'\bid="', f'id="{prefix}-', svg)
-    svg = re.sub(r'href="#', f'href="#{prefix}-', svg)
-    svg = svg.replace("url(#", f"url(#{prefix}-")
-    for name, text in (said or {}).items():
-        opening = f'<g id="{prefix}-mark-{name}">'
-        svg = svg.replace(opening, f"{opening}<title>{escape(text)}</title>", 1)
-    return svg.replace("<svg ", f'<svg role="img" aria-label="{escape(label)}" ', 1)
 
 
 def _scalar_rows(found: Validation) -> list[dict[str, Any]]:
