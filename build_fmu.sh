@@ -5,7 +5,7 @@ set -eu
 cd "$(dirname "$0")"
 if [ -z "${PYTHON:-}" ]; then
     PYTHON=.venv/bin/python
-    if ! [ -x "$PYTHON" ] || ! "$PYTHON" -c 'import Cython, fmpy, pythonfmu' 2>/dev/null; then
+    if ! [ -x "$PYTHON" ] || ! "$PYTHON" -c 'import Cython, fmpy, latex2mathml, pythonfmu' 2>/dev/null; then
         make -s .venv/.packages
     fi
 fi

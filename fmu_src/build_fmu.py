@@ -1,23 +1,38 @@
-"""Builds `build/RlvLanding.fmu`: the slave, its own copy of the package with the compiled core, and pythonfmu's binary.
+"""Builds `build/RlvLanding.fmu`: the slave, its own copy of the package with the compiled core, pythonfmu's binary, description and
+documentation.
 
-Run by `build_fmu.sh`. The FMU is validated by FMPy and landed once before it takes its place.
+Run by `build_fmu.sh`. pythonfmu's FMU is unpacked, completed and packed anew, the same bytes from the same sources. The FMU is
+validated by FMPy and landed once before it takes its place.
 """
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
+import zipfile
+from datetime import datetime, timezone
 from pathlib import Path
+from xml.etree import ElementTree
 
 import fmpy
 from fmpy.validation import validate_fmu
 from pythonfmu.builder import FmuBuilder
 
+from fmu_description import describe
+from fmu_documentation import write_documentation
+
 HERE = Path(__file__).parent
+ROOT = HERE.parent
 PACKAGE = HERE / "rlv_landing"
 MODULES = ("__init__.py", "errors.py", "quantities.py", "parameters.py", "touchdown.py", "landing.py")
+# pythonfmu's command line and CSV tool, which no slave imports
+NOT_NEEDED = ("__main__.py", "csvbuilder.py", "deploy.py")
+# what a zip file can date: 1980, which stands for a source without a date, to 2107
+OLDEST, NEWEST = 315532800, 4354819199
 
 
 def version() -> str:
@@ -26,6 +41,21 @@ def version() -> str:
     if found is None:
         raise SystemExit("error: rlv_landing/__init__.py states no __version__")
     return found[1]
+
+
+def source_date() -> datetime:
+    """The date of the sources [UTC]: SOURCE_DATE_EPOCH of the environment, else that of the last git commit, else 1980-01-01."""
+    text = os.environ.get("SOURCE_DATE_EPOCH", "")
+    if not text and (ROOT / ".git").exists():
+        try:
+            text = subprocess.run(["git", "log", "-1", "--format=%ct"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+        except (OSError, subprocess.CalledProcessError):
+            text = ""
+    if text and not (re.fullmatch(r"\d+\s*", text) and int(text) <= NEWEST):
+        raise SystemExit(
+            f"error: SOURCE_DATE_EPOCH = {text!r} is not a number of seconds from 1970-01-01 to 2107; leave it out or correct it"
+        )
+    return datetime.fromtimestamp(max(int(text or OLDEST), OLDEST), timezone.utc)
 
 
 def lay_out(folder: Path) -> tuple[Path, Path]:
@@ -38,12 +68,45 @@ def lay_out(folder: Path) -> tuple[Path, Path]:
     for file in sorted((PACKAGE / "core").iterdir()):
         if file.suffix in (".py", ".so", ".pyd"):
             shutil.copy(file, package / "core" / file.name)
-    shutil.copy(HERE.parent / "LICENSE", package / "LICENSE")
     slave = folder / name.replace("rlv_landing", "landing_fmu")
     slave = slave.with_name(slave.name + ".py")
     text = (HERE / "landing_fmu.py").read_text()
     slave.write_text(re.sub(r"^from rlv_landing\b", f"from {name}", text, flags=re.M))
     return slave, package
+
+
+def unpack_pythonfmus(folder: Path) -> Path:
+    """Have pythonfmu build its FMU of slave and package; return the folder of its files, without those that are not needed."""
+    slave, package = lay_out(folder)
+    built = FmuBuilder.build_FMU(slave, dest=folder / "out" / "RlvLanding.fmu", project_files=[package])
+    files = folder / "files"
+    with zipfile.ZipFile(built) as archive:
+        archive.extractall(files)
+    for name in NOT_NEEDED:
+        (files / "resources" / "pythonfmu" / name).unlink()
+    return files
+
+
+def write_description(files: Path, date: datetime) -> ElementTree.Element:
+    """Complete pythonfmu's modelDescription.xml in `files`; return its root."""
+    path = files / "modelDescription.xml"
+    tree = ElementTree.parse(path)
+    root = tree.getroot()
+    describe(root, date.strftime("%Y-%m-%dT%H:%M:%SZ"))
+    ElementTree.indent(tree, "\t")
+    tree.write(path, encoding="UTF-8", xml_declaration=True)
+    return root
+
+
+def pack(files: Path, target: Path, date: datetime) -> None:
+    """Zip all of `files`, in the order of their names, all of `date`, so that the same files give the same bytes."""
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+        for name in sorted(p.relative_to(files).as_posix() for p in files.rglob("*") if p.is_file()):
+            entry = zipfile.ZipInfo(name, date.timetuple()[:6])
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.create_system = 3  # Unix, whose modes these are
+            entry.external_attr = (0o100755 if name.endswith((".so", ".dll")) else 0o100644) << 16
+            archive.writestr(entry, (files / name).read_bytes())
 
 
 def check(fmu: Path) -> str:
@@ -62,17 +125,19 @@ def main(destination: str) -> None:
     """Build, check, and only then put the FMU in place."""
     target = Path(destination)
     target.parent.mkdir(parents=True, exist_ok=True)
+    date = source_date()
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         folder = Path(name)
-        slave, package = lay_out(folder)
-        built = FmuBuilder.build_FMU(
-            slave, dest=folder / "out" / "RlvLanding.fmu", project_files=[package], canGetAndSetFMUstate=True, canSerializeFMUstate=True
-        )
-        found = check(built)
-        shutil.copy(built, target.with_suffix(".part"))
+        files = unpack_pythonfmus(folder)
+        root = write_description(files, date)
+        write_documentation(files, root)
+        made = folder / "RlvLanding.fmu"
+        pack(files, made, date)
+        found = check(made)
+        shutil.copy(made, target.with_suffix(".part"))
         target.with_suffix(".part").replace(target)
     print(f"{target}: {found}")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1] if len(sys.argv) > 1 else str(HERE.parent / "build" / "RlvLanding.fmu"))
+    main(sys.argv[1] if len(sys.argv) > 1 else str(ROOT / "build" / "RlvLanding.fmu"))

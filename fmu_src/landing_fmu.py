@@ -1,6 +1,7 @@
 """The FMI 2.0 co-simulation slave: registers the table's quantities as variables and delegates to `Landing`. No arithmetic.
 
-`build_fmu.py` packs this file with `pythonfmu` and its own copy of the package, whose name carries the version.
+`build_fmu.py` packs this file with `pythonfmu` and its own copy of the package, whose name carries the version; units, types and
+dependencies come into the description there (`fmu_description.py`).
 """
 
 import math
@@ -8,53 +9,15 @@ import sys
 from array import array
 from typing import Any
 from uuid import NAMESPACE_URL, uuid5
-from xml.etree.ElementTree import Element, SubElement
 
 from pythonfmu import Boolean, DefaultExperiment, Fmi2Causality, Fmi2Initial, Fmi2Slave, Fmi2Variability, Integer, Real, String
 from pythonfmu.enums import Fmi2Status
 
 from rlv_landing import Landing, LandingError, Parameters, __version__
 from rlv_landing.parameters import PARAMETER_QUANTITIES, check_value
-from rlv_landing.quantities import BASE_UNITS, DISPLAY_UNITS, INPUT_QUANTITIES, OUTPUT_QUANTITIES, Quantity
+from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES, Quantity
 
 KINDS = {"real": Real, "integer": Integer, "boolean": Boolean, "string": String}
-
-
-def variable(q: Quantity, **attributes: Any) -> Any:
-    """A pythonfmu variable of the quantity `q` whose XML carries unit, display unit and bounds as well."""
-    base = KINDS[q.kind]
-
-    class Described(base):  # type: ignore[misc,valid-type]
-        def to_xml(self) -> Element:
-            element = super().to_xml()
-            typed = element[0]
-            if q.kind == "real":
-                if self.start is not None:
-                    typed.set("start", repr(float(self.start)))
-                if q.unit:
-                    typed.set("unit", q.unit)
-                if q.display_unit:
-                    typed.set("displayUnit", q.display_unit)
-            if q.kind in ("real", "integer"):
-                text = str if q.kind == "real" else lambda bound: str(int(bound))
-                for attribute, bound in (("min", q.lo), ("max", q.hi)):
-                    if math.isfinite(bound):
-                        typed.set(attribute, text(bound))
-            return element
-
-    return Described(q.name, description=q.meaning, getter=lambda: None, **attributes)
-
-
-def unit_definitions() -> Element:
-    """FMI's unit definitions: every SI unit of the table in base units, with its display units."""
-    node = Element("UnitDefinitions")
-    for unit, exponents in BASE_UNITS.items():
-        element = SubElement(node, "Unit", name=unit)
-        SubElement(element, "BaseUnit", {base: str(e) for base, e in exponents.items()})
-        for display, (si, factor) in DISPLAY_UNITS.items():
-            if si == unit:
-                SubElement(element, "DisplayUnit", name=display, factor=repr(1.0 / factor))
-    return node
 
 
 class RlvLanding(Fmi2Slave):
@@ -62,6 +25,7 @@ class RlvLanding(Fmi2Slave):
 
     author = "The rlv-landing authors"
     license = "Apache-2.0"
+    copyright = "Copyright The rlv-landing authors"
     version = __version__
     description = "Touchdown of a vertical-landing rocket stage on four legs (Yue, Lin, Zheng, Du 2022), quasi-3D"
     default_experiment = DefaultExperiment(start_time=0.0, stop_time=1.0, step_size=1e-3, tolerance=1e-6)
@@ -88,20 +52,9 @@ class RlvLanding(Fmi2Slave):
         )
 
     def _register(self, q: Quantity, value: Any, causality: Any, variability: Any, initial: Any) -> None:
-        self.register_variable(variable(q, causality=causality, variability=variability, initial=initial), nested=False)
+        attributes = {"causality": causality, "variability": variability, "initial": initial, "getter": lambda: None}
+        self.register_variable(KINDS[q.kind](q.name, description=q.meaning, **attributes), nested=False)
         self._values.append(value)
-
-    def to_xml(self, model_options: dict[str, str] = {}) -> Element:  # noqa: B006  (pythonfmu's signature)
-        """pythonfmu's description, with units and initial unknowns added."""
-        root = super().to_xml(model_options)
-        root.insert(1, unit_definitions())
-        structure = root.find("ModelStructure")
-        outputs = structure.find("Outputs") if structure is not None else None
-        if structure is not None and outputs is not None:
-            unknowns = SubElement(structure, "InitialUnknowns")
-            for unknown in outputs:
-                SubElement(unknowns, "Unknown", index=unknown.get("index", ""))
-        return root
 
     def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
         self._start_time = start_time

@@ -94,8 +94,8 @@ def test_every_quantity_is_a_variable_with_its_unit_causality_and_start(descript
             assert v.causality == causality
             assert v.description == q.meaning
             assert v.type == {"real": "Real", "string": "String", "integer": "Integer", "boolean": "Boolean"}[q.kind]
-            assert v.unit == (q.unit or None)
-            assert q.unit == "" or q.unit in units
+            assert v.unit == ((q.unit or "1") if q.kind == "real" else None)
+            assert v.unit is None or v.unit in units
     for name, value in load_preset(FIGURES, "2-2").items():
         start = variables[name].start
         assert (start if isinstance(value, str) else float(start)) == value
