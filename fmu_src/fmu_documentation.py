@@ -85,7 +85,7 @@ def rows(quantities: Any) -> list[dict[str, str]]:
             "shown": q.display_unit,
             "type": q.kind.capitalize(),
             "start": q.default if isinstance(q.default, str) else f"{q.default:.6g}",
-            "bounds": " | ".join(q.choices) or f"{_bound(q.lo)} ... {_bound(q.hi)}",
+            "bounds": " | ".join(q.choices) or _bounds(q),
             "nominal": f"{q.nominal:g}" if q.kind == "real" else "",
             "source": q.source,
             "at_once": " ".join(sorted(inputs_of(q.name))),
@@ -94,5 +94,7 @@ def rows(quantities: Any) -> list[dict[str, str]]:
     ]
 
 
-def _bound(value: float) -> str:
-    return f"{value:g}" if math.isfinite(value) else "-∞" if value < 0.0 else "∞"
+def _bounds(q: Quantity) -> str:
+    """Both bounds, or the one that there is, or nothing."""
+    lo, hi = math.isfinite(q.lo), math.isfinite(q.hi)
+    return f"{q.lo:g} ... {q.hi:g}" if lo and hi else f"at least {q.lo:g}" if lo else f"at most {q.hi:g}" if hi else ""

@@ -109,6 +109,8 @@ def test_page_lists_every_variable_with_unit_bounds_and_default_as_the_descripti
         if v.type == "Real" and v.causality != "output":
             assert float(cells[2]) == pytest.approx(float(v.start), rel=1e-5)
             assert [float(b) for b in cells[5].split(" ... ")] == [float(v.min), float(v.max)]
+        if v.causality == "output":
+            assert cells[4] == ("0 ... 3" if name == "status.phase" else "" if v.min is None else "at least 0")
     assert {q.name for q in INPUT_QUANTITIES} <= set(shown)
 
 
