@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 FMU := build/RlvLanding.fmu
 CORE := $(wildcard fmu_src/rlv_landing/core/*.py fmu_src/rlv_landing/core/*.pxd)
-SLAVE := fmu_src/landing_fmu.py fmu_src/build_fmu.py $(wildcard fmu_src/fmu_*.py fmu_src/fmu_*.j2) CHANGELOG.md LICENSE \
+SLAVE := fmu_src/landing_fmu.py fmu_src/build_fmu.py $(wildcard fmu_src/fmu_*.py fmu_src/fmu_*.j2 fmu_src/fmu_front/*) CHANGELOG.md LICENSE \
   $(addprefix fmu_src/rlv_landing/,__init__.py errors.py quantities.py parameters.py touchdown.py landing.py plots.py)
 
 .PHONY: help run test lint bench coverage docs clean

@@ -22,6 +22,7 @@ import fmpy
 from fmpy.validation import validate_fmu
 from pythonfmu.builder import FmuBuilder
 
+from fmu_binary import replace_binaries
 from fmu_description import describe
 from fmu_documentation import write_documentation
 
@@ -129,6 +130,7 @@ def main(destination: str) -> None:
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         folder = Path(name)
         files = unpack_pythonfmus(folder)
+        replace_binaries(files)
         root = write_description(files, date)
         write_documentation(files, root)
         made = folder / "RlvLanding.fmu"

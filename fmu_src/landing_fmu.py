@@ -1,12 +1,17 @@
 """The FMI 2.0 co-simulation slave: registers the table's quantities as variables and delegates to `Landing`. No arithmetic.
 
+The C front (`fmu_front/`) calls it through pythonfmu's binary, with known value references of the right type only, in the order that FMI
+allows, and returns the worst status that is logged here during a call.
 `build_fmu.py` packs this file with `pythonfmu` and its own copy of the package, whose name carries the version; units, types and
 dependencies come into the description there (`fmu_description.py`).
 """
 
+import json
 import math
 import sys
 from array import array
+from collections.abc import Callable
+from functools import wraps
 from typing import Any
 from uuid import NAMESPACE_URL, uuid5
 
@@ -17,7 +22,33 @@ from rlv_landing import Landing, LandingError, Parameters, __version__
 from rlv_landing.parameters import PARAMETER_QUANTITIES, check_value
 from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES, Quantity
 
+# value references of the front's own: the rate of input i is set as the real RATES + i
+RATES = 2_000_000
 KINDS = {"real": Real, "integer": Integer, "boolean": Boolean, "string": String}
+
+
+def logs_faults(method: Callable[..., Any]) -> Callable[..., Any]:
+    """`method`, whose exceptions are logged as errors: the front returns the status logged, while pythonfmu makes every exception Fatal.
+
+    Returns None after an exception.
+    """
+
+    @wraps(method)
+    def wrapped(self: "RlvLanding", *args: Any) -> Any:
+        try:
+            return method(self, *args)
+        except LandingError as e:
+            self.log(str(e), Fmi2Status.error)
+        except Exception as e:
+            self.log(f"internal error in {method.__name__}: {type(e).__name__}: {e}", Fmi2Status.error)
+        return None
+
+    return wrapped
+
+
+def new_landing(values: dict[str, Any]) -> Landing:
+    """A landing with the parameters `values`, the others being the defaults."""
+    return Landing(Parameters().with_values({name: check_value(PARAMETER_QUANTITIES[name], v) for name, v in values.items()}))
 
 
 class RlvLanding(Fmi2Slave):
@@ -32,11 +63,18 @@ class RlvLanding(Fmi2Slave):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
+        # pythonfmu puts the resources on the path anew for each instance; once will do
+        while sys.path.count(self.resources) > 1:
+            sys.path.remove(self.resources)
         self._start_time = 0.0
         self._values: list[Any] = []
         self._parameters: dict[str, Any] = {}
+        # what the next step starts with; rates of a step that was refused hold until the input is set again
         self._inputs: dict[str, float] = {}
+        self._rates: dict[str, float] = {}
+        self._refused_rates: set[str] = set()
         self._landing: Landing | None = None
+        self._broken = ""
         self._outputs: list[float] = []
         for q in PARAMETER_QUANTITIES.values():
             self._register(q, q.default, Fmi2Causality.parameter, Fmi2Variability.fixed, Fmi2Initial.exact)
@@ -56,26 +94,22 @@ class RlvLanding(Fmi2Slave):
         self.register_variable(KINDS[q.kind](q.name, description=q.meaning, **attributes), nested=False)
         self._values.append(value)
 
+    @logs_faults
     def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
         self._start_time = start_time
 
+    @logs_faults
     def exit_initialization_mode(self) -> None:
-        """Checks parameters and inputs and starts the landing.
-
-        A bad one is logged as an error, and every step is then refused with the same reason: an exception would reach the importer as
-        Fatal, after which it must not even free the instance. Importers that switch logging off read the reason on standard error.
-        """
-        try:
-            self._present()
-            self._apply_inputs()
-        except LandingError as e:
-            self.log(str(e), Fmi2Status.error)
-            print(f"RlvLanding: {e}", file=sys.stderr)
+        """Checks parameters and inputs and starts the landing. A bad one is an error; others may be set then."""
+        self._present()
+        self._apply_inputs()
 
     def do_step(self, current_time: float, step_size: float) -> bool:
         """Goes on to `current_time + step_size`; refuses (Discard, with a logged reason) what cannot be done, and stays as it was."""
         try:
             landing = self._present()
+            if self._broken:
+                raise LandingError(f"{self._broken}; the landing ended there: restore a state, or reset")
             if not 0.0 < step_size < math.inf:
                 raise LandingError(f"step = {step_size:g} s must be finite and above 0 s")
             now = current_time - self._start_time
@@ -84,56 +118,79 @@ class RlvLanding(Fmi2Slave):
                     f"the importer's time is {now:g} s, the landing's is {landing.time:g} s; restore a state or reset to go back"
                 )
             self._apply_inputs()
-            landing.advance_to(max(now + step_size, landing.time))
-            self._outputs = []
+            self._advance(max(now + step_size, landing.time))
         except LandingError as e:
             self.log(str(e), Fmi2Status.discard)
             return False
+        except Exception as e:
+            self._broken = f"internal error in a step: {type(e).__name__}: {e}"
+            self.log(self._broken, Fmi2Status.error)
+            return False
         return True
+
+    def _advance(self, time: float) -> None:
+        self._outputs = []
+        try:
+            self._present().advance_to(time)
+        except LandingError as e:
+            self._broken = str(e)
+            raise
 
     def _present(self) -> Landing:
         if self._landing is None:
-            parameters = Parameters().with_values({n: check_value(PARAMETER_QUANTITIES[n], v) for n, v in self._parameters.items()})
-            self._landing = Landing(parameters)
+            self._landing = new_landing(self._parameters)
+            self._broken = ""
             self._outputs = []
         return self._landing
 
     def _apply_inputs(self) -> None:
-        if self._inputs and self._landing is not None:
-            self._landing.set_inputs(self._inputs)
-            self._inputs = {}
+        if self._inputs or self._rates:
+            try:
+                self._present().set_inputs(self._inputs, self._rates)
+            except LandingError:
+                self._refused_rates = set(self._rates)
+                raise
+            self._inputs, self._rates = {}, {}
+            self._refused_rates.clear()
             self._outputs = []
 
-    def _get(self, vrs: list[int]) -> list[Any]:
+    @logs_faults
+    def _values_of(self, vrs: list[int]) -> list[Any]:
         first = self._first_output
         if not self._outputs and any(vr >= first for vr in vrs):
-            try:
-                self._outputs = self._present().values()
-            except LandingError:
-                return [math.nan if vr >= first else self._values[vr] for vr in vrs]
+            self._outputs = self._present().values()
         return [self._outputs[vr - first] if vr >= first else self._values[vr] for vr in vrs]
 
     def get_real(self, vrs: list[int]) -> list[float]:
-        return self._get(vrs)
+        return self._values_of(vrs) or [math.nan] * len(vrs)
 
     def get_string(self, vrs: list[int]) -> list[str]:
-        return self._get(vrs)
+        return self._values_of(vrs) or [""] * len(vrs)
 
     def get_integer(self, vrs: list[int]) -> list[int]:
-        return [int(v) if v == v else -1 for v in self._get(vrs)]
+        return [int(v) for v in self._values_of(vrs) or [0] * len(vrs)]
 
     def get_boolean(self, vrs: list[int]) -> list[bool]:
-        return [v > 0 for v in self._get(vrs)]
+        return [v > 0 for v in self._values_of(vrs) or [0] * len(vrs)]
 
+    @logs_faults
     def _set(self, vrs: list[int], values: list[Any]) -> None:
         for vr, value in zip(vrs, values):
+            if vr >= RATES:
+                name = self._names[vr - RATES]
+                self._rates[name] = value
+                self._refused_rates.discard(name)
+                continue
             name = self._names[vr]
+            self._values[vr] = value
             if name in PARAMETER_QUANTITIES:
                 self._parameters[name] = value
                 self._landing = None
-            elif vr < self._first_output:
+            else:
                 self._inputs[name] = value
-            self._values[vr] = value
+                if name in self._refused_rates:
+                    del self._rates[name]
+                    self._refused_rates.discard(name)
         self._outputs = []
 
     def set_real(self, vrs: list[int], values: list[float]) -> None:
@@ -148,18 +205,39 @@ class RlvLanding(Fmi2Slave):
             "values": list(self._values),
             "parameters": dict(self._parameters),
             "inputs": dict(self._inputs),
+            "rates": dict(self._rates),
+            "refused_rates": sorted(self._refused_rates),
+            "broken": self._broken,
             "landing": None if self._landing is None else list(self._landing.state()),
         }
 
+    @logs_faults
     def _set_fmu_state(self, state: dict[str, Any]) -> None:
-        self._start_time = state["start_time"]
-        self._values = list(state["values"])
-        self._inputs = dict(state["inputs"])
-        if state["parameters"] != self._parameters or self._landing is None:
-            self._parameters = dict(state["parameters"])
-            self._landing = None
-        if state["landing"] is None:
-            self._landing = None
+        """Takes up all of `state`, or, where it is no state of this FMU, nothing of it."""
+        if "fault" in state:
+            raise LandingError(f"the state cannot be read: {state['fault']}")
+        start_time, values, broken = float(state["start_time"]), list(state["values"]), str(state["broken"])
+        parameters, inputs, rates = dict(state["parameters"]), dict(state["inputs"]), dict(state["rates"])
+        refused_rates, numbers = set(state["refused_rates"]), state["landing"]
+        landing = self._landing
+        if numbers is None:
+            landing = None
         else:
-            self._present().restore(array("d", state["landing"]))
+            if landing is None or parameters != self._parameters:
+                landing = new_landing(parameters)
+            landing.restore(array("d", numbers))
+        self._landing, self._start_time, self._values, self._broken = landing, start_time, values, broken
+        self._parameters, self._inputs, self._rates, self._refused_rates = parameters, inputs, rates, refused_rates
         self._outputs = []
+
+    @staticmethod
+    def _fmu_state_to_bytes(state: dict[str, Any]) -> bytes:
+        return json.dumps(state).encode()
+
+    @staticmethod
+    def _fmu_state_from_bytes(state: bytes) -> dict[str, Any]:
+        try:
+            found = json.loads(state)
+        except ValueError as e:
+            return {"fault": str(e)}
+        return found if isinstance(found, dict) else {"fault": "no state"}

@@ -1,0 +1,140 @@
+/* Linux's part of the front: see platform.h. */
+#define _GNU_SOURCE
+#include "platform.h"
+
+#include <dlfcn.h>
+#include <link.h>
+#include <locale.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+const char *const PYTHON_LIBRARY = "libpython3.%d.so.1.0";
+const char *const STANDARD_LIBRARIES[] = {"%s/lib/python3.%d/os.py", "%s/lib64/python3.%d/os.py", NULL};
+
+static char *locale_name;
+
+void *library_open(const char *path, bool for_all)
+{
+    return dlopen(path, RTLD_NOW | (for_all ? RTLD_GLOBAL : RTLD_LOCAL));
+}
+
+void library_close(void *library)
+{
+    dlclose(library);
+}
+
+void *library_symbol(void *library, const char *name)
+{
+    return dlsym(library, name);
+}
+
+const char *library_error(void)
+{
+    const char *text = dlerror();
+    return text ? text : "no reason given";
+}
+
+void *process_symbol(const char *name)
+{
+    return dlsym(RTLD_DEFAULT, name);
+}
+
+static int note_python(struct dl_phdr_info *info, size_t size, void *found)
+{
+    (void)size;
+    const char *file = strrchr(info->dlpi_name, '/');
+    file = file ? file + 1 : info->dlpi_name;
+    /* libpython3.so is a mere pointer to the library of one version */
+    if (strncmp(file, "libpython3.", 11) != 0 || strncmp(file, "libpython3.so", 13) == 0)
+        return 0;
+    snprintf(found, PATH_SIZE, "%s", info->dlpi_name);
+    return 1;
+}
+
+void share_loaded_python(void)
+{
+    char path[PATH_SIZE] = "";
+    if (dl_iterate_phdr(note_python, path))
+        dlopen(path, RTLD_NOW | RTLD_GLOBAL | RTLD_NOLOAD);
+}
+
+bool library_path(const void *address, char path[PATH_SIZE])
+{
+    Dl_info info;
+    if (!dladdr(address, &info) || !info.dli_fname)
+        return false;
+    char *real = realpath(info.dli_fname, NULL);
+    if (!real)
+        return false;
+    bool fits = snprintf(path, PATH_SIZE, "%s", real) < PATH_SIZE;
+    free(real);
+    return fits;
+}
+
+bool file_exists(const char *path)
+{
+    return access(path, R_OK) == 0;
+}
+
+bool first_line_of(const char *command, char line[PATH_SIZE])
+{
+    FILE *output = popen(command, "r");
+    if (!output)
+        return false;
+    bool found = fgets(line, PATH_SIZE, output) != NULL;
+    pclose(output);
+    if (found)
+        line[strcspn(line, "\r\n")] = '\0';
+    return found && line[0] != '\0';
+}
+
+bool link_folder(const char *target, char link[PATH_SIZE])
+{
+    char folder[] = "/tmp/rlv_landing_XXXXXX";
+    if (!mkdtemp(folder))
+        return false;
+    snprintf(link, PATH_SIZE, "%s/resources", folder);
+    if (symlink(target, link) == 0)
+        return true;
+    rmdir(folder);
+    return false;
+}
+
+void unlink_folder(const char *link)
+{
+    char folder[PATH_SIZE];
+    snprintf(folder, sizeof folder, "%s", link);
+    unlink(folder);
+    char *end = strrchr(folder, '/');
+    if (end) {
+        *end = '\0';
+        rmdir(folder);
+    }
+}
+
+/* The lock of standard error: the one recursive lock that all copies of this library in a process share and nobody keeps for long. */
+void lock(void)
+{
+    flockfile(stderr);
+}
+
+void unlock(void)
+{
+    funlockfile(stderr);
+}
+
+void keep_locale(void)
+{
+    const char *name = setlocale(LC_CTYPE, NULL);
+    locale_name = name ? strdup(name) : NULL;
+}
+
+void restore_locale(void)
+{
+    if (locale_name)
+        setlocale(LC_CTYPE, locale_name);
+    free(locale_name);
+    locale_name = NULL;
+}

@@ -1,0 +1,59 @@
+"""What the tests of the FMU share: its description, its unpacked files, an instance, and hosts written in C."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import fmpy
+import pytest
+from fmu_instance import Instance
+
+HOSTS = Path(__file__).parent / "host"
+HEADERS = Path(fmpy.__file__).parent / "c-code"
+
+
+@pytest.fixture(scope="session")
+def description(fmu: Path):
+    return fmpy.read_model_description(str(fmu))
+
+
+@pytest.fixture(scope="session")
+def unpacked(fmu: Path, tmp_path_factory) -> Path:
+    """The FMU's unpacked files."""
+    return Path(fmpy.extract(str(fmu), str(tmp_path_factory.mktemp("fmu"))))
+
+
+@pytest.fixture
+def make(description, unpacked: Path) -> Iterator[Callable[[], Instance]]:
+    """Makes instances, which are freed after the test."""
+    made: list[Instance] = []
+
+    def instance() -> Instance:
+        made.append(Instance(description, unpacked))
+        return made[-1]
+
+    yield instance
+    for one in made:
+        one.free()
+
+
+@pytest.fixture
+def instance(make) -> Instance:
+    return make()
+
+
+@pytest.fixture(scope="session")
+def host(tmp_path_factory) -> Callable[[str], Path]:
+    """Compiles a host of the folder `host/` by its name; returns the program."""
+    folder = tmp_path_factory.mktemp("hosts")
+
+    def compiled(name: str) -> Path:
+        program = folder / name
+        if not program.exists():
+            command = ["gcc", "-std=gnu11", "-Wall", "-Wextra", "-Werror", "-isystem", str(HEADERS), "-o", str(program)]
+            subprocess.run([*command, str(HOSTS / f"{name}.c"), "-ldl", "-lpthread"], check=True)
+        return program
+
+    return compiled

@@ -1,0 +1,118 @@
+"""The FMU in a host written in C, which has no Python: the FMU brings its own."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from python_libraries import BARE, python_libraries
+
+from rlv_landing import Landing
+from rlv_landing.quantities import OUTPUT_NAMES
+
+STEPS, EVERY = 400, 100
+MISSING = "no Python library (libpython) of 3.10 to 3.13 was found for this process"
+
+
+@pytest.fixture
+def land(host, unpacked, description):
+    """Lands the FMU in `folder` in a C host of its own process."""
+    first = {v.name: v.valueReference for v in description.modelVariables}["body.x"]
+
+    def run(folder: Path = unpacked, uri: str = "", steps: int = STEPS, **environment: str) -> subprocess.CompletedProcess[str]:
+        command = [host("land"), folder / "binaries" / "linux64" / "RlvLanding.so", uri or (folder / "resources").as_uri()]
+        numbers = [description.guid, str(steps), str(min(steps, EVERY)), str(first), "10"]
+        return subprocess.run([*command, *numbers], capture_output=True, text=True, env=BARE | environment, timeout=120)
+
+    return run
+
+
+def assert_landed_or_said_what_it_lacks(done: subprocess.CompletedProcess[str], steps: int = STEPS) -> None:
+    """The host's numbers are `Landing`'s; on a machine without any libpython, the host lives and its log names what was tried."""
+    if not python_libraries() and done.returncode == 1:
+        assert MISSING in done.stdout
+        assert all(f"libpython3.{minor}.so.1.0" in done.stdout for minor in range(10, 14))
+        assert "set RLV_LANDING_LIBPYTHON to the path of one" in done.stdout
+        return
+    assert done.returncode == 0, done.stdout + done.stderr
+    landing = Landing()
+    lines = done.stdout.splitlines()
+    assert len(lines) == steps // min(steps, EVERY)
+    for line in lines:
+        k, *values = line.split()[1:]
+        landing.advance_to((int(k) - 1) * 1e-3 + 1e-3)
+        for name, theirs, ours in zip(OUTPUT_NAMES, values, landing.values()):
+            assert float.fromhex(theirs) == pytest.approx(ours, rel=1e-9, abs=1e-9), name
+
+
+@pytest.mark.parametrize("library", python_libraries() or ["/nowhere/libpython3.13.so.1.0"])
+def test_a_c_host_lands_like_landing_with_every_python_of_the_machine(land, library):
+    done = land(RLV_LANDING_LIBPYTHON=library)
+    if library.startswith("/nowhere/"):
+        assert done.returncode == 1
+        assert f"RLV_LANDING_LIBPYTHON = {library}: no such file" in done.stdout
+    else:
+        assert_landed_or_said_what_it_lacks(done)
+
+
+def test_fifty_c_hosts_in_a_row_end_well_without_any_variable_set(land):
+    for _ in range(50):
+        assert_landed_or_said_what_it_lacks(land(steps=5), steps=5)
+
+
+@pytest.mark.parametrize("name", ["two words", "ü", "(1)", "a#b", "50%", "%41", "quote'\"", "+&;$=@,~"])
+@pytest.mark.parametrize("escaped", [True, False])
+def test_folders_may_have_any_name(land, unpacked, tmp_path, name, escaped):
+    folder = tmp_path / name
+    shutil.copytree(unpacked, folder)
+    before = set(Path("/tmp").glob("rlv_landing_*/resources"))
+    done = land(folder, (folder / "resources").as_uri() if escaped else str(folder / "resources"), steps=20)
+    assert_landed_or_said_what_it_lacks(done, steps=20)
+    assert set(Path("/tmp").glob("rlv_landing_*/resources")) <= before
+
+
+@pytest.mark.parametrize("form", ["file://{}", "file:{}", "file://localhost{}", "{}"])
+def test_the_resources_may_be_named_in_every_usual_form(land, unpacked, form):
+    assert_landed_or_said_what_it_lacks(land(uri=form.format(unpacked / "resources"), steps=5), steps=5)
+
+
+def test_wrong_resources_are_an_error_that_names_them(land):
+    done = land(uri="file:///nowhere/resources")
+    assert done.returncode == 1
+    assert "log 3 logStatusError land: fmuResourceLocation = file:///nowhere/resources is not the FMU's resources" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("library", "fault"),
+    [("/nowhere/libpython3.12.so.1.0", "no such file"), ("libm.so.6", "not Python 3.10 or newer"), ("/etc/passwd", "cannot be loaded")],
+)
+def test_a_bad_library_is_an_error_that_names_it_and_the_remedy(land, library, fault):
+    done = land(RLV_LANDING_LIBPYTHON=library)
+    assert done.returncode == 1
+    assert f"{MISSING}; RLV_LANDING_LIBPYTHON = {library}: {fault}; set RLV_LANDING_LIBPYTHON to the path of one" in done.stdout
+
+
+@pytest.mark.parametrize("environment", [{"PYTHONHOME": "/nowhere"}, {"PYTHONPATH": "/nowhere"}, {"LC_ALL": "C"}, {"LC_ALL": "C.UTF-8"}])
+def test_the_hosts_environment_does_not_reach_the_fmus_python(land, environment):
+    assert_landed_or_said_what_it_lacks(land(steps=5, **environment), steps=5)
+
+
+@pytest.fixture
+def dying_venv(tmp_path) -> Path:
+    """A venv whose site-packages end every Python that reads them: what a `.pth` that starts Python anew does to an embedded Python."""
+    venv = tmp_path / "venv"
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(venv)], check=True)
+    site_packages = next(venv.glob("lib/python3*/site-packages"))
+    (site_packages / "ends.pth").write_text("import os; os._exit(99)\n")
+    assert subprocess.run([venv / "bin" / "python3", "-c", ""]).returncode == 99
+    return venv
+
+
+def test_a_pth_that_ends_or_restarts_python_does_not_reach_the_host(land, dying_venv):
+    for venv in (dying_venv, Path(sys.prefix)):
+        path = f"{venv}/bin{os.pathsep}{BARE['PATH']}"
+        assert_landed_or_said_what_it_lacks(land(steps=5, PATH=path, VIRTUAL_ENV=str(venv)), steps=5)
