@@ -30,7 +30,7 @@ KINDS = {"real": Real, "integer": Integer, "boolean": Boolean, "string": String}
 def logs_faults(method: Callable[..., Any]) -> Callable[..., Any]:
     """`method`, whose exceptions are logged as errors: the front returns the status logged, while pythonfmu makes every exception Fatal.
 
-    Returns None after an exception.
+    Returns False after an exception.
     """
 
     @wraps(method)
@@ -41,7 +41,7 @@ def logs_faults(method: Callable[..., Any]) -> Callable[..., Any]:
             self.log(str(e), Fmi2Status.error)
         except Exception as e:
             self.log(f"internal error in {method.__name__}: {type(e).__name__}: {e}", Fmi2Status.error)
-        return None
+        return False
 
     return wrapped
 
@@ -104,12 +104,15 @@ class RlvLanding(Fmi2Slave):
         self._present()
         self._apply_inputs()
 
+    @logs_faults
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """Goes on to `current_time + step_size`; refuses (Discard, with a logged reason) what cannot be done, and stays as it was."""
+        """Goes on to `current_time + step_size`; refuses (Discard, with a logged reason) what cannot be done, and stays as it was.
+
+        Where the integrator gives up within the step, that is an error, and the landing has ended: outputs and steps are errors until a
+        state is restored, or reset.
+        """
         try:
             landing = self._present()
-            if self._broken:
-                raise LandingError(f"{self._broken}; the landing ended there: restore a state, or reset")
             if not 0.0 < step_size < math.inf:
                 raise LandingError(f"step = {step_size:g} s must be finite and above 0 s")
             now = current_time - self._start_time
@@ -118,28 +121,23 @@ class RlvLanding(Fmi2Slave):
                     f"the importer's time is {now:g} s, the landing's is {landing.time:g} s; restore a state or reset to go back"
                 )
             self._apply_inputs()
-            self._advance(max(now + step_size, landing.time))
         except LandingError as e:
-            self.log(str(e), Fmi2Status.discard)
+            self.log(str(e), Fmi2Status.error if self._broken else Fmi2Status.discard)
             return False
-        except Exception as e:
-            self._broken = f"internal error in a step: {type(e).__name__}: {e}"
+        try:
+            self._outputs = []
+            landing.advance_to(max(now + step_size, landing.time))
+        except LandingError as e:
+            self._broken = f"{e}; the landing has ended there: restore a state, or reset"
             self.log(self._broken, Fmi2Status.error)
             return False
         return True
 
-    def _advance(self, time: float) -> None:
-        self._outputs = []
-        try:
-            self._present().advance_to(time)
-        except LandingError as e:
-            self._broken = str(e)
-            raise
-
     def _present(self) -> Landing:
+        if self._broken:
+            raise LandingError(self._broken)
         if self._landing is None:
             self._landing = new_landing(self._parameters)
-            self._broken = ""
             self._outputs = []
         return self._landing
 
@@ -238,6 +236,6 @@ class RlvLanding(Fmi2Slave):
     def _fmu_state_from_bytes(state: bytes) -> dict[str, Any]:
         try:
             found = json.loads(state)
-        except ValueError as e:
+        except (ValueError, RecursionError) as e:
             return {"fault": str(e)}
         return found if isinstance(found, dict) else {"fault": "no state"}

@@ -32,7 +32,7 @@ static void discard(struct instance *c)
 static bool locate(struct instance *c, const char *uri, char folder[PATH_SIZE])
 {
     if (!folder_of_uri(uri, folder)) {
-        say(c, fmi2Error, "fmuResourceLocation = %s is not the FMU's resources: no slavemodule.txt there", uri);
+        say(c, fmi2Error, "fmuResourceLocation does not name the FMU's resources (no slavemodule.txt there): %s", uri);
         return false;
     }
     const char *path = folder;
