@@ -11,6 +11,7 @@ import math
 import sys
 from array import array
 from collections.abc import Callable
+from contextlib import suppress
 from functools import wraps
 from typing import Any
 from uuid import NAMESPACE_URL, uuid5
@@ -19,6 +20,7 @@ from pythonfmu import Boolean, DefaultExperiment, Fmi2Causality, Fmi2Initial, Fm
 from pythonfmu.enums import Fmi2Status
 
 from rlv_landing import Landing, LandingError, Parameters, __version__
+from rlv_landing.landing import DEFAULT_RTOL
 from rlv_landing.parameters import PARAMETER_QUANTITIES, check_value
 from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES, Quantity
 
@@ -46,9 +48,10 @@ def logs_faults(method: Callable[..., Any]) -> Callable[..., Any]:
     return wrapped
 
 
-def new_landing(values: dict[str, Any]) -> Landing:
+def new_landing(values: dict[str, Any], rtol: float) -> Landing:
     """A landing with the parameters `values`, the others being the defaults."""
-    return Landing(Parameters().with_values({name: check_value(PARAMETER_QUANTITIES[name], v) for name, v in values.items()}))
+    checked = {name: check_value(PARAMETER_QUANTITIES[name], v) for name, v in values.items()}
+    return Landing(Parameters().with_values(checked), rtol=rtol)
 
 
 class RlvLanding(Fmi2Slave):
@@ -59,7 +62,7 @@ class RlvLanding(Fmi2Slave):
     copyright = "Copyright The rlv-landing authors"
     version = __version__
     description = "Touchdown of a vertical-landing rocket stage on four legs (Yue, Lin, Zheng, Du 2022), quasi-3D"
-    default_experiment = DefaultExperiment(start_time=0.0, stop_time=1.0, step_size=1e-3, tolerance=1e-6)
+    default_experiment = DefaultExperiment(start_time=0.0, stop_time=1.0, step_size=1e-3, tolerance=DEFAULT_RTOL)
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -67,6 +70,7 @@ class RlvLanding(Fmi2Slave):
         while sys.path.count(self.resources) > 1:
             sys.path.remove(self.resources)
         self._start_time = 0.0
+        self._rtol = DEFAULT_RTOL
         self._values: list[Any] = []
         self._parameters: dict[str, Any] = {}
         # what the next step starts with; rates of a step that was refused hold until the input is set again
@@ -96,7 +100,10 @@ class RlvLanding(Fmi2Slave):
 
     @logs_faults
     def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
+        """Takes the start time, and the tolerance for the integrator's own."""
         self._start_time = start_time
+        self._rtol = DEFAULT_RTOL if tolerance is None else tolerance
+        self._landing = None
 
     @logs_faults
     def exit_initialization_mode(self) -> None:
@@ -137,7 +144,7 @@ class RlvLanding(Fmi2Slave):
         if self._broken:
             raise LandingError(self._broken)
         if self._landing is None:
-            self._landing = new_landing(self._parameters)
+            self._landing = new_landing(self._parameters, self._rtol)
             self._outputs = []
         return self._landing
 
@@ -155,8 +162,13 @@ class RlvLanding(Fmi2Slave):
     @logs_faults
     def _values_of(self, vrs: list[int]) -> list[Any]:
         first = self._first_output
-        if not self._outputs and any(vr >= first for vr in vrs):
-            self._outputs = self._present().values()
+        if any(vr >= first for vr in vrs):
+            landing = self._present()
+            # inputs act at once; those that are out of bounds the next step refuses
+            with suppress(LandingError):
+                self._apply_inputs()
+            if not self._outputs:
+                self._outputs = landing.values()
         return [self._outputs[vr - first] if vr >= first else self._values[vr] for vr in vrs]
 
     def get_real(self, vrs: list[int]) -> list[float]:
@@ -200,6 +212,7 @@ class RlvLanding(Fmi2Slave):
     def _get_fmu_state(self) -> dict[str, Any]:
         return {
             "start_time": self._start_time,
+            "rtol": self._rtol,
             "values": list(self._values),
             "parameters": dict(self._parameters),
             "inputs": dict(self._inputs),
@@ -214,17 +227,17 @@ class RlvLanding(Fmi2Slave):
         """Takes up all of `state`, or, where it is no state of this FMU, nothing of it."""
         if "fault" in state:
             raise LandingError(f"the state cannot be read: {state['fault']}")
-        start_time, values, broken = float(state["start_time"]), list(state["values"]), str(state["broken"])
+        start_time, rtol, values, broken = float(state["start_time"]), float(state["rtol"]), list(state["values"]), str(state["broken"])
         parameters, inputs, rates = dict(state["parameters"]), dict(state["inputs"]), dict(state["rates"])
         refused_rates, numbers = set(state["refused_rates"]), state["landing"]
         landing = self._landing
         if numbers is None:
             landing = None
         else:
-            if landing is None or parameters != self._parameters:
-                landing = new_landing(parameters)
+            if landing is None or parameters != self._parameters or rtol != self._rtol:
+                landing = new_landing(parameters, rtol)
             landing.restore(array("d", numbers))
-        self._landing, self._start_time, self._values, self._broken = landing, start_time, values, broken
+        self._landing, self._start_time, self._rtol, self._values, self._broken = landing, start_time, rtol, values, broken
         self._parameters, self._inputs, self._rates, self._refused_rates = parameters, inputs, rates, refused_rates
         self._outputs = []
 

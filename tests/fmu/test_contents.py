@@ -46,6 +46,7 @@ def test_every_file_serves_the_run_the_reader_or_the_licence(archive):
         f"rlv_landing_{tag}",
         f"landing_fmu_{tag}.py",
         "slavemodule.txt",
+        "libpython.txt",
     }
     assert {n.split("/")[0] for n in names} == {"binaries", "documentation", "model.png", "modelDescription.xml", "resources"}
 

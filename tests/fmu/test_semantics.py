@@ -339,3 +339,41 @@ def test_results_are_the_same_for_steps_from_10_us_to_100_ms_in_any_order(make):
                     time = goal
             found.append(instance.slave.getReal(vrs))
         assert np.all(np.abs(np.array(found) - expected) <= 1e-9 * np.maximum(1.0, np.abs(expected).max(axis=0)))
+
+
+# -- the importer's tolerance
+
+
+def test_the_importers_tolerance_is_the_integrators(instance):
+    instance.slave.setupExperiment(startTime=0.0, tolerance=1e-8)
+    instance.slave.enterInitializationMode()
+    instance.slave.exitInitializationMode()
+    instance.steps(0, 300)
+    landing = Landing(rtol=1e-8)
+    landing.advance_to(299e-3 + 1e-3)
+    assert [instance.get(n) for n in ("body.x", "energy.balance")] == [landing.get(n) for n in ("body.x", "energy.balance")]
+
+
+def test_a_tolerance_that_the_integrator_does_not_know_is_an_error(instance):
+    instance.slave.setupExperiment(startTime=0.0, tolerance=0.5)
+    instance.slave.enterInitializationMode()
+    assert instance.status("fmi2ExitInitializationMode") == ERROR
+    assert "rtol = 0.5 is outside [1e-12, 1e-2]" in instance.reason()
+
+
+# -- inputs at once
+
+
+def test_an_input_shows_in_the_outputs_before_the_next_step(instance):
+    instance.start()
+    instance.steps(0, 100)
+    landing = Landing()
+    landing.advance_to(99e-3 + 1e-3)
+    instance.set(REAL, 1000.0)
+    landing.set_inputs({REAL: 1000.0})
+    assert instance.get("body.ax") == landing.get("body.ax")
+    instance.set(REAL, math.nan)
+    assert instance.get("body.ax") == landing.get("body.ax")
+    assert instance.step(100e-3, 1e-3) == DISCARD
+    instance.set(REAL, 1000.0)
+    assert instance.step(100e-3, 1e-3) == OK
