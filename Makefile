@@ -4,6 +4,7 @@ MODE ?= 2-2
 VENV := .venv
 BIN := $(VENV)/bin
 FMU := build/RlvLanding.fmu
+COFMUPY := build/cofmupy/.packages
 CORE := $(wildcard fmu_src/rlv_landing/core/*.py fmu_src/rlv_landing/core/*.pxd)
 SLAVE := fmu_src/landing_fmu.py fmu_src/build_fmu.py $(wildcard fmu_src/fmu_*.py fmu_src/fmu_*.j2 fmu_src/fmu_front/*) CHANGELOG.md LICENSE \
   $(addprefix fmu_src/rlv_landing/,__init__.py errors.py quantities.py parameters.py touchdown.py landing.py plots.py)
@@ -41,7 +42,13 @@ lint: $(VENV)/.packages
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-test: $(FMU) lint
+# CoFmuPy pins old packages, so it has a folder of its own
+$(COFMUPY): tests/importers/cofmupy.txt | $(VENV)/.packages
+	rm -rf $(@D)
+	$(BIN)/python -m pip install -q --no-deps --only-binary :all: --target $(@D) -r $<
+	@touch $@
+
+test: $(FMU) $(COFMUPY) lint
 	$(BIN)/python -m pytest
 
 bench: $(FMU)

@@ -1,0 +1,64 @@
+"""The landings that every importer is asked for, and what `Landing` makes of them at the importer's own communication points."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+
+import numpy as np
+
+from rlv_landing import Landing, Parameters, load_preset
+from rlv_landing.quantities import OUTPUT_NAMES, OUTPUT_QUANTITIES
+
+
+@dataclass(frozen=True)
+class Job:
+    """A landing with these parameters; the inputs are 0 up to the end of step `inputs_after`, and constant from there."""
+
+    parameters: dict[str, float | str] = field(default_factory=dict)
+    inputs: dict[str, float] = field(default_factory=dict)
+    inputs_after: int = 50
+    step: float = 1e-3
+    steps: int = 1000
+
+    def told(self) -> dict[str, object]:
+        """What a host is told."""
+        return {**asdict(self), "outputs": {q.name: q.kind for q in OUTPUT_QUANTITIES}}
+
+    def landed(self, times: np.ndarray) -> np.ndarray:
+        """All outputs of `Landing` at `times`, a row each."""
+        landing = Landing(Parameters().with_values(self.parameters))
+        rows = []
+        for k, time in enumerate(times, start=1):
+            landing.advance_to(time)
+            rows.append(landing.values())
+            if k == self.inputs_after:
+                landing.set_inputs(self.inputs)
+        return np.array(rows)
+
+
+def drop_of(mode: str) -> dict[str, float | str]:
+    """The parameters of the drop test of `mode`, the string `drop.mode` among them."""
+    return {name: value for name, value in load_preset("yue2022-figures", mode).items() if name.startswith("drop.")}
+
+
+# heave and tilt are set in the flight: the deck has moved before the first footpad meets it
+LOADS_AND_DECK = {"external.force_x": 400.0, "external.moment": 30.0, "ground.heave": 0.005, "ground.tilt": 0.01}
+JOBS = {
+    "2-2, slippery, loads, moved deck": Job({"ground.friction": 0.4, "vehicle.mass": 200.0}, LOADS_AND_DECK),
+    "1-2-1, by a string": Job({**drop_of("1-2-1"), "ground.friction": 0.4}, LOADS_AND_DECK),
+}
+
+
+def assert_same(result: np.ndarray, job: Job, rounding: float = 0.0) -> None:
+    """`result` (time, outputs) is the job's landing within 1e-9 of each quantity's largest value, and a text writer's `rounding`."""
+    assert len(result) == job.steps
+    assert np.allclose(result[:, 0], np.arange(1, job.steps + 1) * job.step, rtol=0.0, atol=1e-9)
+    expected = job.landed(result[:, 0])
+    largest = np.abs(expected).max(axis=0)
+    # the balance is what rounding leaves of energies
+    largest[OUTPUT_NAMES.index("energy.balance")] = largest[OUTPUT_NAMES.index("energy.kinetic")]
+    difference = np.abs(result[:, 1:] - expected).max(axis=0)
+    allowed = 1e-9 * largest + rounding
+    assert difference.shape == allowed.shape
+    wrong = {name: (d, a) for name, d, a in zip(OUTPUT_NAMES, difference, allowed) if not d <= a}
+    assert not wrong, wrong
