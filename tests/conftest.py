@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,8 @@ from rlv_landing import Landing, load_preset
 from rlv_landing.history import History
 
 ROOT = Path(__file__).resolve().parent.parent
+# the example's modules, as its `run.py` finds them
+sys.path.insert(0, str(ROOT / "examples" / "ship_deck"))
 MODES = ("2-2", "1-2-1")
 
 

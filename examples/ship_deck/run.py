@@ -1,0 +1,79 @@
+"""Land on a calm and on a moving deck: FMPy and Ecos run the same system of three FMUs; compare them and draw what happens."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+import numpy as np
+import ssp
+import system
+from master import simulate
+from picture import save_picture
+from tqdm import tqdm
+
+LEGS = (1, 2, 3, 4)
+
+
+@click.command(help=__doc__)
+@click.option(
+    "--out",
+    type=click.Path(file_okay=False, path_type=Path),
+    default=Path("build/ship_deck"),
+    show_default=True,
+    help="Folder for the FMUs, the SSP files, the results as CSV, and the picture.",
+)
+@click.option("--until", type=click.FloatRange(0.8, 60.0), default=3.0, show_default=True, help="Duration [s].")
+@click.option("--step", type=click.FloatRange(1e-5, 1e-2), default=1e-3, show_default=True, help="Communication step [s].")
+@click.option("--picture", type=click.Path(dir_okay=False, path_type=Path), help="The picture's file  [default: ship_deck.png in --out]")
+def main(out: Path, until: float, step: float, picture: Path | None) -> None:
+    out.mkdir(parents=True, exist_ok=True)
+    try:
+        fmus = system.build(out)
+    except FileNotFoundError as e:
+        raise click.ClickException(str(e)) from None
+    results = {}
+    for name, parameters in (("calm", system.CALM), ("moving", system.MOVING)):
+        with tqdm(total=2.0 * until, desc=f"{name} deck", unit="s", bar_format="{l_bar}{bar}| {n:.2f} of {total:.2f} s") as bar:
+
+            def show(time: float, bar: tqdm = bar, start: float = 0.0) -> None:
+                bar.update(start + time - bar.n)
+
+            result = simulate(fmus, system.CONNECTIONS, parameters, step, until, show)
+            ssp.write(out / f"{name}.ssp", fmus, system.CONNECTIONS, parameters, until)
+            columns = [column for column in result if column != "time"]
+            again = ssp.run_in_ecos(out / f"{name}.ssp", columns, step, until, lambda time, show=show: show(time, start=until))
+        for table, importer in ((result, "fmpy"), (again, "ecos")):
+            rows = np.array(list(table.values())).T
+            np.savetxt(out / f"{name}-{importer}.csv", rows, fmt="%.12g", delimiter=",", header=",".join(table), comments="")
+        results[name] = result
+        click.echo(told(name, result, again))
+    save_picture(results, picture or out / "ship_deck.png")
+    click.echo(f"wrote {picture or out / 'ship_deck.png'}, and FMUs, SSP files and results in {out}")
+
+
+def difference(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> tuple[float, str]:
+    """The largest difference of two results as part of the quantity's largest value, and that quantity's name."""
+    parts = ((float(np.abs(one[name] - other[name]).max() / (np.abs(one[name]).max() or 1.0)), name) for name in one)
+    return max(parts)
+
+
+def told(name: str, result: dict[str, np.ndarray], again: dict[str, np.ndarray]) -> str:
+    """Two lines about a landing."""
+    touching = np.any([result[f"landing.leg[{leg}].contact.force_y"] > 0.0 for leg in LEGS], axis=0)
+    if not touching.any():
+        return f"{name} deck: no footpad has touched it by {result['time'][-1]:g} s; take a longer --until"
+    first = int(np.argmax(touching))
+    speed = result["deck.heave_rate"][first - 1] - result["landing.body.vy"][first - 1]
+    force = -min(result[f"landing.leg[{leg}].main_strut.force"].min() for leg in LEGS)
+    stroke = max(result[f"landing.leg[{leg}].main_strut.stroke"].max() for leg in LEGS)
+    apart, where = difference(result, again)
+    return (
+        f"{name} deck: touches at {result['time'][first]:.3f} s with {speed:.2f} m/s relative to the deck; "
+        f"main struts up to {force:.0f} N and {1e3 * stroke:.1f} mm\n"
+        f"  FMPy and Ecos differ by {apart:.1e} of the largest value, most in {where}"
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,38 @@
+"""The system: three FMUs, what is connected to what, and the parameters of a calm and a moving deck."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pythonfmu.builder import FmuBuilder
+
+HERE = Path(__file__).resolve().parent
+LANDING = HERE.parent.parent / "build" / "RlvLanding.fmu"
+SLAVES = {"deck": "ship_deck.py", "engine": "engine_tail_off.py"}
+
+# output of a component -> input of another; the rates too, since the ground goes on at them within a step
+CONNECTIONS = {
+    **{("deck", name): ("landing", f"ground.{name}") for name in ("heave", "heave_rate", "tilt", "tilt_rate")},
+    **{("engine", name): ("landing", f"external.{name}") for name in ("force_x", "force_y", "moment")},
+}
+
+# A landing burn: at time 0 the vehicle hangs 0.2 m above the deck with its engine holding most of its weight.
+DROP = {
+    "drop.contact_time": 0.2,
+    "drop.vertical_velocity": -2.0,
+    "drop.horizontal_velocity": 0.1,
+    "drop.tilt": -0.04,
+    "drop.pitch_rate": 0.0,
+}
+MOVING: dict[str, dict[str, float]] = {"landing": DROP, "deck": {}, "engine": {}}
+CALM = {**MOVING, "deck": {"heave_amplitude": 0.0, "tilt_amplitude": 0.0}}
+
+
+def build(folder: Path, landing: Path = LANDING) -> dict[str, Path]:
+    """The file of every component; those of deck and engine are built into `folder`. Raises FileNotFoundError if `landing` is missing."""
+    if not landing.is_file():
+        raise FileNotFoundError(f"{landing} is missing: run make build/RlvLanding.fmu")
+    fmus = {"landing": landing}
+    for component, slave in SLAVES.items():
+        fmus[component] = Path(FmuBuilder.build_FMU(HERE / "fmus" / slave, dest=folder, project_files=[HERE / "fmus" / "described.py"]))
+    return fmus
