@@ -15,7 +15,7 @@ help:
 	@echo "make test                  the whole suite"
 	@echo "make bench                 time of a landing: compiled core, pure core, FMU; and of a full 3-D model"
 	@echo "make coverage              coverage, measured on the pure core"
-	@echo "make docs                  the README's picture, made anew"
+	@echo "make docs                  the pictures of the README and of the example, made anew"
 	@echo "make clean                 remove .venv and build (logs stay)"
 
 $(VENV)/.packages: pyproject.toml
@@ -60,6 +60,7 @@ coverage: $(FMU)
 
 docs: $(FMU)
 	$(BIN)/rlv-landing simulate --mode 2-2 --plot docs/landing-2-2.png --force
+	$(BIN)/python examples/ship_deck/run.py --picture examples/ship_deck/ship_deck.png
 
 clean:
 	rm -rf $(VENV) build fmu_src/rlv_landing/core/compiled.*

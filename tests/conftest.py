@@ -1,11 +1,16 @@
-"""What all tests share: the FMU that was built, and one run of each drop test."""
+"""What all tests share: the FMU that was built, one run of each drop test, and Ecos' program."""
 
 from __future__ import annotations
 
 import os
+import shutil
+import subprocess
 import sys
+from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from rlv_landing import Landing, load_preset
@@ -34,3 +39,33 @@ def mode(request: pytest.FixtureRequest) -> str:
 def drop_test(mode: str) -> History:
     """The drop test of `mode` with the preset yue2022-figures, 1 s at 0.2 ms."""
     return Landing(load_preset("yue2022-figures"), mode).run(1.0, 2e-4)
+
+
+@pytest.fixture(scope="session")
+def ecos_environment() -> dict[str, str]:
+    """The environment, with the libtbb that Ecos needs: the wheel `tbb` puts it where the loader does not look."""
+    libraries = [str(Path(sys.prefix) / "lib"), os.environ.get("LD_LIBRARY_PATH", "")]
+    return {**os.environ, "LD_LIBRARY_PATH": os.pathsep.join(filter(None, libraries))}
+
+
+@pytest.fixture(scope="session")
+def ecos(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Ecos' program. Its wheel does not mark it executable, so this is a copy."""
+    program = tmp_path_factory.mktemp("ecos") / "ecos"
+    shutil.copy(Path(str(find_spec("ecospy").submodule_search_locations[0])) / "binaries" / "ecos", program)
+    program.chmod(0o755)
+    return program
+
+
+@pytest.fixture
+def simulated_by_ecos(ecos: Path, ecos_environment: dict[str, str], tmp_path: Path) -> Callable[..., np.ndarray]:
+    """`simulated_by_ecos(path, *options)`: the table that `ecos simulate`, a C++ program without Python, writes of an FMU or SSP file."""
+
+    def run(path: Path, *options: str) -> np.ndarray:
+        environment = {name: value for name, value in ecos_environment.items() if not name.startswith("PYTHON")}
+        command = [str(ecos), "simulate", "--path", str(path), "--stepSize", "0.001", *options]
+        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300)
+        assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+        return np.genfromtxt(tmp_path / f"{path.stem}.csv", delimiter=", ", names=True, deletechars="", replace_space=" ")
+
+    return run

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import shutil
+import sys
+import zipfile
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from pythonfmu.builder import FmuBuilder
 
 HERE = Path(__file__).resolve().parent
-LANDING = HERE.parent.parent / "build" / "RlvLanding.fmu"
+ROOT = HERE.parent.parent
+LANDING = ROOT / "build" / "RlvLanding.fmu"
 SLAVES = {"deck": "ship_deck.py", "engine": "engine_tail_off.py"}
 
 # output of a component -> input of another; the rates too, since the ground goes on at them within a step
@@ -35,4 +40,18 @@ def build(folder: Path, landing: Path = LANDING) -> dict[str, Path]:
     fmus = {"landing": landing}
     for component, slave in SLAVES.items():
         fmus[component] = Path(FmuBuilder.build_FMU(HERE / "fmus" / slave, dest=folder, project_files=[HERE / "fmus" / "described.py"]))
+        add_front(fmus[component])
     return fmus
+
+
+def add_front(fmu: Path) -> None:
+    """Give an FMU of pythonfmu the C front of RlvLanding.fmu, without which it runs in hosts that are Python processes only."""
+    sys.path.insert(0, str(ROOT / "fmu_src"))
+    from fmu_binary import replace_binaries
+
+    with TemporaryDirectory() as folder:
+        files = Path(folder) / "files"
+        with zipfile.ZipFile(fmu) as archive:
+            archive.extractall(files)
+        replace_binaries(files)
+        shutil.move(shutil.make_archive(str(Path(folder) / "fmu"), "zip", files), fmu)

@@ -49,6 +49,18 @@ def test_ecos_gives_the_python_masters_trajectory_from_the_ssp_file(ran, deck):
         assert np.abs(ours[name] - theirs[name]).max() <= 1e-9 * np.abs(ours[name]).max(), name
 
 
+def test_ecos_command_line_a_cpp_program_runs_the_same_system(ran, simulated_by_ecos):
+    """Three FMUs made with Python in a program without; it writes six decimals."""
+    out, _ = ran
+    ours = np.genfromtxt(out / "moving-fmpy.csv", delimiter=",", names=True, deletechars="")
+    theirs = simulated_by_ecos(out / "moving.ssp", "--stopTime", "1.0005", "--parameterSet", "start")
+    assert len(theirs) == len(ours)
+    for name in ours.dtype.names[1:]:
+        component, output = name.split(".", 1)
+        difference = np.abs(ours[name] - theirs[f"{component}::{output}[REAL]"]).max()
+        assert difference <= 1e-9 * np.abs(ours[name]).max() + 5.01e-7, name
+
+
 @pytest.mark.parametrize("deck", ["calm", "moving"])
 def test_ssp_file_is_valid_and_its_connections_are_those_of_the_system(ran, deck):
     """By the schema of SSP 1.0, and read by a library that did not write it."""
