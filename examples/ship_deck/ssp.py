@@ -6,6 +6,7 @@ import ctypes
 import sys
 import zipfile
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
@@ -60,9 +61,15 @@ def add_component(elements: Element, name: str, file: Path, connections: Connect
 def run_in_ecos(
     path: Path, columns: list[str], step: float = 1e-3, until: float = 3.0, progress: Callable[[float], object] | None = None
 ) -> dict[str, np.ndarray]:
-    """Ecos runs the SSP file `path`: the real outputs `columns` (`component.output`) and `time`, as `master.simulate` gives them."""
-    # Ecos needs libtbb, which the wheel `tbb` puts where the loader does not look; once loaded, it is found by its name
-    ctypes.CDLL(str(Path(sys.prefix) / "lib" / "libtbb.so.12"), mode=ctypes.RTLD_GLOBAL)
+    """Ecos runs the SSP file `path`: the real outputs `columns` (`component.output`) and `time`, as `master.simulate` gives them.
+
+    Raises FileNotFoundError where Ecos or its libtbb is not installed.
+    """
+    # the wheel `tbb` puts libtbb where the loader does not look; once loaded, it is found by its name
+    libtbb = Path(sys.prefix) / "lib" / "libtbb.so.12"
+    if not (libtbb.is_file() and find_spec("ecospy")):
+        raise FileNotFoundError("Ecos or its libtbb is missing: run .venv/bin/pip install -e '.[cosim]'")
+    ctypes.CDLL(str(libtbb), mode=ctypes.RTLD_GLOBAL)
     from ecospy import EcosSimulation
 
     simulation = EcosSimulation(ssp_path=str(path), step_size=step)

@@ -31,6 +31,7 @@ DROP = {
 }
 MOVING: dict[str, dict[str, float]] = {"landing": DROP, "deck": {}, "engine": {}}
 CALM = {**MOVING, "deck": {"heave_amplitude": 0.0, "tilt_amplitude": 0.0}}
+DECKS = {"calm": CALM, "moving": MOVING}
 
 
 def build(folder: Path, landing: Path = LANDING) -> dict[str, Path]:
