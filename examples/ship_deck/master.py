@@ -66,9 +66,9 @@ def simulate(
                 for component in components.values():
                     component.slave.doStep(time, step)
                 time += step  # summed, as Ecos does: the communication points of both are the same to the last digit
-            values = {name: component.get() for name, component in components.items()}
-            rows.append([time, *(value for name in components for value in values[name])])
-            transfer(components, connections, values)
+            transfer(components, connections, {name: component.get() for name, component in components.items()})
+            # read again, as Ecos does: inputs act on accelerations and contact forces at once
+            rows.append([time, *(value for component in components.values() for value in component.get())])
             if progress is not None:
                 progress(time)
         for component in components.values():
