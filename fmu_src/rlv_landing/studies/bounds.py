@@ -104,9 +104,9 @@ BOUNDS: dict[str, Bound] = {
     "smooth_slope": Bound(
         "decades of that error a decade of tolerance on a smooth arc",
         "",
-        0.8,
+        0.5,
         "at least",
-        "1 for an error in proportion to the tolerance",
+        "1 for an error in proportion to the tolerance; a footpad that turns from sticking to slipping on the way costs part of it",
     ),
     "contacts_error": Bound(
         "stroke error across contacts at the default rtol, of the largest stroke",

@@ -52,7 +52,7 @@ class Convergence:
 def convergence(parameters: Parameters, until: float) -> Convergence:
     """Measure both, for the landing of `parameters` in their own mode until `until` [s].
 
-    The reference runs at rtol 1e-12, or at 1e-11 or 1e-10 where round-off at a corner of the friction stops it. Raises LandingError
+    The reference runs by the other method, Dormand-Prince, at rtol 1e-12, or at 1e-11 or 1e-10 where round-off at a corner of the friction stops it. Raises LandingError
     where none of them gets through.
     """
     rtol_used, reference, whole = _reference(parameters, until)
@@ -74,10 +74,10 @@ def convergence(parameters: Parameters, until: float) -> Convergence:
 
 def _reference(parameters: Parameters, until: float) -> tuple[float, Landing, History]:
     for rtol in REFERENCE_RTOLS[:-1]:
-        landing = Landing(parameters, rtol=rtol)
+        landing = Landing(parameters, rtol=rtol, method="dormand-prince")
         with suppress(LandingError):
             return rtol, landing, landing.run(until, SAMPLE_STEP)
-    landing = Landing(parameters, rtol=REFERENCE_RTOLS[-1])
+    landing = Landing(parameters, rtol=REFERENCE_RTOLS[-1], method="dormand-prince")
     return REFERENCE_RTOLS[-1], landing, landing.run(until, SAMPLE_STEP)
 
 
