@@ -35,6 +35,14 @@ NOT_NEEDED = ("__main__.py", "csvbuilder.py", "deploy.py")
 # what a zip file can date: 1980, which stands for a source without a date, to 2107
 OLDEST, NEWEST = 315532800, 4354819199
 
+# pythonfmu runs its script anew for each instance: classes made there would pile up
+SCRIPT = """\
+from {package}.slave import RlvLanding, keep
+
+__all__ = ["RlvLanding"]
+keep(globals())  # pythonfmu drops a reference to them each time
+"""
+
 
 def version() -> str:
     """The package's version, as its `__init__.py` says."""
@@ -69,11 +77,11 @@ def lay_out(folder: Path) -> tuple[Path, Path]:
     for file in sorted((PACKAGE / "core").iterdir()):
         if file.suffix in (".py", ".so", ".pyd"):
             shutil.copy(file, package / "core" / file.name)
-    slave = folder / name.replace("rlv_landing", "landing_fmu")
-    slave = slave.with_name(slave.name + ".py")
     text = (HERE / "landing_fmu.py").read_text()
-    slave.write_text(re.sub(r"^from rlv_landing\b", f"from {name}", text, flags=re.M))
-    return slave, package
+    (package / "slave.py").write_text(re.sub(r"^from rlv_landing\b", f"from {name}", text, flags=re.M))
+    script = folder / f"{name.replace('rlv_landing', 'landing_fmu')}.py"
+    script.write_text(SCRIPT.format(package=name))
+    return script, package
 
 
 def unpack_pythonfmus(folder: Path) -> Path:

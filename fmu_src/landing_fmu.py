@@ -2,8 +2,8 @@
 
 The C front (`fmu_front/`) calls it through pythonfmu's binary, with known value references of the right type only, in the order that FMI
 allows, and returns the worst status that is logged here during a call.
-`build_fmu.py` packs this file with `pythonfmu` and its own copy of the package, whose name carries the version; units, types and
-dependencies come into the description there (`fmu_description.py`).
+`build_fmu.py` packs this file into its own copy of the package, whose name carries the version; units, types and dependencies come into
+the description there (`fmu_description.py`).
 """
 
 import json
@@ -26,6 +26,8 @@ from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES, Quantity
 
 # value references of the front's own: the rate of input i is set as the real RATES + i
 RATES = 2_000_000
+_kept: list[Any] = []
+keep = _kept.append
 KINDS = {"real": Real, "integer": Integer, "boolean": Boolean, "string": String}
 
 
@@ -66,9 +68,6 @@ class RlvLanding(Fmi2Slave):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        # pythonfmu puts the resources on the path anew for each instance; once will do
-        while sys.path.count(self.resources) > 1:
-            sys.path.remove(self.resources)
         self._start_time = 0.0
         self._rtol = DEFAULT_RTOL
         self._values: list[Any] = []
@@ -104,6 +103,12 @@ class RlvLanding(Fmi2Slave):
         self._start_time = start_time
         self._rtol = DEFAULT_RTOL if tolerance is None else tolerance
         self._landing = None
+
+    @logs_faults
+    def enter_initialization_mode(self) -> None:
+        """Takes the resources off Python's path, where pythonfmu puts them for each instance: all is imported by now."""
+        while self.resources in sys.path:
+            sys.path.remove(self.resources)
 
     @logs_faults
     def exit_initialization_mode(self) -> None:

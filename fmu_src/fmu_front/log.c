@@ -59,7 +59,8 @@ void relay(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status sta
     (void)name;
     struct instance *c = environment;
     if (status >= fmi2Fatal) { /* an exception that the slave did not catch: this instance is lost, the host is not */
-        c->interrupted |= strstr(message, "KeyboardInterrupt") != NULL;
+        /* the slave catches all but interrupts, which Python 3.10 and 3.11 leave without a value */
+        c->interrupted |= strstr(message, "KeyboardInterrupt") || strstr(message, "unknown error");
         status = fmi2Error;
         category = NULL;
     }
