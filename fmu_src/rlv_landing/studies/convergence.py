@@ -52,8 +52,8 @@ class Convergence:
 def convergence(parameters: Parameters, until: float) -> Convergence:
     """Measure both, for the landing of `parameters` in their own mode until `until` [s].
 
-    The reference runs by the other method, Dormand-Prince, at rtol 1e-12, or at 1e-11 or 1e-10 where round-off at a corner of the friction stops it. Raises LandingError
-    where none of them gets through.
+    The reference runs by the other method, Dormand-Prince, at rtol 1e-12, or at 1e-11 or 1e-10 where round-off at a corner of the
+    friction stops it. Raises LandingError where none of them gets through.
     """
     rtol_used, reference, whole = _reference(parameters, until)
     reference.reset()
