@@ -24,10 +24,10 @@ class Vehicle:
     """The body and its footpads."""
 
     mass: Annotated[float, Q("kg", "upper (elastic) mass", 1.0, 1e6, "m_u", "paper")] = 178.0
-    inertia: Annotated[float, Q("kg.m2", "rotational inertia of the upper mass about z through its CG", 0.1, 1e9, "I_u", "identified")] = 197.08869940683806
+    inertia: Annotated[float, Q("kg.m2", "rotational inertia of the upper mass about z through its CG", 0.1, 1e9, "I_u", "identified")] = 202.9365
     footpad_mass: Annotated[float, Q("kg", "lower (inelastic) mass of one leg, at its footpad", 0.01, 1e4, "m_d", "paper")] = 4.2
-    top_height: Annotated[float, Q("m", "height of the top acceleration sensor above the CG", 0.0, 100.0, "H", "identified")] = 0.8658221199326923
-    transverse_load_at: Annotated[str, Q("", "where the body feels the auxiliary struts' transverse force: footpad (consistent) or joint (the paper's assumption C; creates energy)", source="closure", choices=("footpad", "joint"))] = "footpad"
+    top_height: Annotated[float, Q("m", "height of the top acceleration sensor above the CG", 0.0, 100.0, "H", "identified")] = 0.5609749
+    transverse_load_at: Annotated[str, Q("", "where the body feels the auxiliary struts' transverse force: footpad (consistent) or joint (the paper's assumption C; creates energy)", source="paper", choices=("footpad", "joint"))] = "joint"
 
 
 @dataclass(frozen=True)
@@ -37,28 +37,28 @@ class MainStrut:
     joint_radius: Annotated[float, Q("m", "CG to body joint, radially", 0.0, 50.0, "La", "paper")] = 0.445
     joint_depth: Annotated[float, Q("m", "CG to body joint, downward", -50.0, 50.0, "Lb", "paper")] = 1.103
     length: Annotated[float, Q("m", "length, fully extended", 0.05, 100.0, "Lm0", "paper")] = 1.426
-    area_upper: Annotated[float, Q("m2", "piston area in the upper chamber (annulus)", 1e-6, 1.0, "A1", "identified", "mm2")] = 0.0014680146361852884
-    area_lower: Annotated[float, Q("m2", "piston area in the lower chamber (bore)", 1e-6, 1.0, "A2", "identified", "mm2")] = 0.0017783262203023159
-    volume_upper: Annotated[float, Q("m3", "upper chamber's volume, fully extended", 1e-7, 1.0, "V10", "identified", "cm3")] = 8.459753141533603e-05
-    volume_lower: Annotated[float, Q("m3", "lower chamber's volume, fully extended", 1e-7, 1.0, "V20", "identified", "cm3")] = 0.0003956246382439225
-    charge_pressure: Annotated[float, Q("Pa", "absolute pressure in both chambers before touchdown", 1e3, 1e8, "P0", "closure", "MPa")] = 101300.0
+    area_upper: Annotated[float, Q("m2", "piston area in the upper chamber (annulus)", 1e-6, 1.0, "A1", "identified", "mm2")] = 0.001077092
+    area_lower: Annotated[float, Q("m2", "piston area in the lower chamber (bore)", 1e-6, 1.0, "A2", "identified", "mm2")] = 0.001468027
+    volume_upper: Annotated[float, Q("m3", "upper chamber's volume, fully extended", 1e-7, 1.0, "V10", "identified", "cm3")] = 0.0001576004
+    volume_lower: Annotated[float, Q("m3", "lower chamber's volume, fully extended", 1e-7, 1.0, "V20", "identified", "cm3")] = 0.000786185
+    charge_pressure: Annotated[float, Q("Pa", "absolute pressure in both chambers before touchdown", 1e3, 1e8, "P0", "identified", "MPa")] = 147958.5
     ambient_pressure: Annotated[float, Q("Pa", "absolute pressure outside", 1e2, 1e7, "Pa", "closure", "MPa")] = 101300.0
     fluid_density: Annotated[float, Q("kg/m3", "density of the liquid with its air at ambient pressure", 100.0, 3000.0, "rho0", "closure")] = 960.0
-    air_fraction: Annotated[float, Q("", "volume fraction of entrapped air at ambient pressure", 1e-7, 0.2, "x_air", "identified")] = 7.278826884824169e-05
-    air_exponent: Annotated[float, Q("", "polytropic exponent of the air (1.01: nearly isothermal)", 1.01, 1.67, "n_air", "identified")] = 1.2726844644618691
-    bulk_modulus: Annotated[float, Q("Pa", "bulk modulus of the liquid at ambient pressure", 1e7, 1e10, "B0", "identified", "MPa")] = 973394576.7542667
-    bulk_modulus_slope: Annotated[float, Q("", "growth of the bulk modulus with pressure", 1.5, 30.0, "kB", "identified")] = 6.165849129795623
-    orifice_area_compression: Annotated[float, Q("m2", "effective orifice area Cd Ao in compression", 1e-9, 1e-2, "CdAo_c", "identified", "mm2")] = 8.437072379338963e-06
-    orifice_area_rebound: Annotated[float, Q("m2", "effective orifice area Cd Ao in rebound", 1e-9, 1e-2, "CdAo_r", "identified", "mm2")] = 1.277082993074654e-05
-    laminar_pressure: Annotated[float, Q("Pa", "pressure drop below which the orifice flow turns laminar", 1e3, 1e7, "dP_lam", "closure", "MPa")] = 200000.0
-    seal_coulomb: Annotated[float, Q("N", "Coulomb part of the seal friction", 0.0, 1e6, "Fc", "identified")] = 96.42346497601125
-    seal_pressure: Annotated[float, Q("N/Pa", "seal friction per mean gauge pressure of the chambers", 0.0, 1e-2, "kp", "closure")] = 0.0
-    seal_stribeck: Annotated[float, Q("N", "Stribeck part of the seal friction, at low speed", 0.0, 1e6, "Fs", "identified")] = 184.84081648455927
-    seal_stribeck_speed: Annotated[float, Q("m/s", "speed at which the Stribeck part fades", 1e-4, 10.0, "v_str", "identified")] = 0.2992642810493236
-    seal_smoothing_speed: Annotated[float, Q("m/s", "speed below which the seal friction is smoothed", 1e-5, 1.0, "v_sm", "closure")] = 0.02
+    air_fraction: Annotated[float, Q("", "volume fraction of entrapped air at ambient pressure", 1e-7, 0.2, "x_air", "identified")] = 7.386349e-06
+    air_exponent: Annotated[float, Q("", "polytropic exponent of the air (1.01: nearly isothermal)", 1.01, 1.67, "n_air", "identified")] = 1.285413
+    bulk_modulus: Annotated[float, Q("Pa", "bulk modulus of the liquid at ambient pressure", 1e7, 1e10, "B0", "identified", "MPa")] = 1129429000.0
+    bulk_modulus_slope: Annotated[float, Q("", "growth of the bulk modulus with pressure", 1.5, 30.0, "kB", "identified")] = 8.072677
+    orifice_area_compression: Annotated[float, Q("m2", "effective orifice area Cd Ao in compression", 1e-9, 1e-2, "CdAo_c", "identified", "mm2")] = 6.194802e-06
+    orifice_area_rebound: Annotated[float, Q("m2", "effective orifice area Cd Ao in rebound", 1e-9, 1e-2, "CdAo_r", "identified", "mm2")] = 4.704691e-06
+    laminar_pressure: Annotated[float, Q("Pa", "pressure drop below which the orifice flow turns laminar", 1e3, 1e7, "dP_lam", "identified", "MPa")] = 70811.18
+    seal_coulomb: Annotated[float, Q("N", "Coulomb part of the seal friction", 0.0, 1e6, "Fc", "identified")] = 44.58073
+    seal_pressure: Annotated[float, Q("N/Pa", "seal friction per mean gauge pressure of the chambers", 0.0, 1e-2, "kp", "identified")] = 1.612929e-06
+    seal_stribeck: Annotated[float, Q("N", "Stribeck part of the seal friction, at low speed", 0.0, 1e6, "Fs", "identified")] = 57.06124
+    seal_stribeck_speed: Annotated[float, Q("m/s", "speed at which the Stribeck part fades", 1e-4, 10.0, "v_str", "identified")] = 0.4798192
+    seal_smoothing_speed: Annotated[float, Q("m/s", "speed below which the seal friction is smoothed", 1e-5, 1.0, "v_sm", "identified")] = 0.01411063
     stroke_max: Annotated[float, Q("m", "stroke at which the damper meets its compression stop", 1e-3, 10.0, "s_max", "closure", "mm")] = 0.05
-    stop_stiffness: Annotated[float, Q("N/m", "stiffness of both end stops", 1e3, 1e11, "K_stop", "closure")] = 2e6
-    stop_damping: Annotated[float, Q("s/m", "damping of both end stops: force is K e (1 + c e')", 0.0, 100.0, "c_stop", "closure")] = 1.0
+    stop_stiffness: Annotated[float, Q("N/m", "stiffness of both end stops", 1e3, 1e11, "K_stop", "identified")] = 16896190.0
+    stop_damping: Annotated[float, Q("s/m", "damping of both end stops: force is K e (1 + c e')", 0.0, 100.0, "c_stop", "identified")] = 0.05446362
 
 
 @dataclass(frozen=True)
@@ -68,9 +68,9 @@ class AuxiliaryStrut:
     joint_radius: Annotated[float, Q("m", "CG to body joint, radially", 0.0, 50.0, "Lc", "paper")] = 0.463
     joint_depth: Annotated[float, Q("m", "CG to body joint, downward", -50.0, 50.0, "Ld", "paper")] = 1.513
     length: Annotated[float, Q("m", "length, unloaded", 0.05, 100.0, "Ls0", "paper")] = 1.145
-    stiffness: Annotated[float, Q("N/m", "axial stiffness Ka (N/m^ek)", 1e3, 1e11, "Ka", "identified")] = 300000.0
-    exponent: Annotated[float, Q("", "hardening exponent ek", 1.0, 3.0, "ek", "identified")] = 1.0
-    damping: Annotated[float, Q("N.s/m", "axial damping Ca", 0.0, 1e7, "Ca", "identified")] = 7122.2859563499505
+    stiffness: Annotated[float, Q("N/m", "axial stiffness Ka (N/m^ek)", 1e3, 1e11, "Ka", "identified")] = 4444293.0
+    exponent: Annotated[float, Q("", "hardening exponent ek", 1.0, 3.0, "ek", "identified")] = 1.062278
+    damping: Annotated[float, Q("N.s/m", "axial damping Ca", 0.0, 1e7, "Ca", "identified")] = 1859.117
 
 
 @dataclass(frozen=True)
@@ -79,15 +79,15 @@ class Ground:
 
     slope: Annotated[float, Q("rad", "slope of the ground at rest, clockwise positive (falling towards +x)", -0.7, 0.7, "alpha", "paper", "deg")] = 0.0
     gravity: Annotated[float, Q("m/s2", "gravitational acceleration", 0.0, 50.0, "g", "closure")] = 9.81
-    stiffness: Annotated[float, Q("N/m", "normal stiffness Kg (N/m^en)", 1e3, 1e13, "Kg", "identified")] = 231187471.42138943
-    exponent: Annotated[float, Q("", "exponent en of the normal stiffness", 1.0, 3.0, "en", "identified")] = 1.763501759204568
-    damping: Annotated[float, Q("N.s/m", "normal damping Cgmax at full depth", 0.0, 1e8, "Cgmax", "identified")] = 5312.148326303781
-    damping_depth: Annotated[float, Q("m", "penetration at which the normal damping is full", 1e-7, 0.1, "d_ramp", "identified", "mm")] = 2.4828653782163047e-05
-    friction: Annotated[float, Q("", "friction coefficient mu", 0.0, 3.0, "mu", "identified")] = 0.14302178565375734
-    stick_displacement: Annotated[float, Q("m", "displacement s_r0 at which a sticking footpad starts to slip", 1e-6, 0.1, "s_r0", "identified", "mm")] = 0.000673043466467629
-    stribeck_gain: Annotated[float, Q("", "excess ar of the sticking over the sliding friction", 0.0, 2.0, "ar", "identified")] = 0.04075918263440747
-    stribeck_speed: Annotated[float, Q("m/s", "slip speed b_strib at which that excess fades", 1e-4, 10.0, "b_strib", "identified")] = 0.1236900994624185
-    stick_damping: Annotated[float, Q("N.s/m", "damping Cr of a sticking footpad", 0.0, 1e6, "Cr", "identified")] = 2.289365630579422
+    stiffness: Annotated[float, Q("N/m", "normal stiffness Kg (N/m^en)", 1e3, 1e13, "Kg", "identified")] = 61010130.0
+    exponent: Annotated[float, Q("", "exponent en of the normal stiffness", 1.0, 3.0, "en", "identified")] = 1.624252
+    damping: Annotated[float, Q("N.s/m", "normal damping Cgmax at full depth", 0.0, 1e8, "Cgmax", "identified")] = 6950.935
+    damping_depth: Annotated[float, Q("m", "penetration at which the normal damping is full", 1e-7, 0.1, "d_ramp", "identified", "mm")] = 0.0001397513
+    friction: Annotated[float, Q("", "friction coefficient mu", 0.0, 3.0, "mu", "identified")] = 0.2882521
+    stick_displacement: Annotated[float, Q("m", "displacement s_r0 at which a sticking footpad starts to slip", 1e-6, 0.1, "s_r0", "identified", "mm")] = 0.0012289
+    stribeck_gain: Annotated[float, Q("", "excess ar of the sticking over the sliding friction", 0.0, 2.0, "ar", "identified")] = 0.05135416
+    stribeck_speed: Annotated[float, Q("m/s", "slip speed b_strib at which that excess fades", 1e-4, 10.0, "b_strib", "identified")] = 0.01511486
+    stick_damping: Annotated[float, Q("N.s/m", "damping Cr of a sticking footpad", 0.0, 1e6, "Cr", "identified")] = 8.077528
     direction_speed: Annotated[float, Q("m/s", "slip speed below which friction is shared evenly between x and z", 1e-5, 0.1, "v_dir", "closure")] = 0.005
     release_time: Annotated[float, Q("s", "time constant at which the friction displacement returns to 0 out of contact", 1e-5, 1.0, "tau_sr", "closure")] = 0.002
 
@@ -97,11 +97,11 @@ class Drop:
     """How the vehicle comes down: its state at the first contact, and how long it has flown freely by then."""
 
     mode: Annotated[str, Q("", "landing mode: legs that touch first - second - third", source="paper", choices=tuple(MODES))] = "2-2"
-    contact_time: Annotated[float, Q("s", "time of the first contact; the flight before it is free", 0.0, 60.0, source="identified")] = 0.08944083680693991
-    tilt: Annotated[float, Q("rad", "pitch at first contact, clockwise positive", -1.5, 1.5, source="identified", display_unit="deg")] = -0.1329872225650077
-    pitch_rate: Annotated[float, Q("rad/s", "pitch rate at first contact, clockwise positive", -10.0, 10.0, source="identified", display_unit="deg/s")] = 0.1857619401078609
-    horizontal_velocity: Annotated[float, Q("m/s", "velocity of the CG along inertial x at first contact", -50.0, 50.0, source="identified")] = 0.35406699944282244
-    vertical_velocity: Annotated[float, Q("m/s", "velocity of the CG along inertial y (up) at first contact", -50.0, 50.0, source="identified")] = -1.4000775783405817
+    contact_time: Annotated[float, Q("s", "time of the first contact; the flight before it is free", 0.0, 60.0, source="identified")] = 0.08965464
+    tilt: Annotated[float, Q("rad", "pitch at first contact, clockwise positive", -1.5, 1.5, source="identified", display_unit="deg")] = -0.1300537
+    pitch_rate: Annotated[float, Q("rad/s", "pitch rate at first contact, clockwise positive", -10.0, 10.0, source="identified", display_unit="deg/s")] = 0.3485004
+    horizontal_velocity: Annotated[float, Q("m/s", "velocity of the CG along inertial x at first contact", -50.0, 50.0, source="identified")] = 0.3416442
+    vertical_velocity: Annotated[float, Q("m/s", "velocity of the CG along inertial y (up) at first contact", -50.0, 50.0, source="identified")] = -1.379071
 
 # fmt: on
 

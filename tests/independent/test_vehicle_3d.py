@@ -100,7 +100,7 @@ def test_the_three_dimensional_model_itself_obeys_newton_and_euler() -> None:
 
     The witness is itself examined by what needs no model: the sums over its particles and its body."""
     rng = np.random.default_rng(8)
-    parameters = load_preset(FIGURES, "1-2-1").for_mode("1-2-1")
+    parameters = load_preset(FIGURES, "1-2-1").for_mode("1-2-1").with_values({"vehicle.transverse_load_at": "footpad"})
     m, M = parameters.vehicle.footpad_mass, parameters.vehicle.mass
     model = Vehicle3D(parameters, roll_yaw=(160.0, 30.0))
 

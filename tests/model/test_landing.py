@@ -102,7 +102,8 @@ def test_outputs_agree_with_each_other(drop_test: History):
     spring = gauge2 * p.area_lower - gauge1 * p.area_upper
     friction = -drop_test["leg[1].main_strut.force"] - spring
     inside = drop_test["leg[1].main_strut.stroke"] > 0.0
-    assert np.abs(friction[inside]).max() <= p.seal_coulomb + p.seal_stribeck + 1e-6
+    by_pressure = p.seal_pressure * 0.5 * (np.abs(gauge1) + np.abs(gauge2))
+    assert (np.abs(friction) - by_pressure)[inside].max() <= p.seal_coulomb + p.seal_stribeck + 1e-6
     active = drop_test["leg[1].contact.active"] == 1.0
     assert np.array_equal(active, drop_test["leg[1].contact.penetration"] > 0.0)
     assert np.all(drop_test["leg[1].contact.force_y"][~active] == 0.0)
@@ -177,13 +178,13 @@ def all_comparisons(every: float, rtol: float = 1e-6):
     return [c for mode in ("2-2", "1-2-1") for c in compare(Landing(load_preset(FIGURES), mode, rtol).run(1.0, every), mode)]
 
 
-def test_preset_reproduces_at_least_37_42_46_of_the_48_printed_scalars():
+def test_preset_reproduces_at_least_38_42_48_of_the_48_printed_scalars():
     """Within 5, 10, 20 % of the paper's simulation: what the identification that the preset stems from claims."""
     found = counts(all_comparisons(2e-4))
     assert found["of"] == 48
-    assert found["within_5"] >= 37
+    assert found["within_5"] >= 38
     assert found["within_10"] >= 42
-    assert found["within_20"] >= 46
+    assert found["within_20"] >= 48
 
 
 def test_every_printed_scalar_has_a_meaning_and_reads_finite():

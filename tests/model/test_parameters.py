@@ -50,8 +50,9 @@ def test_presets_load_for_both_modes_with_a_source_for_every_value(name, mode):
 
 
 def test_modes_of_a_preset_have_touchdown_states_of_their_own():
-    assert load_preset("yue2022-figures", "1-2-1").drop.contact_time == 0.08883591904140851
-    assert load_preset("yue2022-figures", "2-2").drop.contact_time == 0.08944083680693991
+    ours, other = (load_preset("yue2022-figures", mode).drop for mode in ("2-2", "1-2-1"))
+    assert ours == Parameters().drop
+    assert all(getattr(other, name) != getattr(ours, name) for name in ("contact_time", "tilt", "pitch_rate"))
     assert load_preset("yue2022-figures").for_mode("1-2-1").for_mode("2-2") == load_preset("yue2022-figures", "2-2")
 
 
@@ -110,7 +111,7 @@ def test_bounds_are_named_with_value_and_unit(q):
         ({"mass": 1.0}, "did you mean"),
         ({"drop.mode": "2-1-1"}, "not one of 2-2, 1-2-1"),
         ({"vehicle.transverse_load_at": "hip"}, "not one of footpad, joint"),
-        ({"main_strut.stroke_max": 0.3}, "sweeps"),
+        ({"main_strut.stroke_max": 0.9}, "sweeps"),
         ({"main_strut.area_upper": 0.01}, "is above main_strut.area_lower"),
         ({"main_strut.length": 5.0}, "do not meet at a footpad"),
     ],
