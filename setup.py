@@ -1,11 +1,17 @@
-"""Compiles the core where Cython and a C compiler are there; without them the package works, slowly, from the same files."""
+"""Compiles the core where Cython and a C compiler are there; without them the package works, slowly, from the same files.
+
+From Python 3.11 on the binary is of the limited API: one for all versions from 3.11 on, in the FMU as well. Python 3.10 has no buffers
+in its limited API: what it compiles serves 3.10 alone.
+"""
 
 import sys
+import sysconfig
 from pathlib import Path
 
 from setuptools import Extension, setup
 
 ROOT = Path(__file__).parent
+LIMITED = sys.version_info >= (3, 11) and not sysconfig.get_config_var("Py_GIL_DISABLED")
 sys.path.insert(0, str(ROOT / "fmu_src"))
 
 
@@ -15,11 +21,23 @@ def extensions() -> list[Extension]:
         from Cython.Build import cythonize
     except ImportError:
         return []
-    from core_source import COMPILE_ARGS, DIRECTIVES, MODULE, write_source
+    from core_source import COMPILE_ARGS, CORE, DIRECTIVES, LIMITED_API, MODULE, write_source
 
+    if LIMITED:
+        # it would be found before the binary for all versions
+        (CORE / f"{MODULE}{sysconfig.get_config_var('EXT_SUFFIX')}").unlink(missing_ok=True)
     source = write_source(Path("build") / "core")
     translated = cythonize([Extension(f"{source.parent.name}.{MODULE}", [str(source)])], compiler_directives=DIRECTIVES, quiet=True)
-    return [Extension(f"rlv_landing.core.{MODULE}", translated[0].sources, extra_compile_args=COMPILE_ARGS, optional=True)]
+    return [
+        Extension(
+            f"rlv_landing.core.{MODULE}",
+            translated[0].sources,
+            extra_compile_args=COMPILE_ARGS,
+            define_macros=[("Py_LIMITED_API", LIMITED_API)] if LIMITED else [],
+            py_limited_api=LIMITED,
+            optional=True,
+        )
+    ]
 
 
-setup(ext_modules=extensions())
+setup(ext_modules=extensions(), options={"bdist_wheel": {"py_limited_api": "cp311"}} if LIMITED else {})

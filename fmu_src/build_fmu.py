@@ -22,6 +22,7 @@ import fmpy
 from fmpy.validation import validate_fmu
 from pythonfmu.builder import FmuBuilder
 
+from core_source import package_name
 from fmu_binary import replace_binaries
 from fmu_description import describe
 from fmu_documentation import write_documentation
@@ -75,7 +76,8 @@ def lay_out(folder: Path) -> tuple[Path, Path]:
     for module in MODULES:
         shutil.copy(PACKAGE / module, package / module)
     for file in sorted((PACKAGE / "core").iterdir()):
-        if file.suffix in (".py", ".so", ".pyd"):
+        # compiled cores of all Python versions that are there, but none of older kernels
+        if file.suffix == ".py" or (file.suffix in (".so", ".pyd") and package_name().encode() in file.read_bytes()):
             shutil.copy(file, package / "core" / file.name)
     text = (HERE / "landing_fmu.py").read_text()
     (package / "slave.py").write_text(re.sub(r"^from rlv_landing\b", f"from {name}", text, flags=re.M))

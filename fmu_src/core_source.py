@@ -23,6 +23,8 @@ DIRECTIVES = {
     "infer_types": True,
     "embedsignature": False,
 }
+# the first version whose limited API has buffers
+LIMITED_API = "0x030B0000"
 COMPILE_ARGS = ["-O3", "-ffp-contract=off", "-fno-math-errno", "-g0"]
 
 
@@ -60,6 +62,11 @@ def digest(core: Path = CORE) -> str:
     return hashlib.sha256(b"".join(texts)).hexdigest()
 
 
+def package_name(core: Path = CORE) -> str:
+    """The name of the package that the core is compiled in; the binary carries it."""
+    return f"rlv_landing_core_{digest(core)[:12]}"
+
+
 def write_source(folder: Path, core: Path = CORE) -> Path:
     """Write `compiled.py` and `compiled.pxd` below `folder`, only where they change; return the former.
 
@@ -71,7 +78,7 @@ def write_source(folder: Path, core: Path = CORE) -> Path:
     pxd = "from libc.math cimport cos, exp, expm1, fabs, log, pow, sin, sqrt, tanh\n\ncdef enum:\n" + enum
     pxd += "".join(p.with_suffix(".pxd").read_text() for p in sources if p.with_suffix(".pxd").exists())
     python = "".join(f"# {p.name}\n{without_imports(p.read_text())}" for p in sources) + f'SOURCE_DIGEST = "{digest(core)}"\n'
-    package = folder / f"rlv_landing_core_{digest(core)[:12]}"
+    package = folder / package_name(core)
     package.mkdir(parents=True, exist_ok=True)
     (package / "__init__.py").touch()
     for name, text in ((f"{MODULE}.pxd", pxd), (f"{MODULE}.py", python)):

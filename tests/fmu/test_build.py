@@ -1,12 +1,17 @@
 """`build_fmu.sh` as a user calls it."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import fmpy
+import pytest
 
 ROOT = Path(__file__).resolve().parent.parent.parent
+
+OF_MODEL_EXCHANGE = re.compile("Event|Continuous|Integrator|NewDiscrete|SetTime|GetDerivatives")
 
 
 def test_build_script_writes_where_it_is_told_and_says_what_it_checked(tmp_path):
@@ -23,3 +28,29 @@ def test_build_script_writes_where_it_is_told_and_says_what_it_checked(tmp_path)
     assert "valid; trial landing" in done.stdout
     assert [p.name for p in target.parent.iterdir()] == ["mine.fmu"]
     assert fmpy.read_model_description(str(target)).modelName == "RlvLanding"
+
+
+def test_the_front_compiles_without_a_warning_and_exports_fmi_functions_only(unpacked, tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(ROOT / "fmu_src")
+    import fmu_binary
+
+    root = ElementTree.parse(unpacked / "modelDescription.xml").getroot()
+    (tmp_path / "variables.h").write_text(fmu_binary.variables_header(root, "stock.so"))
+    monkeypatch.setattr(fmu_binary, "FLAGS", [*fmu_binary.FLAGS, "-Werror", "-Wpedantic"])
+    fmu_binary.compile_front(tmp_path / "front.so", tmp_path)
+    listed = subprocess.run(["nm", "-D", "--defined-only", tmp_path / "front.so"], capture_output=True, text=True, check=True).stdout
+    names = {line.split()[-1] for line in listed.splitlines()}
+    declared = re.findall(r"#define (fmi2\w+) +fmi2FullName", (fmu_binary.HEADERS / "fmi2Functions.h").read_text())
+    assert names == {name for name in declared if not OF_MODEL_EXCHANGE.search(name)}
+
+
+def test_an_unknown_binary_of_pythonfmus_stops_the_build(monkeypatch, unpacked):
+    """A binary with other finalisers than the known two is for a person to look at."""
+    monkeypatch.syspath_prepend(ROOT / "fmu_src")
+    import fmu_binary
+
+    stock = next((unpacked / "binaries" / "linux64").glob("pythonfmu-export-*.so")).read_bytes()
+    with pytest.raises(SystemExit, match="has 1 finalisers, 2 are known"):
+        fmu_binary.without_last_finaliser(stock)
+    with pytest.raises(SystemExit, match="no 64-bit little-endian ELF file"):
+        fmu_binary.without_last_finaliser(b"MZ" + stock)

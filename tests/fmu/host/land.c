@@ -1,5 +1,19 @@
-/* land BINARY RESOURCES GUID STEPS EVERY FIRST COUNT: lands in steps of 1 ms and prints the reals FIRST .. FIRST + COUNT - 1 every EVERY steps. */
+/* land BINARY RESOURCES GUID STEPS EVERY FIRST COUNT: lands in steps of 1 ms and prints the reals FIRST .. FIRST + COUNT - 1 every
+ * EVERY steps, and at last which core it has used. */
 #include "host.h"
+
+/* Whether the process has the compiled core in it. */
+static int has_compiled_core(void)
+{
+    char line[8192];
+    int found = 0;
+    FILE *maps = fopen("/proc/self/maps", "r");
+    while (maps && fgets(line, sizeof line, maps))
+        found |= strstr(line, "/core/compiled.") != NULL;
+    if (maps)
+        fclose(maps);
+    return found;
+}
 
 int main(int argc, char **argv)
 {
@@ -25,6 +39,7 @@ int main(int argc, char **argv)
             printf(" %a", values[i]);
         printf("\n");
     }
+    printf("%s\n", has_compiled_core() ? "compiled core" : "pure core");
     must(fmi2.Terminate(c), "terminate");
     fmi2.FreeInstance(c);
     free(vr);
