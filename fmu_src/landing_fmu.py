@@ -136,6 +136,7 @@ class RlvLanding(Fmi2Slave):
         except LandingError as e:
             self.log(str(e), Fmi2Status.error if self._broken else Fmi2Status.discard)
             return False
+        self._inputs, self._rates = {}, {}
         try:
             self._outputs = []
             landing.advance_to(max(now + step_size, landing.time))
@@ -154,13 +155,13 @@ class RlvLanding(Fmi2Slave):
         return self._landing
 
     def _apply_inputs(self) -> None:
+        """Gives the landing what was set since the last step, however often before the next."""
         if self._inputs or self._rates:
             try:
                 self._present().set_inputs(self._inputs, self._rates)
             except LandingError:
                 self._refused_rates = set(self._rates)
                 raise
-            self._inputs, self._rates = {}, {}
             self._refused_rates.clear()
             self._outputs = []
 

@@ -24,15 +24,21 @@ def assert_equal_at_every_step(instance, landing, steps, first=0):
         assert [instance.get(n) for n in SEEN] == [landing.get(n) for n in SEEN]
 
 
+@pytest.mark.parametrize("looked_at", [False, True])
 @pytest.mark.parametrize("rate_first", [False, True])
-def test_a_rate_acts_as_on_landing_in_whatever_order_it_is_given(instance, rate_first):
+def test_a_rate_acts_as_on_landing_in_whatever_order_it_is_given(instance, rate_first, looked_at):
+    """Whether or not outputs, in which inputs show at once, are got in between."""
     landing = Landing()
     instance.start()
     for k in range(40):
         value, rate = 300.0 * math.sin(k), 4e4 * math.cos(k)
         if rate_first:
             assert instance.set_rate(FORCE, rate) == OK
+            if looked_at:
+                instance.get("body.ax")
         instance.set(FORCE, value)
+        if looked_at:
+            instance.get("body.ax")
         if not rate_first:
             assert instance.set_rate(FORCE, rate) == OK
         instance.set(MOMENT, 10.0 * k)

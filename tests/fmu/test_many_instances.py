@@ -47,7 +47,7 @@ def test_instances_in_eight_threads_of_a_c_host_land_like_landing(run, descripti
 
 @pytest.mark.parametrize("with_state", [0, 1])
 def test_an_instance_leaves_less_than_8_kilobytes_behind(run, with_state):
-    """They are pythonfmu's: 1 to 4 kB, measured over 1000 instances with Python 3.10 to 3.13."""
+    """They are pythonfmu's: about 1 kB, measured over 1000 instances with Python 3.10 to 3.13."""
     printed = run("many", 400, with_state)
     assert int(printed) < 8192 if python_libraries() else "no Python library (libpython)" in printed
 
