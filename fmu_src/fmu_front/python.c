@@ -125,8 +125,9 @@ static bool find_python(const char *resources, struct message *reason)
         if (try_library(path, "the loader's", reason))
             return true;
     }
-    if (first_line_of(ASK_PYTHON, path) && try_library(path, "that of python3 on PATH:", reason))
-        return true;
+    if (first_line_of(ASK_PYTHON, path))
+        return try_library(path, "that of python3 on PATH:", reason);
+    add(reason, "; python3 on PATH: none that names its library");
     return false;
 }
 

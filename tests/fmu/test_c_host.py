@@ -121,3 +121,23 @@ def test_a_pth_that_ends_or_restarts_python_does_not_reach_the_host(land, dying_
     for venv in (dying_venv, Path(sys.prefix)):
         path = f"{venv}/bin{os.pathsep}{BARE['PATH']}"
         assert_landed_or_said_what_it_lacks(land(steps=5, PATH=path, VIRTUAL_ENV=str(venv)), steps=5)
+
+
+def test_the_library_of_python3_on_path_is_the_last_resort(land, unpacked, tmp_path):
+    """Where the FMU was not built, and the loader knows no usable libpython: pyenv's and conda's are not where it looks."""
+    folder, empty, shims = tmp_path / "fmu", tmp_path / "empty", tmp_path / "shims"
+    shutil.copytree(unpacked, folder)
+    (folder / "resources" / "libpython.txt").unlink(missing_ok=True)
+    empty.mkdir()
+    for minor in range(10, 14):
+        (empty / f"libpython3.{minor}.so.1.0").touch()
+    shims.mkdir()
+    (shims / "python3").write_text(f'#!/bin/sh\nunset LD_LIBRARY_PATH\nexec "{sys.executable}" "$@"\n')
+    (shims / "python3").chmod(0o755)
+    done = land(folder, steps=5, LD_LIBRARY_PATH=str(empty), PATH=f"{shims}{os.pathsep}{BARE['PATH']}")
+    assert_landed_or_said_what_it_lacks(done, steps=5)
+    without = land(folder, steps=5, LD_LIBRARY_PATH=str(empty), PATH="/nowhere")
+    assert without.returncode == 1
+    assert "RLV_LANDING_LIBPYTHON: not set; the loader's libpython3." in without.stdout
+    assert all(f"; the loader's libpython3.{minor}.so.1.0: cannot be loaded" in without.stdout for minor in range(10, 14))
+    assert "; python3 on PATH: none that names its library; set RLV_LANDING_LIBPYTHON" in without.stdout
