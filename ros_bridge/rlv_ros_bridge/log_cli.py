@@ -1,0 +1,61 @@
+"""The commands `rlv-landing log`: what recorded logs hold. They need no ROS 2."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from rlv_landing.errors import LandingError
+
+WIDE: dict[str, Any] = {"max_content_width": 120}
+EXIT_CUT = 3
+LOG = click.argument("log", type=click.Path(path_type=Path))
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+def log() -> None:
+    """Look into recorded logs. Needs no ROS 2.
+
+    LOG is a log's folder or its .mcap file (.mcap.part: not finished by its writer).
+    """
+    try:
+        import mcap  # noqa: F401
+        import mcap_ros2  # noqa: F401
+        import rosbags  # noqa: F401
+    except ImportError as e:
+        raise LandingError(f'reading logs needs mcap and rosbags ({e}); install them with pip install "rlv-landing[mcap]"') from None
+
+
+@log.command(context_settings=WIDE)
+@LOG
+@click.option("--json", "as_json", is_flag=True, help="As JSON: times in s, forces in N, strokes in m, accelerations in m/s2.")
+def info(log: Path, as_json: bool) -> None:
+    """What a log holds: topics, parameters, outcome and peaks of the landing. LOG may be cut, or damaged.
+
+    \b
+    Examples:
+      rlv-landing log info logs/20260131T120000Z-2-2
+      rlv-landing log info run1_0.mcap --json
+
+    Exit codes: 0 complete, 2 no such log or not MCAP, 3 read but cut or damaged.
+    """
+    from .bag_reader import open_log
+    from .log_info import log_info
+
+    found = log_info(open_log(log))
+    click.echo(json.dumps(found.as_dict(), indent=2) if as_json else found.text())
+    if not found.complete:
+        tell_cut(log, found.damage)
+
+
+def tell_cut(log: Path, damage: list[str] | None = None) -> None:
+    """Warns that not all of the log is there, and ends the command."""
+    if damage:
+        click.echo(f"warning: {log} is damaged ({damage[0]}); what is whole was read", err=True)
+    else:
+        click.echo(f"warning: {log} is cut: its writer did not finish it; all up to there was read", err=True)
+    sys.exit(EXIT_CUT)
