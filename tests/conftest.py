@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,12 @@ from rlv_landing.history import History
 
 ROOT = Path(__file__).resolve().parent.parent
 MODES = ("2-2", "1-2-1")
+
+
+@pytest.fixture(scope="session")
+def many() -> Callable[[int], int]:
+    """How many cases a random test tries: those of `make test`, times RLV_TORTURE in the environment."""
+    return lambda count: round(count * float(os.environ.get("RLV_TORTURE", "1")))
 
 
 @pytest.fixture(scope="session")

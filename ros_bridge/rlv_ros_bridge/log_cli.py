@@ -1,4 +1,4 @@
-"""The commands `rlv-landing log`: what recorded logs hold. They need no ROS 2."""
+"""The commands `rlv-landing log`: what recorded logs hold, rescue. They need no ROS 2."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LOG = click.argument("log", type=click.Path(path_type=Path))
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 def log() -> None:
-    """Look into recorded logs. Needs no ROS 2.
+    """Look into recorded logs, rescue what is cut. Needs no ROS 2.
 
     LOG is a log's folder or its .mcap file (.mcap.part: not finished by its writer).
     """
@@ -52,10 +52,35 @@ def info(log: Path, as_json: bool) -> None:
         tell_cut(log, found.damage)
 
 
+@log.command(context_settings=WIDE)
+@LOG
+@click.option("--output", type=click.Path(path_type=Path), metavar="FOLDER", help="Default: beside the log, its name with -recovered.")
+@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+def recover(log: Path, output: Path | None, as_json: bool) -> None:
+    """Restore a log whose writer was killed, or that was cut or damaged: all that is whole, into a new log that every reader opens.
+
+    \b
+    Examples:
+      rlv-landing log recover logs/20260131T120000Z-2-2
+      rlv-landing log recover run1_0.mcap.part --output rescued
+
+    Exit codes: 0 recovered, or nothing to recover; 2 nothing whole in it, or the new log cannot be written.
+    """
+    from .recover import recover as restore
+
+    found = restore(log, output)
+    if as_json:
+        click.echo(json.dumps(found.as_dict(), indent=2))
+    elif not found.folder:
+        click.echo(f"{log} is complete; nothing to recover")
+    else:
+        click.echo(found.text())
+
+
 def tell_cut(log: Path, damage: list[str] | None = None) -> None:
     """Warns that not all of the log is there, and ends the command."""
     if damage:
-        click.echo(f"warning: {log} is damaged ({damage[0]}); what is whole was read", err=True)
+        click.echo(f"warning: {log} is damaged ({damage[0]}); what is whole was read, `rlv-landing log recover` saves it", err=True)
     else:
         click.echo(f"warning: {log} is cut: its writer did not finish it; all up to there was read", err=True)
     sys.exit(EXIT_CUT)
