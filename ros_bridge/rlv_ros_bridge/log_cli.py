@@ -1,4 +1,4 @@
-"""The commands `rlv-landing log`: what recorded logs hold, whether they can be repeated, rescue. They need no ROS 2."""
+"""The commands `rlv-landing log`: what recorded logs hold, whether they can be repeated, rescue, export. They need no ROS 2."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from rlv_landing.commands.options import check_writable
 from rlv_landing.errors import LandingError
 
 WIDE: dict[str, Any] = {"max_content_width": 120}
@@ -19,7 +20,7 @@ LOG = click.argument("log", type=click.Path(path_type=Path))
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
 def log() -> None:
-    """Look into recorded logs, repeat their runs, rescue what is cut. Needs no ROS 2.
+    """Look into recorded logs, repeat their runs, rescue what is cut, export. Needs no ROS 2.
 
     LOG is a log's folder or its .mcap file (.mcap.part: not finished by its writer).
     """
@@ -104,6 +105,63 @@ def recover(log: Path, output: Path | None, as_json: bool) -> None:
         click.echo(f"{log} is complete; nothing to recover")
     else:
         click.echo(found.text())
+
+
+@log.command(context_settings=WIDE)
+@LOG
+@click.argument("output", type=click.Path(path_type=Path), required=False)
+@click.option("--topics", multiple=True, metavar="NAME[,NAME...]", help="Columns of these topics only, full or relative names. Repeatable.")
+@click.option("--start", type=float, metavar="SECONDS", help="From this simulation time on.")
+@click.option("--end", type=float, metavar="SECONDS", help="Up to this simulation time.")
+@click.option("--every", type=float, metavar="SECONDS", help="Only the first instant in each of these. Default: all.")
+@click.option("--plot", type=click.Path(path_type=Path), metavar="FILE.png", help="Draw forces, strokes and acceleration.")
+@click.option("--force", is_flag=True, help="Overwrite files that exist.")
+def export(
+    log: Path, output: Path | None, topics: tuple[str, ...], start: float | None, end: float | None, every: float | None,
+    plot: Path | None, force: bool,
+) -> None:  # fmt: skip
+    """Write a landing to OUTPUT, .csv or .parquet: a row an instant, columns named as the FMU's variables, SI, the model's axes.
+
+    LOG may also be a rosbag2 recording of the same topics, MCAP or sqlite3; other topics in it are left aside.
+
+    \b
+    Examples:
+      rlv-landing log export logs/20260131T120000Z-2-2 landing.parquet
+      rlv-landing log export logs/20260131T120000Z-2-2 struts.csv --topics struts --every 0.01 --end 0.5
+      rlv-landing log export recording --plot landing.png
+
+    Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged.
+    """
+    from .bag_reader import open_log
+    from .export import ENDINGS, part, write_history
+    from .log_history import read_history
+
+    if output is None and plot is None:
+        raise LandingError("nothing to write; name a file OUTPUT.csv or OUTPUT.parquet, or --plot FILE.png")
+    if output is not None and output.suffix not in ENDINGS:
+        raise LandingError(f"{output} must end in {' or '.join(ENDINGS)}")
+    check_writable(output, output.suffix if output is not None else "", force)
+    check_writable(plot, ".png", force)
+    if plot is not None and topics:
+        raise LandingError("--plot needs every topic; leave --topics out")
+    reader = open_log(log)
+    history, notes = read_history(reader, [name.strip() for given in topics for name in given.split(",") if name.strip()])
+    history = part(history, start, end, every)
+    if output is not None:
+        write_history(history, output)
+        click.echo(f"{output}: {len(history)} instants from {history.time[0]:g} s to {history.time[-1]:g} s, {len(history.names)} columns")
+    if plot is not None:
+        from rlv_landing.plots import save_overview
+
+        try:
+            save_overview(history, plot, log.name)
+        except OSError as e:
+            raise LandingError(f"{plot} cannot be written: {e.strerror or e}") from None
+        click.echo(f"picture: {plot}")
+    for note in notes:
+        click.echo(note, err=True)
+    if reader.cut:
+        tell_cut(log, reader.damage)
 
 
 def tell_cut(log: Path, damage: list[str] | None = None) -> None:
