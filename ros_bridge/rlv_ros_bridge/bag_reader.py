@@ -16,10 +16,10 @@ METADATA_FILE = "metadata.yaml"
 def open_log(path: str | Path) -> LogReader:
     """The log at `path`: ours, any rosbag2 recording, or one MCAP file. Raises LandingError where there is none."""
     folder = Path(path)
-    plain = not folder.is_dir() or any(f.name.endswith((FINISHED, UNFINISHED)) for f in folder.iterdir())
     if folder.is_file() and folder.suffix == ".db3":
         raise LandingError(f"{folder} is only the messages of a recording; name its folder, where {METADATA_FILE} is")
-    return LogReader(folder) if plain or not (folder / METADATA_FILE).is_file() else BagReader(folder)
+    ours = any(any(folder.glob(f"*{ending}")) for ending in (FINISHED, UNFINISHED))
+    return LogReader(folder) if ours or not (folder / METADATA_FILE).is_file() else BagReader(folder)
 
 
 class BagReader(LogReader):

@@ -38,9 +38,11 @@ def machine() -> str:
     return " ".join(part for part in (platform.machine(), platform.system(), *platform.libc_ver()) if part)
 
 
-def why_not_exact(metadata: Mapping[str, str]) -> str:
-    """Why a repetition here need not give the bits of the log with this metadata; empty where it must."""
-    told = {"model": own_model(), "machine": machine()}
+def why_not_exact(metadata: Mapping[str, str], fmu: Path | None = None) -> str:
+    """Why a repetition here, by `fmu` or the model that is installed, need not give the bits of the log with this metadata; empty where
+    it must.
+    """
+    told = build_metadata(fmu) if fmu is not None else {"model": own_model(), "machine": machine()}
     reasons = {"model": "the log was computed by another version of the model", "machine": "the log was computed on another machine"}
     for name, mine in told.items():
         if not metadata.get(name):

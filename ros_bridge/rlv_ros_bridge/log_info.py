@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -78,6 +79,7 @@ class LogInfo:
         }
         lines += [f"{key:<10} {value}" for key, value in known.items() if value]
         lines += [f"{'carries' if i == 0 else '':<10} {n} ({size} bytes)" for i, (n, size) in enumerate(self.attachments.items())]
+        lines += [f"landing    {self.no_landing}"] if self.no_landing else []
         lines += [f"{'damage' if i == 0 else '':<10} {text}" for i, text in enumerate(self.damage)]
         if self.topics:
             width = max(len(t.name) for t in self.topics)
@@ -122,7 +124,9 @@ def log_info(reader: LogReader) -> LogInfo:
         first = message.log_time if first is None else min(first, message.log_time)
         last = max(last, message.log_time)
         if message.topic == DIAGNOSTICS.name and reader.channels[message.topic].type_name == DIAGNOSTICS.type_name:
-            phase = _phase(decode(message)) or phase
+            # Somebody else's may come without a definition.
+            with suppress(LandingError):
+                phase = _phase(decode(message)) or phase
     start = first or 0
     duration = (last - start) / 1e9
     topics = [

@@ -211,7 +211,10 @@ def find_files(path: Path) -> list[Path]:
         return [path]
     if not path.is_dir():
         raise LandingError(f"there is no log {path}; name a log's folder or its .mcap file")
-    files = sorted((f for f in path.iterdir() if f.name.endswith((FINISHED, UNFINISHED)) and f.is_file()), key=_number)
+    try:
+        files = sorted((f for f in path.iterdir() if f.name.endswith((FINISHED, UNFINISHED)) and f.is_file()), key=_number)
+    except OSError as e:
+        raise LandingError(f"{path} cannot be read: {e.strerror or e}") from None
     if not files:
         raise LandingError(f"{path} holds no .mcap file; name a log's folder or its .mcap file")
     return files

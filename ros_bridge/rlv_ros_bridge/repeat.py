@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator
 from pathlib import Path
 
 from rlv_landing import Landing, Parameters
@@ -44,7 +44,7 @@ class Run:
             )
         self._fmu = fmu
 
-    def samples(self) -> Iterator[dict[str, float]]:
+    def samples(self) -> Generator[dict[str, float], None, None]:
         """All outputs by name at 0, one step, two steps, and so on without end."""
         if self._fmu is None:
             landing = Landing(self.parameters)

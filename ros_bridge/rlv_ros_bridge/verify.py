@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Iterator, Mapping
+from contextlib import closing
 from dataclasses import asdict, dataclass
 from itertools import islice
 from pathlib import Path
@@ -94,13 +95,14 @@ def verify(reader: LogReader, fmu: Path | None = None) -> Verification:
 
     Raises LandingError where the log cannot be repeated.
     """
-    reader.read_through()
+    # A log has at least as many messages as instants, whatever its times say.
+    most_instants = sum(1 for _ in reader.messages())
     run = Run(reader, fmu)
-    not_exact = why_not_exact(reader.metadata)
+    not_exact = why_not_exact(reader.metadata, fmu)
     found = Verification(str(reader.path), not_exact, TOLERANCE if not_exact else 0.0, stop_time=run.stop_time)
-    comparison = _Comparison(reader, run, found)
     try:
-        comparison.all()
+        with closing(run.samples()) as samples:
+            _Comparison(reader, run, found, most_instants).all(samples)
     except _DiffersError as e:
         found.first = e.difference
     found.cut = reader.cut
@@ -116,18 +118,19 @@ class _DiffersError(Exception):
 class _Comparison:
     """One pass through a log beside one repetition."""
 
-    def __init__(self, reader: LogReader, run: Run, found: Verification) -> None:
+    def __init__(self, reader: LogReader, run: Run, found: Verification, most_instants: int) -> None:
         self._reader = reader
         self._run = run
         self._found = found
+        self._most_instants = most_instants
         self._topics = {resolve(reader.namespace, name): name for name in FIELDS}
         self._decode = Decoder(reader)
         self._recovered = "recovered_from" in reader.metadata
         self._scales: Mapping[tuple[str, str], float] | None = None
 
-    def all(self) -> None:
+    def all(self, samples: Iterator[dict[str, float]]) -> None:
+        """Compares all messages with `samples`, the repetition's from the start."""
         run, found = self._run, self._found
-        samples = run.samples()
         k = -1
         missing = set(self._topics)
         values: dict[str, float] = {}
@@ -179,20 +182,21 @@ class _Comparison:
         self._found.largest = max(self._found.largest, share)
 
     def _scale(self, topic: str, path: str) -> float:
-        """The largest value of a field in the whole repetition, which is made once more for that."""
+        """The largest value of a field in the repetition up to the log's end; it is made once more for that."""
         if self._scales is None:
-            self._scales = dict(_largest(self._run))
+            self._scales = _largest(self._run, min(self._most_instants, int(self._run.stop_time / self._run.step) + 1))
         return self._scales.get((topic, path), 0.0)
 
     def _differ(self, topic: str, field: str, time: float, recorded: Any, repeated: Any) -> None:
         raise _DiffersError(Difference(topic, field, time, recorded, repeated))
 
 
-def _largest(run: Run) -> Iterator[tuple[tuple[str, str], float]]:
+def _largest(run: Run, count: int) -> dict[tuple[str, str], float]:
     scales: dict[tuple[str, str], float] = {}
-    for values in islice(run.samples(), int(run.stop_time / run.step) + 1):
-        for topic, fields in FIELDS.items():
-            for path, value in fields(values).items():
-                if isinstance(value, float):
-                    scales[topic, path] = max(scales.get((topic, path), 0.0), abs(value))
-    yield from scales.items()
+    with closing(run.samples()) as samples:
+        for values in islice(samples, count):
+            for topic, fields in FIELDS.items():
+                for path, value in fields(values).items():
+                    if isinstance(value, float):
+                        scales[topic, path] = max(scales.get((topic, path), 0.0), abs(value))
+    return scales

@@ -98,6 +98,18 @@ def test_a_message_too_many_is_found(one_log: Path, tmp_path: Path) -> None:
     assert "/landing/rpy at 0.299 s: a message more than the repeated run has" in found.text()
 
 
+def test_times_that_were_made_huge_differ_and_end_the_comparison(one_log: Path, tmp_path: Path) -> None:
+    def far(record: Any) -> Any:
+        if isinstance(record, tuple) and record[0] == "/landing/odom" and record[1].log_time == 1_000_000_000:
+            record[1].log_time = 2**62 // 1_000_000 * 1_000_000
+        return record
+
+    alter, told = in_message("/landing/pose", AT, with_position_x(1.0 + 1e-12)), in_metadata({"machine": "another", "stop_time": "1e8"})
+    found = changed(one_log, tmp_path, lambda record: told(far(alter(record))))
+    assert found.first is not None
+    assert (found.first.topic, found.first.time) == ("/landing/odom", 1.0)
+
+
 def test_a_log_of_other_parameters_differs(one_log: Path, tmp_path: Path) -> None:
     def heavier(data: bytes) -> bytes:
         lines = data.decode().splitlines()
