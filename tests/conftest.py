@@ -23,6 +23,12 @@ MODES = ("2-2", "1-2-1")
 
 
 @pytest.fixture(scope="session")
+def many() -> Callable[[int], int]:
+    """How many cases a random test tries: those of `make test`, times RLV_TORTURE in the environment."""
+    return lambda count: round(count * float(os.environ.get("RLV_TORTURE", "1")))
+
+
+@pytest.fixture(scope="session")
 def fmu() -> Path:
     """The built FMU. Tests fail without it: `make test` builds it."""
     path = Path(os.environ.get("RLV_FMU", ROOT / "build" / "RlvLanding.fmu"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,10 +52,14 @@ class History:
     def to_csv(self, path: str | Path) -> None:
         """Write all columns to a CSV file, SI units, full precision."""
         with Path(path).open("w", newline="", encoding="utf-8") as f:
-            writer = csv.writer(f)
-            writer.writerow(list(self))
-            for t, row in zip(self.time.tolist(), self.data.tolist()):
-                writer.writerow([repr(t), *map(repr, row)])
+            self.write_csv(f)
+
+    def write_csv(self, file: TextIO) -> None:
+        """The same to an open file."""
+        writer = csv.writer(file)
+        writer.writerow(list(self))
+        for t, row in zip(self.time.tolist(), self.data.tolist()):
+            writer.writerow([repr(t), *map(repr, row)])
 
 
 class Recording:

@@ -8,7 +8,8 @@ import click
 
 from rlv_landing.errors import LandingError
 
-from .cli import log, node, replay
+from .cli import node, replay
+from .log_cli import log
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})

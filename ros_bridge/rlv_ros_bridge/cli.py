@@ -1,8 +1,7 @@
-"""The bridge's commands: `node`, `replay` and `log`. What needs ROS 2, FMPy or MCAP is imported when a command runs."""
+"""The bridge's commands `node` and `replay`. What needs ROS 2, FMPy or MCAP is imported when a command runs."""
 
 from __future__ import annotations
 
-import json
 import math
 import sys
 from pathlib import Path
@@ -14,9 +13,10 @@ from rlv_landing.choices import parse_pairs
 from rlv_landing.errors import LandingError, nearest
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 
+from .log_cli import tell_cut
+
 PASS_ON: dict[str, Any] = {"ignore_unknown_options": True, "help_option_names": ["-h", "--help"], "max_content_width": 120}
 EXIT_RECORDING_FAILED = 1
-EXIT_CUT = 3
 
 
 def split_ros_args(arguments: tuple[str, ...]) -> list[str]:
@@ -164,41 +164,4 @@ def replay(log: Path, topics: tuple[str, ...], ros_args: tuple[str, ...], **opti
     if summary.signal:
         sys.exit(128 + summary.signal)
     if summary.cut:
-        _tell_cut(log)
-
-
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
-def log() -> None:
-    """Look into recorded logs. Needs no ROS 2."""
-
-
-@log.command(context_settings={"max_content_width": 120})
-@click.argument("log", type=click.Path(path_type=Path))
-@click.option("--json", "as_json", is_flag=True, help="As JSON: times in s, forces in N, strokes in m.")
-def info(log: Path, as_json: bool) -> None:
-    """What a log holds: LOG is a log's folder or an .mcap file, complete or cut.
-
-    \b
-    Examples:
-      rlv-landing log info logs/20260131T120000Z-2-2
-      rlv-landing log info run1_0.mcap --json
-
-    Exit codes: 0 complete, 2 no such log or not MCAP, 3 read but cut.
-    """
-    try:
-        import mcap  # noqa: F401
-        import mcap_ros2  # noqa: F401
-    except ImportError as e:
-        raise LandingError(f'reading logs needs mcap ({e}); install it with pip install "rlv-landing[ros]"') from None
-    from .log_info import log_info
-    from .log_reader import LogReader
-
-    found = log_info(LogReader(log))
-    click.echo(json.dumps(found.as_dict(), indent=2) if as_json else found.text())
-    if not found.complete:
-        _tell_cut(log)
-
-
-def _tell_cut(log: Path) -> None:
-    click.echo(f"warning: {log} is cut: its writer did not finish it; all up to there was read", err=True)
-    sys.exit(EXIT_CUT)
+        tell_cut(log)

@@ -23,6 +23,7 @@ from rlv_landing.presets import to_toml
 from rlv_landing.quantities import OUTPUT_NAMES
 
 from . import topics
+from .builds import build_metadata
 from .diagnostics import Health, phase_name
 from .fmu_runner import FmuRunner
 from .markers import Wireframe
@@ -230,6 +231,7 @@ class LandingNode(Node):
             "fmu_guid": fmu.guid,
             "fmu_version": fmu.version,
             "fmu_made_by": fmu.made_by,
+            **build_metadata(s.fmu),
             "version_rlv_landing": __version__,
             "version_python": platform.python_version(),
         }

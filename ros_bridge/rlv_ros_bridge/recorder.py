@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Any
 
-from rlv_landing import __version__
 from rlv_landing.errors import LandingError
 
-from .definitions import definition
+from .bag_writer import CHUNK_BYTES, BagTopic, BagWriter, media_type
+from .definitions import Definition, definition
 from .qos import Qos
 
-# A killed writer loses at most the open chunk and what was not yet flushed.
-CHUNK_BYTES = 60 * 1024
+__all__ = ["CHUNK_BYTES", "FLUSH_SECONDS", "RecordedTopic", "Recorder"]
+
 FLUSH_SECONDS = 0.25
 
 
@@ -31,7 +28,7 @@ class RecordedTopic:
 
 
 class Recorder:
-    """One log being written: `<folder>/<folder's name>_0.mcap`, and `<folder>/metadata.yaml` once it is closed.
+    """One log being written: `<folder>/<folder's name>_0.mcap.part`; once it is closed, that without `.part`, and `metadata.yaml`.
 
     Args:
         folder: made here, with its parents; it must not exist.
@@ -42,7 +39,8 @@ class Recorder:
     Raises:
         LandingError: the folder exists or cannot be written, or a topic's type is not installed; nothing is left behind then.
 
-    A disk that fills up later does not raise: `error` is set, writing stops, and what was written stays readable.
+    A disk that fills up later, or a folder that is removed or moved away, does not raise: `error` is set, writing stops, and what was
+    written stays readable. Not for several threads at once.
     """
 
     def __init__(
@@ -53,73 +51,64 @@ class Recorder:
         attachments: Mapping[str, bytes] | None = None,
     ) -> None:
         self.folder = Path(folder)
-        self.path = self.folder / f"{self.folder.absolute().name}_0.mcap"
         self.topics = tuple(topics)
-        self.counts = dict.fromkeys((t.name for t in self.topics), 0)
         self.error: str = ""
-        self._first: int | None = None
-        self._last = 0
         self._flushed = time.monotonic()
         definitions = {t.type_name: definition(t.type_name) for t in self.topics}
-        self._hashes = {name: d.type_hash for name, d in definitions.items()}
-        self._made = make_folder(self.folder)
-        self._file: IO[bytes] | None = None
         try:
-            self._file = self.path.open("xb")
-            self._writer = self._start(self._file)
+            self._bag = BagWriter(self.folder)
+        except OSError as e:
+            raise self._unwritable(e) from None
+        self.path = self._bag.path
+        self._entries = {t.name: BagTopic(t.name, t.type_name, [t.qos.record()], definitions[t.type_name].type_hash) for t in self.topics}
+        self._bag.bag.topics = list(self._entries.values())
+        self._span = self._bag.bag.span
+        self._add_message = self._bag.mcap.add_message
+        try:
             for name, data in (attachments or {}).items():
-                self._writer.add_attachment(create_time=0, log_time=0, name=name, media_type=_media_type(name), data=data)
+                self._bag.mcap.add_attachment(create_time=0, log_time=0, name=name, media_type=media_type(name), data=data)
             if metadata:
-                self._writer.add_metadata("rlv_landing", dict(metadata))
-            schemas = {name: self._writer.register_schema(name, "ros2msg", d.text.encode("utf-8")) for name, d in definitions.items()}
-            self._channels = {t.name: self._register(t, schemas[t.type_name]) for t in self.topics}
-            self._writer.flush()
+                self._bag.mcap.add_metadata("rlv_landing", dict(metadata))
+            self._channels = self._register(definitions)
+            self._bag.mcap.flush()
         except BaseException as e:
             self.discard()
             if isinstance(e, OSError):
-                raise LandingError(f"log folder {self.folder} cannot be written: {e.strerror or e}") from None
+                raise self._unwritable(e) from None
             raise
 
-    def _start(self, file: IO[bytes]) -> Any:
-        from mcap.writer import CompressionType, Writer
+    def _unwritable(self, e: OSError) -> LandingError:
+        return LandingError(f"log folder {self.folder} cannot be written: {e.strerror or e}; name one that can be, or make room")
 
-        writer = Writer(file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD)
-        writer.start(profile="ros2", library=f"rlv-landing {__version__}")
-        writer.add_metadata("rosbag2", {"ROS_DISTRO": _distro()})
-        return writer
-
-    def _register(self, topic: RecordedTopic, schema: int) -> int:
+    def _register(self, definitions: Mapping[str, Definition]) -> dict[str, int]:
         import yaml
 
-        channel: int = self._writer.register_channel(
-            topic=topic.name,
-            message_encoding="cdr",
-            schema_id=schema,
-            metadata={
-                "offered_qos_profiles": yaml.safe_dump([topic.qos.record()], sort_keys=False),
-                "topic_type_hash": self._hashes[topic.type_name],
-            },
-        )
-        return channel
+        mcap = self._bag.mcap
+        schemas = {name: mcap.register_schema(name, "ros2msg", d.text.encode("utf-8")) for name, d in definitions.items()}
+        channels: dict[str, int] = {}
+        for t in self.topics:
+            qos = yaml.safe_dump([t.qos.record()], sort_keys=False)
+            metadata = {"offered_qos_profiles": qos, "topic_type_hash": definitions[t.type_name].type_hash}
+            channels[t.name] = mcap.register_channel(t.name, "cdr", schemas[t.type_name], metadata)
+        return channels
 
     @property
     def count(self) -> int:
         """Messages recorded so far."""
-        return sum(self.counts.values())
+        return sum(t.count for t in self._entries.values())
 
     def write(self, topic: str, log_time_ns: int, data: bytes) -> None:
         """Record the serialised message `data` of `topic` at the simulation time `log_time_ns`. After an error it does nothing."""
         if self.error:
             return
+        entry = self._entries[topic]
         try:
-            self._writer.add_message(self._channels[topic], log_time_ns, data, log_time_ns, self.counts[topic] & 0xFFFFFFFF)
-            self.counts[topic] += 1
-            if self._first is None or log_time_ns < self._first:
-                self._first = log_time_ns
-            if log_time_ns > self._last:
-                self._last = log_time_ns
+            self._add_message(self._channels[topic], log_time_ns, data, log_time_ns, entry.count & 0xFFFFFFFF)
         except OSError as e:
-            self._fail(e)
+            self._fail(e.strerror or str(e))
+            return
+        entry.count += 1
+        self._span.add(log_time_ns)
 
     def flush(self) -> None:
         """Hand what is recorded to the operating system if the last time is a quarter of a second ago. To be called now and then."""
@@ -128,124 +117,27 @@ class Recorder:
             return
         self._flushed = now
         try:
-            self._writer.flush()
+            self._bag.mcap.flush()
+            if not self._bag.is_there():
+                self._fail("the file was removed or moved away")
         except OSError as e:
-            self._fail(e)
+            self._fail(e.strerror or str(e))
 
     def close(self) -> None:
-        """Finish the file and write `metadata.yaml`. After an error only closes the file, which stream readers still read."""
-        file, self._file = self._file, None
-        if file is None:
+        """Finish the file and write `metadata.yaml`. After an error only closes the file, which `rlv-landing log` still reads."""
+        if not self._bag.open:
             return
         try:
             if not self.error:
-                from_messages = _dump(self._bag())
-                self._writer.add_metadata("rosbag2", {"ROS_DISTRO": _distro(), "serialized_metadata": from_messages})
-                self._writer.finish()
-                file.close()
-                self._write_metadata_file()
+                self._bag.finish()
         except OSError as e:
-            self._fail(e)
+            self._fail(e.strerror or str(e))
         finally:
-            _close_quietly(file)
+            self._bag.give_up()
 
     def discard(self) -> None:
         """Close and remove everything that this recorder has made."""
-        file, self._file = self._file, None
-        if file is not None:
-            _close_quietly(file)
-            self.path.unlink(missing_ok=True)
-        made, self._made = self._made, []
-        for folder in made:
-            # Somebody else may have put something into a parent meanwhile: that stays.
-            with suppress(OSError):
-                folder.rmdir()
+        self._bag.discard()
 
-    def _fail(self, e: OSError) -> None:
-        self.error = f"recording to {self.path} stopped after {self.count} messages: {e.strerror or e}"
-
-    def _write_metadata_file(self) -> None:
-        target = self.folder / "metadata.yaml"
-        temporary = self.folder / "metadata.yaml.tmp"
-        temporary.write_text(_dump({"rosbag2_bagfile_information": self._bag()}), encoding="utf-8")
-        temporary.replace(target)
-
-    def _bag(self) -> dict[str, Any]:
-        start = self._first if self._first is not None else 0
-        span = {
-            "duration": {"nanoseconds": max(0, self._last - start)},
-            "starting_time": {"nanoseconds_since_epoch": start},
-            "message_count": self.count,
-        }
-        return {
-            "version": 9,
-            "storage_identifier": "mcap",
-            **span,
-            "topics_with_message_count": [
-                {
-                    "topic_metadata": {
-                        "name": t.name,
-                        "type": t.type_name,
-                        "serialization_format": "cdr",
-                        "offered_qos_profiles": [t.qos.record()],
-                        "type_description_hash": self._hashes[t.type_name],
-                    },
-                    "message_count": self.counts[t.name],
-                }
-                for t in self.topics
-            ],
-            "compression_format": "",
-            "compression_mode": "",
-            "relative_file_paths": [self.path.name],
-            "files": [{"path": self.path.name, **span}],
-            "custom_data": None,
-            "ros_distro": _distro(),
-        }
-
-
-def make_folder(folder: Path) -> list[Path]:
-    """Make `folder` and its missing parents; those made, innermost first. Raises LandingError: it exists, or cannot be made."""
-    made: list[Path] = []
-    try:
-        if folder.exists() or folder.is_symlink():
-            raise FileExistsError
-        missing = [folder]
-        while not missing[-1].parent.exists():
-            missing.append(missing[-1].parent)
-        for path in reversed(missing):
-            path.mkdir()
-            made.insert(0, path)
-        return made
-    except FileExistsError:
-        raise LandingError(f"log folder {folder} exists; logs are never overwritten: name another") from None
-    except OSError as e:
-        for path in made:
-            path.rmdir()
-        raise LandingError(f"log folder {folder} cannot be made: {e.strerror or e}; name one that can be written") from None
-
-
-def _media_type(name: str) -> str:
-    return "application/toml" if name.endswith(".toml") else "text/plain"
-
-
-def _distro() -> str:
-    return os.environ.get("ROS_DISTRO", "unknown")
-
-
-def _dump(document: Mapping[str, Any]) -> str:
-    import yaml
-
-    class Plain(yaml.SafeDumper):
-        """Writes equal values out again instead of pointing back to them."""
-
-        def ignore_aliases(self, data: Any) -> bool:
-            return True
-
-    text: str = yaml.dump(dict(document), Dumper=Plain, sort_keys=False)
-    return text
-
-
-def _close_quietly(file: IO[bytes]) -> None:
-    # A full disk makes even the closing flush fail; the error is known by then.
-    with suppress(OSError):
-        file.close()
+    def _fail(self, reason: str) -> None:
+        self.error = f"recording to {self._bag.part} stopped after {self.count} messages: {reason}"

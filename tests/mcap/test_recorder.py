@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import resource
+import shutil
 import struct
 import subprocess
 import sys
@@ -11,7 +12,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from bridge_tools import TIMEOUT, command, environment
+from bridge_tools import TIMEOUT, Listener, command, environment, new_domain, start
 from mcap.exceptions import EndOfFile
 from mcap.reader import make_reader
 from mcap.stream_reader import StreamReader
@@ -140,6 +141,61 @@ def test_a_full_disk_does_not_stop_the_landing_and_what_was_written_is_readable(
         for record in StreamReader(f).records:
             seen += type(record).__name__ == "Message"
     assert seen == count
+
+
+@pytest.mark.parametrize("how", ["removed", "moved"])
+def test_a_folder_that_goes_away_is_noticed_at_the_next_flush_and_at_the_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, how: str
+) -> None:
+    for flushed in (True, False):
+        monkeypatch.setattr("rlv_ros_bridge.recorder.FLUSH_SECONDS", 0.0)
+        folder, away = tmp_path / f"log-{flushed}", tmp_path / f"away-{flushed}"
+        recorder = Recorder(folder, TOPICS)
+        recorder.write("/a", 1, CDR)
+        recorder.flush()
+        assert not recorder.error
+        shutil.rmtree(folder) if how == "removed" else folder.rename(away)
+        recorder.write("/a", 2, CDR)
+        if flushed:
+            recorder.flush()
+            assert recorder.error.endswith("stopped after 2 messages: the file was removed or moved away")
+        recorder.write("/a", 3, CDR)
+        recorder.close()
+        assert "removed or moved away" in recorder.error
+        assert not folder.exists()
+        if how == "moved":
+            assert [m.log_time for m in LogReader(away).messages()][:2] == [1, 2]
+
+
+def test_the_landing_goes_on_when_its_log_is_removed_and_says_so_at_once_and_at_the_end(fmu: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "log"
+    domain = new_domain()
+    listener = Listener({"/landing/struts": "sensor_msgs/msg/JointState"}, tmp_path, domain, announce=300)
+    node = start("node", "--fmu", fmu, "--record", folder, "--stop-time", 2, "--wait-for-subscribers", 1, domain=domain)
+    try:
+        listener.wait_for_announcement()
+        shutil.rmtree(folder)
+        out, err = node.communicate(timeout=TIMEOUT)
+    finally:
+        listener.stop()
+        node.kill()
+        node.communicate(timeout=TIMEOUT)
+    assert node.returncode == 1, err
+    assert "finished: 2001 samples" in out
+    told = [line for line in err.splitlines() if "removed or moved away" in line]
+    assert len(told) == 2, err
+    assert "the landing goes on unrecorded" in told[0]
+    assert told[1].startswith("error: recording to")
+    assert not folder.exists()
+
+
+def test_a_file_has_its_temporary_name_until_it_is_finished(tmp_path: Path) -> None:
+    recorder = Recorder(tmp_path / "log", TOPICS)
+    recorder.write("/a", 1, CDR)
+    assert [p.name for p in (tmp_path / "log").iterdir()] == ["log_0.mcap.part"]
+    recorder.close()
+    assert sorted(p.name for p in (tmp_path / "log").iterdir()) == ["log_0.mcap", "metadata.yaml"]
+    assert not recorder.error
 
 
 def test_info_on_such_a_log_needs_no_ros(one_log: Path) -> None:
