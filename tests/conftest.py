@@ -6,11 +6,15 @@ import os
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 from rlv_landing import Landing, load_preset
 from rlv_landing.history import History
 
 ROOT = Path(__file__).resolve().parent.parent
+# How long one example takes says more of the machine than of us.
+settings.register_profile("suite", deadline=None)
+settings.load_profile("suite")
 MODES = ("2-2", "1-2-1")
 
 
@@ -31,3 +35,9 @@ def mode(request: pytest.FixtureRequest) -> str:
 def drop_test(mode: str) -> History:
     """The drop test of `mode` with the preset yue2022-figures, 1 s at 0.2 ms."""
     return Landing(load_preset("yue2022-figures"), mode).run(1.0, 2e-4)
+
+
+@pytest.fixture(scope="session")
+def cycles() -> int:
+    """How often a test of endurance goes round: 20 times, with RLV_TORTURE=1 a thousand times."""
+    return 1000 if os.environ.get("RLV_TORTURE") == "1" else 20

@@ -8,7 +8,8 @@ import click
 
 from rlv_landing.errors import LandingError
 
-from .cli import log, node, replay
+from .cli import log, replay
+from .node_command import node
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
