@@ -68,7 +68,7 @@ def write_source(folder: Path, core: Path = CORE) -> Path:
     """
     sources = kernels(core)
     enum = "".join(f"    {name} = {value}\n" for name, value in layout_constants(core).items())
-    pxd = "from libc.math cimport cos, exp, fabs, pow, sin, sqrt, tanh\n\ncdef enum:\n" + enum
+    pxd = "from libc.math cimport cos, exp, expm1, fabs, log, pow, sin, sqrt, tanh\n\ncdef enum:\n" + enum
     pxd += "".join(p.with_suffix(".pxd").read_text() for p in sources if p.with_suffix(".pxd").exists())
     python = "".join(f"# {p.name}\n{without_imports(p.read_text())}" for p in sources) + f'SOURCE_DIGEST = "{digest(core)}"\n'
     package = folder / f"rlv_landing_core_{digest(core)[:12]}"

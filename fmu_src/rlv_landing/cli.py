@@ -16,6 +16,7 @@ from .commands.identify import identify
 from .commands.options import check_writable, parameter_options
 from .commands.validate import validate
 from .errors import LandingError, nearest
+from .landing import DEFAULT_RTOL, METHODS, Landing
 
 BAD_INPUT = 2
 INTERRUPTED = 130
@@ -71,7 +72,10 @@ def cli() -> None:
 )
 @click.option("--until", default=1.0, show_default=True, metavar="S", help="End time [s].")
 @click.option("--every", default=1e-3, show_default=True, metavar="S", help="Time between samples [s].")
-@click.option("--rtol", default=1e-6, show_default=True, help="Relative tolerance of the integrator.")
+@click.option("--rtol", default=DEFAULT_RTOL, show_default=True, help="Relative tolerance of the integrator.")
+@click.option(
+    "--method", type=click.Choice(list(METHODS)), default="exponential", show_default=True, help="Integrator; dormand-prince: the paper's."
+)
 @click.option("--output", metavar="FILE.csv", type=click.Path(path_type=Path), help="Write every output at every sample (SI units).")
 @click.option("--plot", metavar="FILE.png", type=click.Path(path_type=Path), help="Draw forces, strokes and acceleration.")
 @click.option("--compare", "comparison", is_flag=True, help="Print our numbers beside the paper's.")
@@ -79,7 +83,7 @@ def cli() -> None:
 @click.option("--force", is_flag=True, help="Overwrite files that exist.")
 def simulate(
     preset: str | None, file: str | None, mode: str | None, pairs: tuple[str, ...], inputs: tuple[str, ...], until: float, every: float,
-    rtol: float, output: Path | None, plot: Path | None, comparison: bool, as_json: bool, force: bool,
+    rtol: float, method: str, output: Path | None, plot: Path | None, comparison: bool, as_json: bool, force: bool,
 ) -> None:  # fmt: skip
     """Land in this process and print outcome and peaks.
 
@@ -91,14 +95,13 @@ def simulate(
     from tqdm import tqdm
 
     from .choices import choose_parameters, parse_pairs
-    from .landing import Landing
     from .parameters import PARAMETER_QUANTITIES
     from .quantities import INPUT_QUANTITIES
 
     for path, ending in ((output, ".csv"), (plot, ".png")):
         check_writable(path, ending, force)
     parameters = choose_parameters(preset, file, mode, parse_pairs(pairs, PARAMETER_QUANTITIES, "parameter"))
-    landing = Landing(parameters, rtol=rtol)
+    landing = Landing(parameters, rtol=rtol, method=method)
     landing.set_inputs(parse_pairs(inputs, {q.name: q for q in INPUT_QUANTITIES}, "input"))
     with tqdm(
         total=until, unit="s", desc="landing", disable=not sys.stderr.isatty(), bar_format="{l_bar}{bar}| {n:.2f}/{total:.2f} s"

@@ -3,14 +3,14 @@
 from math import sqrt
 
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from pytest import approx
 
 from rlv_landing import Parameters
 from rlv_landing.core.auxiliary_strut import auxiliary
 from rlv_landing.core.contact import contact, damping_ramp, friction, normal_force
-from rlv_landing.core.damper import damper, orifice_flow, seal_friction, stop_force
+from rlv_landing.core.damper import damper, orifice_flow, orifice_slope, seal_friction, stop_force
 from rlv_landing.landing import build_model
 
 P = build_model(Parameters())
@@ -63,9 +63,24 @@ def test_chambers_keep_the_liquid_mass(s, v, P1, P2):
 
 @given(st.floats(0.0, 0.03), speeds, st.floats(2e3, 1e7), st.floats(2e3, 1e7))
 def test_damper_dissipates_in_orifice_and_seal(s, v, P1, P2):
-    _, _, _, orifice, seal, _ = damper(s, v, P1, P2, P)
+    _, _, _, orifice, seal, *_ = damper(s, v, P1, P2, P)
     assert orifice >= 0.0
     assert seal >= 0.0
+
+
+@given(st.floats(-2e7, 2e7))
+def test_orifice_slope_is_the_flows_derivative(dP):
+    step = 1e-4 * (P.dP_lam + abs(dP))
+    assume((dP - step) * (dP + step) > 0.0)  # the two areas make a kink at zero
+    assert orifice_slope(dP, 1.0, P) == approx((orifice_flow(dP + step, 1.0, P) - orifice_flow(dP - step, 1.0, P)) / (2.0 * step), rel=1e-5)
+
+
+@given(st.floats(0.0, 0.03), st.floats(2e3, 1e7), st.sampled_from((1.0, -1.0)))
+def test_chambers_even_out_at_the_told_rates(s, pressure, x):
+    """At rest and nearly even, P1' = a1 x and P2' = -a2 x with x = P2 - P1 [Pa]."""
+    _, dP1, dP2, _, _, _, a1, a2 = damper(s, 0.0, pressure, pressure + x, P)
+    assert dP1 == approx(a1 * x, rel=1e-6)
+    assert dP2 == approx(-a2 * x, rel=1e-6)
 
 
 @given(st.floats(-0.01, 0.01), speeds)

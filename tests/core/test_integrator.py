@@ -1,16 +1,20 @@
-"""Dormand-Prince: its order conditions, its convergence, and the same digits compiled and pure."""
+"""The integration methods: order conditions, convergence, stiffness, and the same digits compiled and pure."""
 
 import os
 import subprocess
 import sys
+from math import exp, factorial
 
 import numpy as np
 import pytest
 from pytest import approx
+from scipy.integrate import quad
 
 from rlv_landing import Landing, core, load_preset
-from rlv_landing.core import integrator as dp
-from rlv_landing.landing import Landing as LandingType
+from rlv_landing.core import dormand_prince as dp
+from rlv_landing.core import layout
+from rlv_landing.core.exponential import SMALL, phi1, phi2, phi3
+from rlv_landing.landing import METHODS
 
 A = np.zeros((7, 7))
 for row in range(2, 8):
@@ -57,27 +61,72 @@ def test_embedded_solution_is_of_order_4_and_not_5():
     assert max(map(abs, conditions[5])) > 1e-5
 
 
-def in_flight(rtol: float) -> Landing:
+@pytest.mark.parametrize("z", [0.0, 1e-9, 1e-3, SMALL, 0.11, 0.4, 3.0, 80.0])
+def test_the_exponential_methods_functions_are_their_integrals(z):
+    """phi_k(-z) is the integral over [0, 1] of exp(-(1 - x) z) x^(k - 1)/(k - 1)!."""
+    f1, f2 = phi1(z), phi2(z, phi1(z))
+    for k, ours in ((1, f1), (2, f2), (3, phi3(z, f2))):
+        wanted, _ = quad(lambda x, k=k: exp(-(1.0 - x) * z) * x ** (k - 1) / factorial(k - 1), 0.0, 1.0, epsabs=1e-13)
+        assert ours == approx(wanted, rel=1e-12)
+
+
+def test_the_methods_agree(mode):
+    """To what friction lets any two solvers agree in; see `convergence`."""
+    ours, papers = (Landing(load_preset("yue2022-figures"), mode, 1e-8, method) for method in METHODS)
+    for time in (0.15, 0.3, 0.6):
+        ours.advance_to(time)
+        papers.advance_to(time)
+        for name in ("body.x", "body.y", "body.pitch", "leg[1].main_strut.stroke", "leg[3].main_strut.stroke"):
+            assert ours.get(name) == approx(papers.get(name), abs=1e-6)
+
+
+def test_a_stiff_orifice_does_not_hold_the_exponential_method():
+    """A tenth of the laminar pressure makes a chamber three times as stiff at rest."""
+
+    def work(method, laminar_pressure):
+        values = {"main_strut.laminar_pressure": laminar_pressure}
+        landing = Landing(load_preset("yue2022-figures").with_values(values), rtol=1e-4, method=method)
+        landing.advance_to(1.0)
+        return landing.statistics["rhs_calls"]
+
+    assert work("exponential", 1e4) < 1.3 * work("exponential", 1e5)
+    assert work("dormand-prince", 1e4) > 1.8 * work("dormand-prince", 1e5)
+
+
+def test_friction_displacements_never_pass_the_slip_limit(mode):
+    landing = Landing(load_preset("yue2022-figures"), mode, rtol=1e-3)
+    solver, limit = landing._solver, landing.parameters.ground.stick_displacement
+    reached = 0.0
+    while solver.t < 0.5:
+        solver.advance(solver.t + 1e-6)
+        for k in range(layout.BODY, solver.n - layout.INTEGRALS, layout.LEG):
+            reached = max(reached, abs(solver.y[k + layout.SX]), abs(solver.y[k + layout.SZ]))
+    assert reached == limit
+
+
+def in_flight(rtol: float, method: str) -> Landing:
     """A vehicle turning fast in free flight, its struts ringing: smooth, no contact."""
     values = {"drop.contact_time": 0.5, "drop.pitch_rate": 2.0, "drop.vertical_velocity": -12.0, "main_strut.seal_coulomb": 0.0}
-    return Landing(load_preset("yue2022-figures").with_values(values), rtol=rtol)
+    return Landing(load_preset("yue2022-figures").with_values(values), rtol=rtol, method=method)
 
 
-def test_error_falls_with_the_tolerance_on_a_smooth_arc():
-    def state(rtol):
-        landing = in_flight(rtol)
+@pytest.mark.parametrize("method", METHODS)
+def test_error_falls_with_the_tolerance_on_a_smooth_arc(method):
+    def state(rtol, method=method):
+        landing = in_flight(rtol, method)
         landing.advance_to(0.2)
         return np.array([landing.get("body.x"), landing.get("body.y"), landing.get("body.pitch")])
 
-    reference = state(1e-11)
+    reference = state(1e-11, "dormand-prince")
     errors = [float(np.abs(state(rtol) - reference).max()) for rtol in (1e-4, 1e-6, 1e-8)]
     assert errors[0] > errors[2]
     assert errors[1] < 1e-6
     assert errors[2] < 1e-8
 
 
-def test_dense_output_meets_both_ends_of_a_step_and_is_smooth_between():
-    landing: LandingType = Landing()
+@pytest.mark.parametrize("method", METHODS)
+def test_dense_output_meets_both_ends_of_a_step_and_is_smooth_between(method):
+    landing = Landing(method=method)
     solver = landing._solver
     solver.advance(0.1)
     n = solver.n
@@ -85,7 +134,7 @@ def test_dense_output_meets_both_ends_of_a_step_and_is_smooth_between():
 
     end = array("d", bytes(8 * n))
     solver.interpolate(solver.t, end)
-    assert np.array(end) == approx(np.array(solver.y), rel=1e-13, abs=1e-12)
+    assert np.array(end) == approx(np.array(solver.y), rel=1e-12, abs=1e-12)
     before = array("d", bytes(8 * n))
     solver.interpolate(solver.t_old, before)
     solver.advance(solver.t + 1e-9)
@@ -97,7 +146,7 @@ def test_dense_output_meets_both_ends_of_a_step_and_is_smooth_between():
 PROBE = """
 import sys
 from rlv_landing import Landing, core, load_preset
-landing = Landing(load_preset("yue2022-figures"), sys.argv[1])
+landing = Landing(load_preset("yue2022-figures"), sys.argv[1], method=sys.argv[2])
 values = []
 for time in (0.1, 0.15, 0.26, 0.4):
     landing.advance_to(time)
@@ -109,14 +158,17 @@ print(" ".join(float(v).hex() for v in [*values, *landing.values(), *landing.sta
 """
 
 
-def probe(mode: str, pure: str) -> list[str]:
+def probe(mode: str, method: str, pure: str) -> list[str]:
     environment = {**os.environ, "RLV_LANDING_PURE": pure}
-    done = subprocess.run([sys.executable, "-c", PROBE, mode], capture_output=True, text=True, env=environment, timeout=120, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", PROBE, mode, method], capture_output=True, text=True, env=environment, timeout=120, check=True
+    )
     return done.stdout.splitlines()
 
 
-def test_compiled_and_pure_core_give_the_same_digits(mode):
-    compiled, pure = probe(mode, "0"), probe(mode, "1")
+@pytest.mark.parametrize("method", METHODS)
+def test_compiled_and_pure_core_give_the_same_digits(mode, method):
+    compiled, pure = probe(mode, method, "0"), probe(mode, method, "1")
     assert compiled[0] == "True", "the core is not compiled here: run make"
     assert pure[0] == "False"
     assert compiled[1] == pure[1]

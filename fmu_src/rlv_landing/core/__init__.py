@@ -11,13 +11,15 @@ from . import layout
 try:
     if os.environ.get("RLV_LANDING_PURE") == "1":
         raise ImportError("the pure core is asked for")
-    from .compiled import Model, Solver, output_size, state_size
+    from .compiled import DormandPrince, Exponential, Model, Solver, output_size, state_size
 
     COMPILED = True
 except ImportError:
+    from .dormand_prince import DormandPrince
+    from .exponential import Exponential
     from .integrator import Solver, output_size, state_size
     from .model import Model
 
     COMPILED = False
 
-__all__ = ["COMPILED", "Model", "Solver", "layout", "output_size", "state_size"]
+__all__ = ["COMPILED", "DormandPrince", "Exponential", "Model", "Solver", "layout", "output_size", "state_size"]

@@ -42,18 +42,29 @@ def stop_force(s, v, p):
     return 0.0, 0.0
 
 
+def orifice_slope(dP, density_ratio, p):
+    """Derivative of `orifice_flow` by `dP` [m3/(s Pa)]."""
+    area = p.CdAo_c if dP > 0.0 else p.CdAo_r
+    square = dP * dP + p.dP_lam * p.dP_lam
+    return area * sqrt(2.0 / (p.rho0 * density_ratio)) * (square - 0.5 * dP * dP) / (square * sqrt(sqrt(square)))
+
+
 def damper(s, v, P1, P2, p):
-    """Return (force, P1', P2', orifice power, seal power, stop power) at stroke `s` [m] and stroke rate `v` [m/s].
+    """Return (force, P1', P2', orifice power, seal power, stop power, a1, a2) at stroke `s` [m] and stroke rate `v` [m/s].
 
     Force [N] is positive in compression. Chamber 1 is the upper annulus, chamber 2 the lower bore. Powers [W] are dissipated.
+    The flow evens x = P2 - P1 out: a change of x changes the pressures' rates by a1 x and -a2 x, a1, a2 [1/s].
     """
     v1, dv1, h1 = fluid(P1, p.x_air, p.n_air, p.B0, p.kB, p.Pa)
     v2, dv2, h2 = fluid(P2, p.x_air, p.n_air, p.B0, p.kB, p.Pa)
     ratio = 0.5 * (1.0 / v1 + 1.0 / v2)
     Q = orifice_flow(P2 - P1, ratio, p)
-    dP1 = -v1 / dv1 / (p.V10 + p.A1 * s) * (ratio * v1 * Q - p.A1 * v)
-    dP2 = -v2 / dv2 / (p.V20 - p.A2 * s) * (p.A2 * v - ratio * v2 * Q)
+    stiffness1 = -v1 / dv1 / (p.V10 + p.A1 * s)
+    stiffness2 = -v2 / dv2 / (p.V20 - p.A2 * s)
+    dP1 = stiffness1 * (ratio * v1 * Q - p.A1 * v)
+    dP2 = stiffness2 * (p.A2 * v - ratio * v2 * Q)
+    slope = ratio * orifice_slope(P2 - P1, ratio, p)
     F_seal = seal_friction(v, P1, P2, p)
     F_stop, stop_power = stop_force(s, v, p)
     force = (P2 - p.Pa) * p.A2 - (P1 - p.Pa) * p.A1 + F_seal + F_stop
-    return force, dP1, dP2, ratio * Q * (h2 - h1), F_seal * v, stop_power
+    return force, dP1, dP2, ratio * Q * (h2 - h1), F_seal * v, stop_power, stiffness1 * v1 * slope, stiffness2 * v2 * slope

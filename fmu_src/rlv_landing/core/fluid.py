@@ -1,6 +1,6 @@
 """Liquid with entrapped air: one equation of state, and what follows from it. [closure]"""
 
-from math import pow
+from math import exp, log
 
 P_FLOOR = 1.0
 
@@ -16,8 +16,8 @@ def fluid(P, x, n, B0, kB, Pa):
     if P < P_FLOOR:
         P = P_FLOOR
     a = 1.0 + kB * (P - Pa) / B0
-    liquid = (1.0 - x) * pow(a, -1.0 / kB)
-    air = x * pow(Pa / P, 1.0 / n)
+    liquid = (1.0 - x) * exp(-log(a) / kB)
+    air = x * exp(log(Pa / P) / n)
     v = liquid + air
     dv = -liquid / (a * B0) - air / (n * P)
     h = B0 / (kB - 1.0) * (a * liquid - (1.0 - x)) + n / (n - 1.0) * (P * air - x * Pa)

@@ -29,8 +29,12 @@ L_RADIAL, L_VERTICAL, L_TANGENTIAL = 13, 14, 15
 L_BODY_X, L_BODY_Y, L_BODY_MOMENT = 16, 17, 18
 L_DP1, L_DP2, L_DSX, L_DSZ = 19, 20, 21, 22
 L_ORIFICE, L_SEAL, L_STOP, L_DISSIPATED_AUX, L_DISSIPATED_CONTACT, L_FRICTION, L_GROUND = 23, 24, 25, 26, 27, 28, 29
-LOADS = 30
+L_DECAY1, L_DECAY2 = 30, 31
+LOADS = 32
 
 # behind the last leg group's loads: the body's acceleration along its own axes
 B_AX, B_AY, B_PITCH_ACC = 0, 1, 2
 BODY_LOADS = 3
+
+# what the exponential method keeps for each leg group: driven rates of its stages, weights
+STAGES, WEIGHTS = 5, 8

@@ -15,6 +15,8 @@ from .layout import (
     L_CONTACT_X,
     L_CONTACT_Y,
     L_CONTACT_Z,
+    L_DECAY1,
+    L_DECAY2,
     L_DISSIPATED_AUX,
     L_DISSIPATED_CONTACT,
     L_DP1,
@@ -92,7 +94,7 @@ def leg_loads(y, k, sin_g, cos_g, share_x, sin_p, cos_p, sin_a, cos_a, u, p, w, 
 
     s, v, er, eh = strut(r, h, vr, vh, p.La, p.Lb, p.Lm0)
     sa, va, ar, ah = strut(r, h, vr, vh, p.Lc, p.Ld, p.Ls0)
-    Fh, dP1, dP2, orifice_power, seal_power, stop_power = damper(s, v, y[k + P1], y[k + P2], p)
+    Fh, dP1, dP2, orifice_power, seal_power, stop_power, decay1, decay2 = damper(s, v, y[k + P1], y[k + P2], p)
     Fa, auxiliary_power = auxiliary(sa, va, p)
 
     bx = r * cos_g
@@ -138,6 +140,8 @@ def leg_loads(y, k, sin_g, cos_g, share_x, sin_p, cos_p, sin_a, cos_a, u, p, w, 
     w[j + L_DP2] = dP2
     w[j + L_DSX] = dsx
     w[j + L_DSZ] = dsz
+    w[j + L_DECAY1] = decay1
+    w[j + L_DECAY2] = decay2
     w[j + L_ORIFICE] = orifice_power
     w[j + L_SEAL] = seal_power
     w[j + L_STOP] = stop_power
