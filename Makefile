@@ -9,10 +9,11 @@ CORE := $(wildcard fmu_src/rlv_landing/core/*.py fmu_src/rlv_landing/core/*.pxd)
 SLAVE := fmu_src/landing_fmu.py fmu_src/build_fmu.py $(wildcard fmu_src/fmu_*.py fmu_src/fmu_*.j2 fmu_src/fmu_front/*) CHANGELOG.md LICENSE \
   $(addprefix fmu_src/rlv_landing/,__init__.py errors.py quantities.py parameters.py touchdown.py landing.py plots.py)
 
-.PHONY: help run test lint bench coverage docs clean
+.PHONY: help run test lint torture bench coverage docs clean
 help:
 	@echo "make run [MODE=2-2|1-2-1]  land the prototype: FMU, ROS 2 node, MCAP log, table and picture"
 	@echo "make test                  the whole suite"
+	@echo "make torture               the long tests: thousands of damaged logs, a thousand turns of the node's lifecycle"
 	@echo "make bench                 time of a landing: compiled core, pure core, FMU; and of a full 3-D model"
 	@echo "make coverage              coverage, measured on the pure core"
 	@echo "make docs                  the pictures of the README and of the example, made anew"
@@ -50,6 +51,9 @@ $(COFMUPY): tests/importers/cofmupy.txt | $(VENV)/.packages
 
 test: $(FMU) $(COFMUPY) lint
 	$(BIN)/python -m pytest
+
+torture: $(FMU)
+	RLV_TORTURE=50 $(BIN)/python -m pytest -m torture
 
 bench: $(FMU)
 	$(BIN)/python benchmarks/bench_landing.py

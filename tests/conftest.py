@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 from rlv_landing import Landing, load_preset
 from rlv_landing.history import History
@@ -19,6 +20,9 @@ from rlv_landing.history import History
 ROOT = Path(__file__).resolve().parent.parent
 # the example's modules, as its `run.py` finds them
 sys.path.insert(0, str(ROOT / "examples" / "ship_deck"))
+# How long one example takes says more of the machine than of us.
+settings.register_profile("suite", deadline=None)
+settings.load_profile("suite")
 MODES = ("2-2", "1-2-1")
 
 

@@ -8,8 +8,9 @@ import click
 
 from rlv_landing.errors import LandingError
 
-from .cli import node, replay
+from .cli import replay
 from .log_cli import log
+from .node_command import node
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})

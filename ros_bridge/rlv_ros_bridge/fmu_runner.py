@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import ctypes
-import shutil
-import tempfile
 import zipfile
 from collections.abc import Mapping
+from operator import itemgetter
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -14,6 +13,8 @@ from typing import Any
 from rlv_landing.errors import LandingError, unknown
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.quantities import INPUT_NAMES, OUTPUT_NAMES, OUTPUT_QUANTITIES
+
+from .fmu_folder import FmuFolder
 
 MODEL_NAME = "RlvLanding"
 FATAL = 4
@@ -35,7 +36,7 @@ class FmuRunner:
         self.path = Path(fmu_path)
         self._messages: list[tuple[int, str]] = []
         self._slave: Any = None
-        self._folder: str | None = None
+        self._folder: FmuFolder | None = None
         description = read_description(self.path)
         self.guid: str = description.guid
         self.version: str = description.version or ""
@@ -49,8 +50,6 @@ class FmuRunner:
                 raise unknown("parameter", name, PARAMETER_QUANTITIES)
         self._references = references
         self._prepare_outputs(references)
-        self._inputs = (ctypes.c_uint * len(INPUT_NAMES))(*(references[n] for n in INPUT_NAMES))
-        self._input_values = (ctypes.c_double * len(INPUT_NAMES))()
         try:
             self._instantiate(description, values)
         except BaseException:
@@ -58,8 +57,8 @@ class FmuRunner:
             raise
 
     def _prepare_outputs(self, references: Mapping[str, int]) -> None:
-        self._values = [0.0] * len(OUTPUT_NAMES)
-        self._reads: list[tuple[str, Any, Any, list[int]]] = []
+        self._reads: list[tuple[str, Any, Any]] = []
+        order: list[int] = []
         for kind, getter, c_type in (
             ("real", "Real", ctypes.c_double),
             ("integer", "Integer", ctypes.c_int),
@@ -67,19 +66,22 @@ class FmuRunner:
         ):
             where = [i for i, q in enumerate(OUTPUT_QUANTITIES) if q.kind == kind]
             asked = (ctypes.c_uint * len(where))(*(references[OUTPUT_NAMES[i]] for i in where))
-            self._reads.append((f"fmi2Get{getter}", asked, (c_type * len(where))(), where))
+            self._reads.append((f"fmi2Get{getter}", asked, (c_type * len(where))()))
+            order += where
+        self._in_order = itemgetter(*(order.index(i) for i in range(len(order))))
 
     def _instantiate(self, description: Any, values: Mapping[str, float | str]) -> None:
         from fmpy import extract
         from fmpy.fmi2 import FMU2Slave
 
-        self._folder = tempfile.mkdtemp(prefix="rlv-landing-fmu-")
-        extract(str(self.path), unzipdir=self._folder)
+        self._folder = FmuFolder()
+        unpacked = str(self._folder.path)
+        extract(str(self.path), unzipdir=unpacked)
         try:
             slave = FMU2Slave(
                 guid=description.guid,
                 modelIdentifier=description.coSimulation.modelIdentifier,
-                unzipDirectory=self._folder,
+                unzipDirectory=unpacked,
                 instanceName=MODEL_NAME,
             )
             slave.instantiate(callbacks=self._make_callbacks(), loggingOn=True)
@@ -136,22 +138,22 @@ class FmuRunner:
         self._messages.clear()
         self._call("doStep", currentCommunicationPoint=now, communicationStepSize=(k + 1) * h - now)
 
-    def values(self) -> list[float]:
-        """All outputs at the present time, in the order of `OUTPUT_NAMES`; integers and booleans as floats. The list is used again."""
-        slave, out = self._slave, self._values
-        for function, asked, got, where in self._reads:
-            getattr(slave, function)(slave.component, asked, len(where), got)
-            for i, value in zip(where, got):
-                out[i] = value
-        return out
+    def values(self) -> tuple[float, ...]:
+        """All outputs at the present time, in the order of `OUTPUT_NAMES`."""
+        slave = self._slave
+        found: list[float] = []
+        for function, asked, got in self._reads:
+            getattr(slave, function)(slave.component, asked, len(got), got)
+            found += got
+        values: tuple[float, ...] = self._in_order(found)
+        return values
 
     def set_inputs(self, inputs: Mapping[str, float]) -> None:
-        """Inputs by name, SI, held from now on. Raises LandingError for an unknown name."""
-        for name, value in inputs.items():
+        """Inputs by name, SI, from now on; others go on as they were. Raises LandingError for an unknown name."""
+        for name in inputs:
             if name not in INPUT_NAMES:
                 raise unknown("input", name, INPUT_NAMES)
-            self._input_values[INPUT_NAMES.index(name)] = value
-        self._slave.fmi2SetReal(self._slave.component, self._inputs, len(INPUT_NAMES), self._input_values)
+        self._call("setReal", [self._references[name] for name in inputs], list(inputs.values()))
 
     def close(self) -> None:
         """Terminate and free the instance, and remove the folder that it was unpacked to. May be called again."""
@@ -165,7 +167,7 @@ class FmuRunner:
                     slave.freeInstance()
         finally:
             if folder is not None:
-                shutil.rmtree(folder, ignore_errors=True)
+                folder.remove()
 
     def __enter__(self) -> FmuRunner:
         return self

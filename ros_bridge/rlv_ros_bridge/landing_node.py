@@ -1,279 +1,261 @@
-"""The ROS 2 node that lands: steps the FMU in real time (or faster, or slower), publishes every sample, and records it."""
+"""The ROS 2 lifecycle node that lands: configure loads the FMU, activate lands, deactivate pauses, cleanup frees."""
 
 from __future__ import annotations
 
-import gc
-import platform
-import sys
+import threading
 import time
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from datetime import datetime, timezone
-from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
+from collections.abc import Callable, Mapping
 from typing import Any
 
-from rclpy.executors import SingleThreadedExecutor
-from rclpy.node import Node
+from geometry_msgs.msg import WrenchStamped
+from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.parameter import Parameter
 from rclpy.serialization import serialize_message
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
 
-from rlv_landing import __version__
-from rlv_landing.presets import to_toml
-from rlv_landing.quantities import OUTPUT_NAMES
+from rlv_landing.errors import LandingError
+from rlv_landing.parameters import PARAMETER_QUANTITIES
+from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES
 
 from . import topics
-from .builds import build_metadata
-from .diagnostics import Health, phase_name
-from .fmu_runner import FmuRunner
-from .markers import Wireframe
+from .input_queue import InputQueue
+from .landing_run import LandingRun
+from .landing_services import offer_services
+from .live import LivePublisher, Outlet
 from .message_types import message_class
-from .messages import SampleMessages
-from .node_settings import Settings, read_settings
-from .pacer import Pacer
-from .qos import CLOCK, TELEMETRY
-from .recorder import RecordedTopic, Recorder
-from .ros_setup import StopFlag, ros_context, wait_for_acknowledgement, wait_for_subscribers
+from .node_parameters import NodeParameters
+from .node_settings import unused
+from .qos import CLOCK, LATCHED, PROFILES, TELEMETRY, Qos
+from .robot_description import robot_description, variables
+from .ros_setup import wait_for_acknowledgement, wait_until_matched
+from .run_summary import RunSummary
 from .topics import Topic, resolve
 
 NAMESPACE = "landing"
-PHASE = OUTPUT_NAMES.index("status.phase")
-BALANCE = OUTPUT_NAMES.index("energy.balance")
-TOPPLED = 3
-# Services of the node (its parameters, say) are answered this often: one look costs half a millisecond.
-SPIN_SECONDS = 0.05
+SUCCESS, FAILURE, ERROR = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE, TransitionCallbackReturn.ERROR
+# A warning of one kind is repeated at most this often [s].
+WARN_SECONDS = 1.0
 
 
-@dataclass(frozen=True)
-class RunSummary:
-    """How a landing went. `end` is "finished", "toppled" or "interrupted" (by `signal`); lateness and wall time in s."""
+class LandingNode(LifecycleNode):
+    """Lands when it is activated, in a thread of its own. Its ROS parameters are those of `node_settings` and the model's own.
 
-    samples: int
-    recorded: int
-    simulated: float
-    wall: float
-    late_steps: int
-    median_lateness: float
-    largest_lateness: float
-    lost: float
-    folder: Path | None
-    end: str
-    signal: int
-    acknowledged: bool
-    recording_error: str
-
-    @property
-    def realtime_factor(self) -> float:
-        """Simulated seconds per second of wall time."""
-        return self.simulated / self.wall if self.wall > 0.0 else 0.0
-
-
-class LandingNode(Node):
-    """Lands once. Its ROS parameters are those of `node_settings`; `changes` are given ones that win over the command line's.
-
-    Raises LandingError for bad parameters.
+    `changes` are parameters that win over the command line's. `failure` is the error that the last transition or the landing met with.
+    `over` is set when the landing has come to its end or to an error, and when the node is shut down. Raises LandingError for bad
+    parameters.
     """
 
     def __init__(self, changes: Mapping[str, Any] | None = None, namespace: str = NAMESPACE) -> None:
         given = [Parameter(name, value=value) for name, value in (changes or {}).items()]
         super().__init__("landing_node", namespace=namespace, parameter_overrides=given)
-        self._spinner = SingleThreadedExecutor(context=self.context)
-        self._spinner.add_node(self)
-        self.settings: Settings = read_settings(self)
+        self.failure: LandingError | None = None
+        self.over = threading.Event()
+        self.landing: LandingRun | None = None
+        self._thread: threading.Thread | None = None
+        self.values = NodeParameters(self, lambda: self._thread is not None, self._parameters_changed)
+        self._pause = threading.Event()
+        self._fatal: LandingError | None = None
+        self._last: LandingRun | None = None
+        self._landings = 0
+        self._warned: dict[str, float] = {}
+        self._qos = PROFILES[self.values["qos"]]
+        self._live = LivePublisher()
+        self._names: dict[Topic, str] = {}
+        self._outlets: dict[Topic, Outlet] = {}
         # `struts` last: who waits for a match on it finds the others matched.
-        self._outlets = {t: self._outlet(t) for t in reversed(topics.RECORDED)}
-        self._clock_publisher = self.create_publisher(message_class(topics.CLOCK.type_name), topics.CLOCK.name, CLOCK.profile())
-        self._messages = SampleMessages()
-        self._wireframe = Wireframe(self.settings.parameters)
-        self._health = Health(f"{self.get_fully_qualified_name().strip('/')}", self.settings.mode)
-        self._recorder: Recorder | None = None
-        self._samples = 0
-        self._told = False
+        for topic in (*topics.LATCHED, *reversed([t for t in topics.RECORDED if t not in topics.LATCHED])):
+            self._add_outlet(topic, LATCHED if topic in topics.LATCHED else self._qos)
+        if self.values["clock"]:
+            self._add_outlet(topics.CLOCK, CLOCK)
+        self._inputs = InputQueue(self.values["input_timeout"], self._warn)
+        self.create_subscription(WrenchStamped, "external_wrench", self._inputs.take_wrench, TELEMETRY.profile())
+        self.create_subscription(JointState, "ground", self._inputs.take_ground, TELEMETRY.profile())
+        offer_services(self)
 
-    def _outlet(self, topic: Topic) -> tuple[Any, str]:
-        name = resolve(self.get_namespace(), topic.name)
-        return self.create_publisher(message_class(topic.type_name), name, TELEMETRY.profile()), name
+    def _add_outlet(self, topic: Topic, qos: Qos) -> None:
+        name = self._names[topic] = resolve(self.get_namespace(), topic.name)
+        self._outlets[topic] = self._live.add(Outlet(self.create_publisher(message_class(topic.type_name), name, qos.profile())))
 
-    def land(self, stop: StopFlag) -> RunSummary:
-        """The landing, from the sample at time 0 to its end, a signal, or the vehicle's toppling.
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Loads the FMU, tells what it has, and describes the vehicle. Fails, with the reason in the node's log, where that cannot be."""
+        return self._transition(self._make_landing, FAILURE)
 
-        Raises LandingError: FMU missing or not ours, log folder not to be had, no subscribers in time, a step that the FMU refuses.
-        """
-        s = self.settings
-        pacer = Pacer(s.step_size / s.realtime_factor if s.realtime_factor > 0.0 else 0.0)
-        with FmuRunner(s.fmu, dict(s.parameters.items())) as fmu:
-            self._recorder = self._open_recorder(fmu)
-            try:
-                wait_for_subscribers(self._outlets[topics.STRUTS][0], s.wait_for_subscribers, s.wait_timeout, self._spinner, stop)
-                end = self._loop(fmu, pacer, stop)
-            finally:
-                wall = pacer.elapsed
-                self._close_recorder()
-        acknowledged = wait_for_acknowledgement([p for p, _ in self._outlets.values()], interrupted=bool(stop))
-        recorder = self._recorder
-        return RunSummary(
-            samples=self._samples,
-            recorded=recorder.count if recorder else 0,
-            simulated=max(0, self._samples - 1) * s.step_size,
-            wall=wall,
-            late_steps=pacer.late_steps,
-            median_lateness=pacer.median_lateness(),
-            largest_lateness=pacer.largest_lateness(),
-            lost=pacer.lost,
-            folder=recorder.folder if recorder and recorder.count else None,
-            end=end,
-            signal=stop.number,
-            acknowledged=acknowledged,
-            recording_error=recorder.error if recorder else "",
-        )
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Lands, or goes on after a pause, in the pace of `realtime_factor`. The first time it begins the log."""
+        return self._transition(self._start, FAILURE)
 
-    def _loop(self, fmu: FmuRunner, pacer: Pacer, stop: StopFlag) -> str:
-        from tqdm import tqdm
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Pauses. After an error of the landing it leads to the error's processing."""
+        return self._transition(self._stop_or_raise, ERROR)
 
-        s = self.settings
-        bar_every = max(1, round(0.02 / s.step_size))
-        every = {t: max(1, round(t.period / s.step_size)) for t in (topics.MARKERS, topics.DIAGNOSTICS)}
-        bar_format = "landing {percentage:3.0f}%|{bar}| {n:.2f}/{total:.2f} s [{elapsed}<{remaining}]"
-        # A full collection in mid-landing would be a late step; what is there now stays anyway.
-        gc.collect()
-        gc.freeze()
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Completes the log and frees the FMU."""
+        return self._transition(self._free, ERROR)
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """As cleanup, from any state; the node can do nothing afterwards."""
+        result = self._transition(self._free, ERROR)
+        self.over.set()
+        return result
+
+    def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Frees everything: the node is unconfigured afterwards, with its log complete as far as it got."""
+        failure = self.failure
+        result = self._transition(self._free, FAILURE)
+        self.failure = failure
+        self.over.set()
+        return result
+
+    def _transition(self, action: Callable[[], None], otherwise: TransitionCallbackReturn) -> TransitionCallbackReturn:
+        # rclpy takes exceptions from transitions without a word.
+        self.failure = None
         try:
-            with tqdm(total=s.steps * s.step_size, disable=not sys.stderr.isatty(), bar_format=bar_format, file=sys.stderr) as bar:
-                pacer.start()
-                spun = time.perf_counter()
-                for k in range(s.steps + 1):
-                    if k:
-                        fmu.step(k - 1, s.step_size)
-                    while not pacer.hold(k):
-                        if stop:
-                            break
-                        self._spinner.spin_once(timeout_sec=0)
-                    if stop:
-                        return "interrupted"
-                    values = fmu.values()
-                    toppled = values[PHASE] == TOPPLED
-                    last = k == s.steps or toppled
-                    self._publish(k * s.step_ns, values, markers=k % every[topics.MARKERS] == 0 or last)
-                    if k % every[topics.DIAGNOSTICS] == 0 or last:
-                        self._report(k, values, pacer)
-                    if toppled:
-                        return "toppled"
-                    if k % bar_every == 0 or last:
-                        bar.update(k * s.step_size - bar.n)
-                    if time.perf_counter() - spun > SPIN_SECONDS:
-                        self._spinner.spin_once(timeout_sec=0)
-                        spun = time.perf_counter()
-        finally:
-            gc.unfreeze()
-        return "finished"
+            action()
+            return SUCCESS
+        except LandingError as e:
+            self.failure = e
+        except Exception as e:
+            self.failure = LandingError(f"{type(e).__name__}: {e}")
+        # The command that walks the states by itself says it.
+        if not self.values["autostart"]:
+            self.get_logger().error(str(self.failure))
+        return otherwise
 
-    def _publish(self, stamp: int, values: Sequence[float], markers: bool) -> None:
-        messages = self._messages
-        messages.fill(stamp, values)
-        self._clock_publisher.publish(serialize_message(messages.clock))
-        for topic, message in messages.messages:
-            self._send(topic, stamp, message)
-        if markers:
-            self._send(topics.MARKERS, stamp, self._wireframe.fill(stamp, values))
-        self._samples += 1
-        if self._recorder is not None:
-            self._recorder.flush()
-            if self._recorder.error and not self._told:
-                self._told = True
-                self.get_logger().error(f"{self._recorder.error}; the landing goes on unrecorded")
+    def _make_landing(self) -> None:
+        settings = self.values.settings()
+        folder = settings.folder()
+        for topic, outlet in self._outlets.items():
+            outlet.every = settings.every.get(topic, 1) if topic not in topics.OCCASIONAL else 1
+        self.landing = LandingRun(
+            settings,
+            folder if folder is None or not self._landings else unused(folder),
+            self._live,
+            self._outlets,
+            self._names,
+            self._qos,
+            self._inputs,
+            self.get_fully_qualified_name().strip("/"),
+            self.get_namespace(),
+            lambda text: self.get_logger().error(text),
+        )
+        fmu = self.landing.fmu
+        counts = f"{len(PARAMETER_QUANTITIES)} parameters, {len(INPUT_QUANTITIES)} inputs, {len(OUTPUT_QUANTITIES)} outputs"
+        self.get_logger().info(f"{fmu.path}, version {fmu.version}: {counts}, listed on {self._names[topics.VARIABLES]}")
+        for topic, text in ((topics.VARIABLES, variables()), (topics.ROBOT_DESCRIPTION, robot_description(settings.parameters))):
+            data = serialize_message(String(data=text))
+            self._outlets[topic].publish(data)
+            if topic is topics.ROBOT_DESCRIPTION:
+                self.landing.description = data
 
-    def _send(self, topic: Topic, stamp: int, message: Any) -> None:
-        publisher, name = self._outlets[topic]
-        data = serialize_message(message)
-        # DDS hands payloads on in whole words: padded here, what is recorded is to the byte what subscribers get.
-        if rest := len(data) % 4:
-            data += bytes(4 - rest)
-        publisher.publish(data)
-        if self._recorder is not None:
-            self._recorder.write(name, stamp, data)
+    def _start(self) -> None:
+        landing = self._need_landing()
+        self._begin(landing)
+        self._pause.clear()
+        self.over.clear()
+        self._thread = threading.Thread(target=self._land, args=(landing,), name="landing", daemon=True)
+        self._thread.start()
 
-    def _report(self, k: int, values: Sequence[float], pacer: Pacer) -> None:
-        s, recorder = self.settings, self._recorder
-        elapsed = pacer.elapsed
-        error = recorder.error if recorder else ""
-        trouble = error or (f"{pacer.late_steps} steps late" if pacer.late_steps else "")
-        told = {
-            "phase": phase_name(values[PHASE]),
-            "energy balance [J]": f"{values[BALANCE]:.6g}",
-            "steps late": str(pacer.late_steps),
-            "time lost to stalls [s]": f"{pacer.lost:.3f}",
-            "largest lateness [s]": f"{pacer.largest_lateness():.6f}",
-            "real-time factor": f"{k * s.step_size / elapsed:.3f}" if elapsed > 0.0 else "0",
-            "samples published": str(self._samples),
-            "messages recorded": str(recorder.count if recorder else 0),
-        }
-        stamp = k * s.step_ns
-        self._send(topics.DIAGNOSTICS, stamp, self._health.fill(stamp, told, trouble, failed=bool(error)))
+    def _begin(self, landing: LandingRun) -> None:
+        if landing.recorder is None and not landing.samples:
+            landing.open_log()
+            self._landings += 1
 
-    def _open_recorder(self, fmu: FmuRunner) -> Recorder | None:
-        s = self.settings
-        if s.record is None:
-            return None
-        # In the order in which they are published, not in that of their making.
-        recorded = [RecordedTopic(self._outlets[t][1], t.type_name, TELEMETRY) for t in topics.RECORDED]
-        return Recorder(s.record, recorded, self._metadata(fmu), {"parameters.toml": to_toml(s.parameters).encode("utf-8")})
+    def _land(self, landing: LandingRun) -> None:
+        try:
+            if not landing.samples:
+                s = landing.settings
+                wait_until_matched(self._outlets[topics.STRUTS].publisher, s.wait_for_subscribers, s.wait_timeout, self._pause.is_set)
+            landing.go_on(self._pause.is_set)
+            if landing.end:
+                self.get_logger().debug(f"{landing.end} after {landing.time:g} s")
+                landing.close_log()
+                self.over.set()
+        except Exception as e:
+            self._fatal = e if isinstance(e, LandingError) else LandingError(f"{type(e).__name__}: {e}")
+            # Transitions belong to the executor's thread.
+            if self.executor is not None:
+                self.executor.create_task(self.trigger_deactivate)
 
-    def _metadata(self, fmu: FmuRunner) -> dict[str, str]:
-        s = self.settings
-        told = {
-            "mode": s.mode,
-            "preset": s.preset,
-            "step_size": repr(s.step_size),
-            "stop_time": repr(s.stop_time),
-            "realtime_factor": repr(s.realtime_factor),
-            "namespace": self.get_namespace(),
-            "recorded": datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
-            "fmu_guid": fmu.guid,
-            "fmu_version": fmu.version,
-            "fmu_made_by": fmu.made_by,
-            **build_metadata(s.fmu),
-            "version_rlv_landing": __version__,
-            "version_python": platform.python_version(),
-        }
-        for package in ("fmpy", "pythonfmu"):
-            try:
-                told[f"version_{package}"] = version(package)
-            except PackageNotFoundError:
-                continue
-        return told
+    def _stop(self) -> None:
+        thread, self._thread = self._thread, None
+        if thread is not None:
+            self._pause.set()
+            thread.join()
 
-    def _close_recorder(self) -> None:
-        if self._recorder is None:
-            return
-        if self._recorder.count:
-            self._recorder.close()
-        else:
-            self._recorder.discard()
+    def _stop_or_raise(self) -> None:
+        self._stop()
+        fatal, self._fatal = self._fatal, None
+        if fatal is not None:
+            raise fatal
+
+    def _free(self) -> None:
+        self._stop()
+        landing, self.landing = self.landing, None
+        if landing is not None:
+            self._last = landing
+            landing.close()
+
+    def _need_landing(self) -> LandingRun:
+        if self.landing is None:
+            raise LandingError("there is no landing; configure the node first")
+        return self.landing
+
+    def reset(self) -> str:
+        """Back to time 0 with the parameters as they are now, and a log of its own; a node that lands lands on from there."""
+        self._need_landing()
+        lands = self._thread is not None
+        self._free()
+        self._make_landing()
+        if lands:
+            self._start()
+        return f"back to 0 s{', landing' if lands else ''}"
+
+    def step(self) -> str:
+        """`step_count` steps of a node that is configured and does not land; the time reached. Raises LandingError in another state."""
+        landing = self._need_landing()
+        if self._thread is not None:
+            raise LandingError("the node lands; deactivate it, then it can be stepped")
+        if landing.end:
+            raise LandingError(f"the landing has {landing.end} at {landing.time:g} s; ~/reset begins another")
+        self._begin(landing)
+        landing.step(self.values["step_count"])
+        if landing.end:
+            landing.close_log()
+        return f"at {landing.time:.9g} s{f', {landing.end}' if landing.end else ''}"
+
+    def _parameters_changed(self, changed: dict[str, Any]) -> None:
+        if "realtime_factor" in changed and self.landing is not None:
+            self.landing.realtime_factor = changed["realtime_factor"]
+        self._inputs.timeout = self.values["input_timeout"]
+
+    def _warn(self, text: str) -> None:
+        now, kind = time.monotonic(), text.split(":")[0]
+        if now - self._warned.get(kind, -WARN_SECONDS) >= WARN_SECONDS:
+            self._warned[kind] = now
+            self.get_logger().warning(text)
+
+    @property
+    def state(self) -> str:
+        """The lifecycle's state: unconfigured, inactive, active, finalized, or on the way between two of them."""
+        return str(self._state_machine.current_state[1])
+
+    @property
+    def has_landed(self) -> bool:
+        """Whether there is a landing of which there is something to tell."""
+        landing = self.landing or self._last
+        return landing is not None and landing.samples > 0
+
+    def summary(self, signal: int) -> RunSummary:
+        """How the last landing went, once it has ended or is paused; `signal` is the one that interrupted it, or 0."""
+        landing = self.landing or self._last
+        if landing is None:
+            raise LandingError("nothing has landed; configure and activate the node")
+        publishers = [o.publisher for t, o in self._outlets.items() if t not in topics.LATCHED and t is not topics.CLOCK]
+        acknowledged = wait_for_acknowledgement(publishers, interrupted=bool(signal))
+        return landing.summary(landing.end or "interrupted", signal, acknowledged)
 
     def destroy_node(self) -> None:
-        """Also lets go of the executor."""
-        self._spinner.shutdown()
+        """Also ends the landing, completes its log and frees the FMU."""
+        self._free()
         super().destroy_node()
-
-
-def land(changes: Mapping[str, Any], ros_args: Sequence[str], stop: StopFlag, namespace: str = NAMESPACE) -> RunSummary:
-    """One landing with the ROS parameters `changes`, in a ROS 2 started for it with `ros_args`. Raises LandingError as the node does."""
-    with ros_context(ros_args):
-        node = LandingNode(changes, namespace)
-        try:
-            return node.land(stop)
-        finally:
-            node.destroy_node()
-
-
-def main() -> int:
-    """For `ros2 run`: everything by ROS parameters."""
-    from rlv_landing.errors import LandingError
-
-    try:
-        with StopFlag() as stop:
-            summary = land({}, sys.argv[1:], stop)
-    except LandingError as e:
-        print(f"error: {e}", file=sys.stderr)
-        return 2
-    return 128 + summary.signal if summary.signal else 1 if summary.recording_error else 0

@@ -1,47 +1,80 @@
-"""The node's ROS parameters: declared with description, unit and range, checked, and made into settings."""
+"""The node's settings: one table of what they are called, what they mean and what they may be. Needs no ROS 2."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime, timezone
 from itertools import count
 from math import inf, isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, Literal
 
 from rlv_landing import Parameters
-from rlv_landing.choices import choose_parameters
-from rlv_landing.errors import LandingError, unknown
-from rlv_landing.parameters import PARAMETER_QUANTITIES
+from rlv_landing.errors import LandingError
 from rlv_landing.presets import DEFAULT_PRESET
 
-if TYPE_CHECKING:
-    from rclpy.node import Node
+from .qos import PROFILES
+from .topics import CLOCK, OCCASIONAL, SAMPLED, Topic
 
-# name -> (default, meaning, lower bound, upper bound)
-SETTINGS: dict[str, tuple[Any, str, float, float]] = {
-    "fmu": ("build/RlvLanding.fmu", "the FMU to step", 0.0, 0.0),
-    "preset": ("", f"preset of parameters; empty: {DEFAULT_PRESET}", 0.0, 0.0),
-    "mode": ("", "landing mode 2-2 or 1-2-1; empty: the parameters' own", 0.0, 0.0),
-    "parameters_file": ("", "TOML file of parameters, instead of a preset", 0.0, 0.0),
-    "realtime_factor": (1.0, "simulated seconds per second of wall time; 1 is real time, 0 as fast as possible", 0.0, 1e3),
-    "step_size": (1e-3, "communication step and publishing period [s], a whole number of nanoseconds", 1e-6, 1.0),
-    "stop_time": (1.0, "end of the landing [s]", 0.0, 3600.0),
-    "record": ("", "folder to record to, which must not exist; empty: no recording", 0.0, 0.0),
-    "log_root": ("", "record to a new folder below this one, named by UTC time and mode, where `record` is empty", 0.0, 0.0),
-    "wait_for_subscribers": (0, "subscriptions on `struts` to wait for before the landing starts", 0.0, 1000.0),
-    "wait_timeout": (30.0, "longest wait for them [s]", 0.0, 86400.0),
+# When a setting may be changed: at the start only, while the node does not land, or at any time.
+When = Literal["start", "paused", "always"]
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A setting of the node: its default (whose type is its own), meaning, bounds or choices, and when it may be changed."""
+
+    default: Any
+    meaning: str
+    lo: float = 0.0
+    hi: float = 0.0
+    when: When = "paused"
+    choices: tuple[str, ...] = ()
+
+
+def downsampling(topic: Topic) -> str:
+    """The setting that thins out `topic`."""
+    return f"publish_every.{topic.name.strip('/').replace('/', '_')}"
+
+
+PUBLISHED: tuple[Topic, ...] = (*SAMPLED, *OCCASIONAL, CLOCK)
+SETTINGS: dict[str, Setting] = {
+    "fmu": Setting("build/RlvLanding.fmu", "the FMU to step"),
+    "preset": Setting("", f"preset of parameters; empty: {DEFAULT_PRESET}", when="start"),
+    "mode": Setting("", "landing mode 2-2 or 1-2-1; empty: the parameters' own", when="start"),
+    "parameters_file": Setting("", "TOML file of parameters, instead of a preset", when="start"),
+    "realtime_factor": Setting(1.0, "simulated seconds per second of wall time; 1 is real time, 0 as fast as possible", 0.0, 1e3, "always"),
+    "step_size": Setting(1e-3, "communication step and publishing period [s], a whole number of nanoseconds", 1e-6, 1.0),
+    "stop_time": Setting(1.0, "end of the landing [s]", 0.0, 3600.0),
+    "step_count": Setting(1, "steps that one call of ~/step does", 1.0, 1e6, "always"),
+    "input_timeout": Setting(
+        0.5,
+        "wall time [s] after which a silent external_wrench is taken back to 0 and a silent ground stands still; 0: never",
+        0.0,
+        3600.0,
+        "always",
+    ),
+    "qos": Setting("telemetry", "quality of service of what is published at every step", when="start", choices=tuple(PROFILES)),
+    "clock": Setting(True, "whether /clock is published; of several nodes in one ROS domain one should", when="start"),
+    "autostart": Setting(True, "land at once and end afterwards; else wait for lifecycle transitions, and stay", when="start"),
+    "record": Setting("", "folder to record to, which must not exist; empty: no recording"),
+    "log_root": Setting("", "record to a new folder below this one, named by UTC time and mode, where `record` is empty"),
+    "wait_for_subscribers": Setting(0, "subscriptions on `struts` to wait for before the landing starts", 0.0, 1000.0),
+    "wait_timeout": Setting(30.0, "longest wait for them [s]", 0.0, 86400.0),
+    **{
+        downsampling(t): Setting(0, f"publish one sample of so many on {t.name}; 0: {'its own rate' if t.period else 'each'}", 0.0, 1e9)
+        for t in PUBLISHED
+    },
 }
-# What rclpy declares by itself for every node.
-BUILT_IN = ("use_sim_time", "start_type_description_service")
-# The landing mode is the setting `mode`, which also chooses the values that belong to one mode only.
-MODE = "drop.mode"
 
 
 @dataclass(frozen=True)
 class Settings:
-    """What the node does. Times in s; `step_ns` is the step in nanoseconds, from which all stamps are counted."""
+    """What a landing is done with. Times in s; `step_ns` is the step in nanoseconds, from which all stamps are counted.
+
+    `every` says of how many samples one is published, by topic.
+    """
 
     fmu: Path
     parameters: Parameters
@@ -50,9 +83,11 @@ class Settings:
     step_size: float
     step_ns: int
     stop_time: float
-    record: Path | None
+    record: str
+    log_root: str
     wait_for_subscribers: int
     wait_timeout: float
+    every: Mapping[Topic, int] = field(default_factory=dict)
 
     @property
     def mode(self) -> str:
@@ -64,65 +99,65 @@ class Settings:
         """Steps from 0 to the stop time; one more sample than steps is published."""
         return int(self.stop_time / self.step_size * (1.0 + 1e-12) + 1e-9)
 
+    def folder(self) -> Path | None:
+        """A folder to record to that does not exist yet, or None. A second landing into `record` gets a number of its own."""
+        if self.record:
+            return Path(self.record)
+        if not self.log_root:
+            return None
+        return unused(Path(self.log_root) / f"{datetime.now(timezone.utc):%Y%m%dT%H%M%SZ}-{self.mode}")
 
-def read_settings(node: Node) -> Settings:
-    """Declares the node's parameters and reads them. Raises LandingError: unknown name, wrong type, out of bounds, no such preset."""
-    # rclpy leaves overrides of undeclared parameters aside without a word; a misspelt name must not go unnoticed.
-    given: dict[str, Any] = {name: p.value for name, p in node._parameter_overrides.items()}
-    for name in given:
-        if name not in (*SETTINGS, *PARAMETER_QUANTITIES, *BUILT_IN) and not name.startswith("qos_overrides."):
-            raise unknown("ROS parameter", name, (*SETTINGS, *PARAMETER_QUANTITIES))
-    if MODE in given:
-        given.setdefault("mode", given.pop(MODE))
-    values = {name: check_setting(name, given.get(name, SETTINGS[name][0])) for name in SETTINGS}
-    parameters = choose_parameters(
-        values["preset"] or None,
-        values["parameters_file"] or None,
-        values["mode"] or None,
-        {n: v for n, v in given.items() if n in PARAMETER_QUANTITIES},
-    )
-    preset = values["parameters_file"] or values["preset"] or DEFAULT_PRESET
+
+def unused(folder: Path) -> Path:
+    """`folder`, or the first of `folder`-2, -3, ... that does not exist."""
+    names = (folder if n == 1 else folder.with_name(f"{folder.name}-{n}") for n in count(1))
+    return next(f for f in names if not f.exists())
+
+
+def make_settings(values: Mapping[str, Any], parameters: Parameters) -> Settings:
+    """The settings from `values` by name, each checked. Raises LandingError where two of them do not go together."""
     step_ns = whole_nanoseconds(values["step_size"])
     if values["stop_time"] < values["step_size"]:
         raise LandingError(f"stop_time = {values['stop_time']:g} s is below the step of {values['step_size']:g} s; land for longer")
-    _declare(node, {**values, "mode": parameters.drop.mode, "preset": "" if values["parameters_file"] else preset}, parameters)
+    own = {t: max(1, round(t.period / values["step_size"])) for t in PUBLISHED}
     return Settings(
         fmu=Path(values["fmu"]),
         parameters=parameters,
-        preset=preset,
+        preset=values["parameters_file"] or values["preset"] or DEFAULT_PRESET,
         realtime_factor=values["realtime_factor"],
         step_size=values["step_size"],
         step_ns=step_ns,
         stop_time=values["stop_time"],
-        record=_folder(values["record"], values["log_root"], parameters.drop.mode),
+        record=values["record"],
+        log_root=values["log_root"],
         wait_for_subscribers=values["wait_for_subscribers"],
         wait_timeout=values["wait_timeout"],
+        every={t: values[downsampling(t)] or own[t] for t in PUBLISHED},
     )
 
 
-def _folder(record: str, root: str, mode: str) -> Path | None:
-    if record or not root:
-        return Path(record) if record else None
-    name = f"{datetime.now(timezone.utc):%Y%m%dT%H%M%SZ}-{mode}"
-    # Two runs may start in one second.
-    names = (name if n == 1 else f"{name}-{n}" for n in count(1))
-    return next(folder for folder in (Path(root) / n for n in names) if not folder.exists())
-
-
 def check_setting(name: str, value: Any) -> Any:
-    """`value` as the setting `name` takes it. Raises LandingError: wrong type, not finite, out of bounds."""
-    default, meaning, lo, hi = SETTINGS[name]
-    if isinstance(default, str):
+    """`value` as the setting `name` takes it. Raises LandingError: wrong type, not finite, out of bounds, not one of its choices."""
+    s = SETTINGS[name]
+    if isinstance(s.default, bool):
+        if not isinstance(value, bool):
+            raise LandingError(f"{name} = {value!r} is neither true nor false ({s.meaning})")
+        return value
+    if isinstance(s.default, str):
         if not isinstance(value, str):
-            raise LandingError(f"{name} = {value!r} is not a text ({meaning}); put it in quotes")
+            raise LandingError(f"{name} = {value!r} is not a text ({s.meaning}); put it in quotes")
+        if s.choices and value not in s.choices:
+            raise LandingError(f"{name} = {value!r} is not one of {', '.join(s.choices)} ({s.meaning})")
         return value
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise LandingError(f"{name} = {value!r} is not a number ({meaning})")
-    if not (isfinite(value) and lo <= value <= hi):
-        raise LandingError(f"{name} = {value:g} is outside [{lo:g}, {hi:g}] ({meaning})")
-    if isinstance(default, int) and value != int(value):
-        raise LandingError(f"{name} = {value:g} is not a whole number ({meaning})")
-    return type(default)(value)
+        raise LandingError(f"{name} = {value!r} is not a number ({s.meaning})")
+    if not (isfinite(value) and s.lo <= value <= s.hi):
+        raise LandingError(f"{name} = {value:g} is outside [{s.lo:g}, {s.hi:g}] ({s.meaning})")
+    if isinstance(s.default, int) and value != int(value):
+        raise LandingError(f"{name} = {value:g} is not a whole number ({s.meaning})")
+    if name == "step_size":
+        whole_nanoseconds(value)
+    return type(s.default)(value)
 
 
 def whole_nanoseconds(step: float) -> int:
@@ -133,26 +168,3 @@ def whole_nanoseconds(step: float) -> int:
     if nanoseconds < 1 or nanoseconds / 1e9 != step:
         raise LandingError(f"step_size = {step!r} s is not a whole number of nanoseconds, which stamps are counted in; round it to 1e-9 s")
     return nanoseconds
-
-
-def _declare(node: Node, values: Mapping[str, Any], parameters: Parameters) -> None:
-    from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
-
-    for name, value in values.items():
-        default, meaning, lo, hi = SETTINGS[name]
-        descriptor = ParameterDescriptor(description=meaning, read_only=True)
-        if isinstance(default, float):
-            descriptor.floating_point_range = [FloatingPointRange(from_value=lo, to_value=hi, step=0.0)]
-        elif isinstance(default, int):
-            descriptor.integer_range = [IntegerRange(from_value=int(lo), to_value=int(hi), step=1)]
-        node.declare_parameter(name, value, descriptor, ignore_override=True)
-    for name, value in parameters.items():
-        q = PARAMETER_QUANTITIES[name]
-        if name == MODE:
-            continue
-        descriptor = ParameterDescriptor(description=f"{q.meaning} [{q.unit}]" if q.unit else q.meaning, read_only=True)
-        if q.choices:
-            descriptor.additional_constraints = f"one of {', '.join(q.choices)}"
-        else:
-            descriptor.floating_point_range = [FloatingPointRange(from_value=q.lo, to_value=q.hi, step=0.0)]
-        node.declare_parameter(name, value, descriptor, ignore_override=True)

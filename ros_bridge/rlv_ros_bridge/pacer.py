@@ -1,65 +1,75 @@
-"""Keeps a loop to the wall clock."""
+"""Keeps a loop to the wall clock, and counts where it does not succeed."""
 
 from __future__ import annotations
 
 import time
-from statistics import median
+from array import array
+from collections.abc import Callable
 
 # Beyond this the lost time is given up: to make it good would be a burst that no subscriber expects.
 STALL_SECONDS = 0.1
+LOOK_ROUND_SECONDS = 0.05
 
 
 class Pacer:
-    """Holds step k back until `start + k * period` [s] of wall time; a period of 0 never holds back.
+    """Holds step k back until `start + (k - first) * period` [s] of wall time; a period of 0 never holds back.
 
     The start is fixed, so that single late steps do not add up. `late_steps` began more than one period too late; `lost` [s] is time
-    given up after stalls; `lateness` [s] is kept for every step.
+    given up after stalls; `lateness` [s] is that of each sample's publication.
     """
 
     def __init__(self, period: float) -> None:
         self.period = period
         self.late_steps = 0
         self.lost = 0.0
-        self.lateness: list[float] = []
-        self.started = self._start = time.perf_counter()
+        self.lateness = array("d")
+        self._active = 0.0
+        self._started: float | None = None
+        self._start = time.perf_counter()
+        self._first = 0
 
-    def start(self) -> None:
-        """Time runs from now."""
-        self.started = self._start = time.perf_counter()
+    def start(self, k: int, period: float) -> None:
+        """Time runs from now on, at the step k; also after a pause and for a new period."""
+        self.stop()
+        self.period = period
+        self._first = k
+        self._started = self._start = time.perf_counter()
+
+    def stop(self) -> None:
+        """A pause: time stands still until the next start."""
+        self._active = self.elapsed
+        self._started = None
 
     @property
     def elapsed(self) -> float:
-        """Wall time since the start [s]."""
-        return time.perf_counter() - self.started
+        """Wall time in which time ran [s]."""
+        return self._active + (time.perf_counter() - self._started if self._started is not None else 0.0)
 
-    def spare(self, k: int) -> float:
-        """Wall time left until step k is due [s]; infinite where nothing is held back, since then no step is due."""
-        return self._start + k * self.period - time.perf_counter() if self.period else float("inf")
+    def due(self, k: int) -> float:
+        """When step k is due, on `time.perf_counter`'s clock [s]; the past where nothing is held back."""
+        return self._start + (k - self._first) * self.period
 
-    def hold(self, k: int, longest: float = 0.05) -> bool:
-        """Sleeps until step k is due, at most `longest` [s], so that the caller can look round; whether it is due now."""
+    def hold(self, k: int, interrupted: Callable[[], bool]) -> bool:
+        """Sleeps until step k is due; False where `interrupted` gets true meanwhile."""
         if not self.period:
-            return True
-        left = self.spare(k)
-        if left > 0.0:
-            time.sleep(min(left, longest))
-            if left > longest:
+            return not interrupted()
+        while (left := self.due(k) - time.perf_counter()) > 0.0:
+            time.sleep(min(left, LOOK_ROUND_SECONDS))
+            if left > LOOK_ROUND_SECONDS and interrupted():
                 return False
-        self._note(-self.spare(k))
-        return True
-
-    def _note(self, late: float) -> None:
-        self.lateness.append(late)
+        late = -left
         if late > self.period:
             self.late_steps += 1
         if late > max(STALL_SECONDS, self.period):
             self._start += late
             self.lost += late
+        return not interrupted()
 
-    def median_lateness(self) -> float:
-        """Median lateness of the steps so far [s]."""
-        return median(self.lateness) if self.lateness else 0.0
+    def note_published(self, due: float) -> None:
+        """The sample that was due at `due` is published now."""
+        self.lateness.append(max(0.0, time.perf_counter() - due))
 
-    def largest_lateness(self) -> float:
-        """Largest lateness of the steps so far [s]."""
-        return max(self.lateness, default=0.0)
+    def lateness_at(self, part: float) -> float:
+        """The lateness that the `part` (0.5: median, 1: all) of the samples so far stayed below or at [s]; 0 where there are none."""
+        ordered = sorted(self.lateness)
+        return ordered[min(len(ordered) - 1, int(part * len(ordered)))] if ordered else 0.0

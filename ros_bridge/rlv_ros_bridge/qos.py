@@ -52,7 +52,12 @@ class Qos:
 
 # The last second is kept for a slow subscriber, never everything: a writer that keeps all waits for its slowest reader.
 TELEMETRY = Qos()
+# ROS's own profile for sensors: what is late is not sent again.
+SENSOR_DATA = Qos(reliability="best_effort", depth=5)
 CLOCK = Qos(depth=1)
+# For what is said once and holds: who comes later gets it as well.
+LATCHED = Qos(durability="transient_local", depth=1)
+PROFILES = {"telemetry": TELEMETRY, "sensor_data": SENSOR_DATA}
 
 
 def parse_qos(text: str) -> Qos:

@@ -7,7 +7,7 @@ import signal
 import tempfile
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType, TracebackType
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 # Fast DDS asks its readers every 3 s what they have got.
 ACKNOWLEDGE_SECONDS = 4.0
 INTERRUPTED_SECONDS = 0.2
+WAIT_SECONDS = 0.05
+# How often it is asked whether subscribers have been matched.
+MATCH_SECONDS = 0.01
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -34,6 +37,12 @@ class StopFlag:
 
     def __bool__(self) -> bool:
         return self.number != 0
+
+    def wait(self, seconds: float) -> None:
+        """Waits for a signal, at most `seconds`."""
+        end = time.monotonic() + seconds
+        while not self.number and time.monotonic() < end:
+            time.sleep(min(seconds, WAIT_SECONDS))
 
     def _note(self, number: int, _frame: FrameType | None) -> None:
         self.number = self.number or number
@@ -94,14 +103,27 @@ def wait_for_subscribers(publisher: Publisher[Any], count: int, timeout: float, 
 
     Raises LandingError after `timeout` [s].
     """
+
+    def interrupted() -> bool:
+        executor.spin_once(timeout_sec=0.02)
+        return bool(stop)
+
+    wait_until_matched(publisher, count, timeout, interrupted)
+
+
+def wait_until_matched(publisher: Publisher[Any], count: int, timeout: float, interrupted: Callable[[], object]) -> None:
+    """Returns once `count` subscriptions are matched on the publisher's topic, or `interrupted` gets true.
+
+    Raises LandingError after `timeout` [s].
+    """
     end = time.monotonic() + timeout
-    while not stop and (matched := publisher.get_subscription_count()) < count:
+    while not interrupted() and (matched := publisher.get_subscription_count()) < count:
         if time.monotonic() > end:
             raise LandingError(
                 f"only {matched} of {count} subscribers of {publisher.topic_name} after {timeout:g} s; "
                 "start them first, or check their ROS_DOMAIN_ID"
             )
-        executor.spin_once(timeout_sec=0.02)
+        time.sleep(MATCH_SECONDS)
 
 
 def wait_for_acknowledgement(publishers: Sequence[Publisher[Any]], interrupted: bool) -> bool:

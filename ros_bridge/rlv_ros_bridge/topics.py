@@ -40,8 +40,21 @@ MARKERS = Topic("markers", "visualization_msgs/msg/MarkerArray", 0.033)
 DIAGNOSTICS = Topic("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", 0.1)
 CLOCK = Topic("/clock", "rosgraph_msgs/msg/Clock")
 
+# The inputs as they were applied: stamped with the simulation time from which on they act.
+APPLIED_WRENCH = Topic("applied/external_wrench", "geometry_msgs/msg/WrenchStamped")
+APPLIED_GROUND = Topic("applied/ground", "sensor_msgs/msg/JointState")
+ROBOT_DESCRIPTION = Topic("robot_description", "std_msgs/msg/String")
+VARIABLES = Topic("variables", "std_msgs/msg/String")
+
+# What goes out at every step, and what is made now and then.
+SAMPLED: tuple[Topic, ...] = (STRUTS, POSE, RPY, TWIST, ACCEL, TOP_ACCEL, *CONTACTS, ODOM)
+OCCASIONAL: tuple[Topic, ...] = (MARKERS, DIAGNOSTICS)
+APPLIED: tuple[Topic, ...] = (APPLIED_WRENCH, APPLIED_GROUND)
+# Said once, and kept for those who come later.
+LATCHED: tuple[Topic, ...] = (ROBOT_DESCRIPTION, VARIABLES)
+
 # What is recorded, in the order it is published at one instant. The clock is not: a replay makes its own.
-RECORDED: tuple[Topic, ...] = (STRUTS, POSE, RPY, TWIST, ACCEL, TOP_ACCEL, *CONTACTS, ODOM, MARKERS, DIAGNOSTICS)
+RECORDED: tuple[Topic, ...] = (*SAMPLED, *OCCASIONAL, *APPLIED, ROBOT_DESCRIPTION)
 
 
 def resolve(namespace: str, name: str) -> str:

@@ -130,14 +130,19 @@ def by_topic(messages: Sequence[Heard]) -> dict[str, list[bytes]]:
     return found
 
 
+def complaints(stderr: str) -> list[str]:
+    """The lines on stderr that are not ROS's own information."""
+    return [line for line in stderr.splitlines() if line.strip() and not line.startswith("[INFO]")]
+
+
 def only_stalls(stderr: str) -> bool:
     """Whether nothing is on stderr but, on a machine that is busy with other things, that wall time was lost."""
-    return all(line.startswith("warning: ") and "lost to stalls" in line for line in stderr.splitlines())
+    return all(line.startswith("warning: ") and "lost to stalls" in line for line in complaints(stderr))
 
 
 def one_error_line(done: subprocess.CompletedProcess[str]) -> str:
     """The only line on stderr, which must be an error for people."""
-    lines = done.stderr.strip().splitlines()
+    lines = complaints(done.stderr)
     assert len(lines) == 1, done.stderr
     assert lines[0].startswith("error: ")
     assert "Traceback" not in done.stderr + done.stdout

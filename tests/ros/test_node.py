@@ -11,19 +11,17 @@ import sys
 from pathlib import Path
 
 import pytest
-import rclpy
 from bridge_tools import ROOT, TIMEOUT, Listener, by_topic, command, environment, only_stalls, run, start
-from rclpy.context import Context
-from rclpy.executors import SingleThreadedExecutor
-from rclpy.node import Node
-from rclpy.parameter import Parameter
-from rclpy.parameter_client import AsyncParameterClient
+from rclpy.qos import ReliabilityPolicy
+from remote import ACTIVATE, CONFIGURE, Remote
+from std_msgs.msg import String
 
 from rlv_ros_bridge.log_reader import LogReader
-from rlv_ros_bridge.topics import CLOCK, RECORDED, STRUTS, resolve
+from rlv_ros_bridge.qos import parse_qos
+from rlv_ros_bridge.topics import CLOCK, LATCHED, RECORDED, STRUTS, resolve
 
-# `struts` last: a node that waits for a match on it finds the others matched.
-TOPICS = {resolve("landing", t.name): t.type_name for t in (*RECORDED[1:], STRUTS)}
+# `struts` last: a node that waits for a match on it finds the others matched. What is latched came before.
+TOPICS = {resolve("landing", t.name): t.type_name for t in (*(t for t in RECORDED[1:] if t not in LATCHED), STRUTS)}
 SAMPLES = 1001
 
 
@@ -38,7 +36,8 @@ def test_a_subscriber_in_another_process_gets_every_sample_as_it_is_in_the_log(f
         listener.stop()
     logged: dict[str, list[bytes]] = {}
     for message in LogReader(folder).messages():
-        logged.setdefault(message.topic, []).append(message.data)
+        if message.topic in TOPICS:
+            logged.setdefault(message.topic, []).append(message.data)
     received = by_topic(heard)
     assert {name: len(messages) for name, messages in received.items()} == {name: len(messages) for name, messages in logged.items()}
     assert sum(len(messages) == SAMPLES for messages in received.values()) == 11
@@ -81,26 +80,108 @@ def test_a_signal_in_mid_landing_leaves_a_complete_log(
     assert not reader.cut
     assert (folder / "metadata.yaml").is_file()
     assert 300 <= len(logged) < 20000
+    assert [m for m in logged if m not in set(heard)] == []
     assert logged == heard
     assert f"interrupted: {len(logged)} samples" in out
 
 
-def test_a_subscriber_that_freezes_does_not_keep_the_node_from_its_end(
+def wall(out: str) -> float:
+    """The wall time of a landing that the node tells of."""
+    return float(re.search(r"s in ([0-9.]+) s", out)[1])  # type: ignore[index]
+
+
+def test_a_subscriber_that_freezes_neither_slows_the_node_down_nor_costs_the_log_anything(
     fmu: Path, tmp_path: Path, domain: int, processes: list[subprocess.Popen[str]]
 ) -> None:
-    listener = Listener(TOPICS, tmp_path, domain, announce=100)
-    try:
-        node = start("node", "--fmu", fmu, "--no-record", "--wait-for-subscribers", 1, domain=domain)
-        processes.append(node)
-        listener.wait_for_announcement()
-        os.kill(listener.process.pid, signal.SIGSTOP)
-        out, err = node.communicate(timeout=TIMEOUT)
-    finally:
-        os.kill(listener.process.pid, signal.SIGCONT)
-        listener.stop()
-    assert node.returncode == 0, err
-    assert "finished: 1001 samples" in out
+    walls = []
+    for frozen in (False, True):
+        listener = Listener(TOPICS, tmp_path, domain, announce=100)
+        options = ("--record", tmp_path / f"log-{frozen}", "--stop-time", 5, "--wait-for-subscribers", 1)
+        try:
+            node = start("node", "--fmu", fmu, *options, domain=domain)
+            processes.append(node)
+            listener.wait_for_announcement()
+            if frozen:
+                os.kill(listener.process.pid, signal.SIGSTOP)
+            out, err = node.communicate(timeout=TIMEOUT)
+        finally:
+            os.kill(listener.process.pid, signal.SIGCONT)
+            listener.stop()
+        assert node.returncode == 0, err
+        assert "finished: 5001 samples" in out
+        walls.append(wall(out))
+    # Written to without regard, a frozen subscriber makes each of the last three seconds take four.
+    assert walls[1] < 1.25 * walls[0] + 1.0
+    assert "not published in time" in err
     assert "not every reliable subscriber has acknowledged" in err
+    assert len(list(LogReader(tmp_path / "log-True").messages(["/landing/struts"]))) == 5001
+
+
+def test_two_nodes_land_side_by_side_in_their_namespaces(
+    fmu: Path, tmp_path: Path, domain: int, processes: list[subprocess.Popen[str]]
+) -> None:
+    types = {"/first/struts": STRUTS.type_name, "/second/struts": STRUTS.type_name}
+    listener = Listener(types, tmp_path, domain, dict.fromkeys(types, 301))
+    try:
+        nodes = [
+            start(
+                *("node", "--fmu", fmu, "--namespace", name, "--mode", mode, "--record", tmp_path / name, "--stop-time", 0.3),
+                *("--wait-for-subscribers", 1, "--ros-args", "-p", f"clock:={str(name == 'first').lower()}"),
+                domain=domain,
+            )
+            for name, mode in (("first", "2-2"), ("second", "1-2-1"))
+        ]
+        processes += nodes
+        for node in nodes:
+            _, err = node.communicate(timeout=TIMEOUT)
+            assert node.returncode == 0, err
+        heard = by_topic(listener.finish())
+    finally:
+        listener.stop()
+    for name, mode in (("first", "2-2"), ("second", "1-2-1")):
+        reader = LogReader(tmp_path / name)
+        assert [m.data for m in reader.messages([f"/{name}/struts"])] == heard[f"/{name}/struts"]
+        assert reader.metadata["mode"] == mode
+
+
+def test_topics_are_thinned_out_live_and_whole_in_the_log(fmu: Path, tmp_path: Path, domain: int) -> None:
+    listener = Listener({"/landing/pose": "geometry_msgs/msg/PoseStamped", "/landing/struts": STRUTS.type_name}, tmp_path, domain)
+    try:
+        more = ("--stop-time", 0.1, "--wait-for-subscribers", 1, "--ros-args", "-p", "publish_every.pose:=10")
+        done = run("node", "--fmu", fmu, "--record", tmp_path / "log", *more, domain=domain)
+        assert done.returncode == 0, done.stderr
+        heard = by_topic(listener.finish())
+    finally:
+        listener.stop()
+    logged = [m.data for m in LogReader(tmp_path / "log").messages(["/landing/pose"])]
+    assert (len(heard["/landing/struts"]), len(logged)) == (101, 101)
+    assert heard["/landing/pose"] == logged[::10]
+
+
+RELIABILITY = {"telemetry": ReliabilityPolicy.RELIABLE, "sensor_data": ReliabilityPolicy.BEST_EFFORT}
+
+
+@pytest.mark.parametrize("qos", RELIABILITY)
+def test_the_quality_of_service_is_what_was_asked_for_and_is_in_the_log(
+    qos: str, fmu: Path, tmp_path: Path, domain: int, processes: list[subprocess.Popen[str]]
+) -> None:
+    options = ("--managed", "--realtime-factor", 0, "--stop-time", 0.01, "--record", tmp_path / "log", "--ros-args", "-p", f"qos:={qos}")
+    node = start("node", "--fmu", fmu, *options, domain=domain)
+    processes.append(node)
+    with Remote(domain) as remote:
+        assert remote.change(CONFIGURE)
+        (offered,) = remote.node.get_publishers_info_by_topic("/landing/struts")
+        assert offered.qos_profile.reliability == RELIABILITY[qos]
+        # Who comes late still learns what the vehicle looks like.
+        assert "leg_1_main_strut" in remote.first(String, "/landing/robot_description").data
+        assert remote.change(ACTIVATE)
+        remote.until((tmp_path / "log" / "metadata.yaml").is_file)
+    node.send_signal(signal.SIGINT)
+    assert node.wait(TIMEOUT) == 130
+    reader = LogReader(tmp_path / "log")
+    assert list(reader.messages(["/landing/robot_description"]))
+    written = parse_qos(reader.channels["/landing/struts"].qos)
+    assert written.profile().reliability == RELIABILITY[qos]
 
 
 def test_the_node_runs_without_a_home_folder_and_leaves_nothing_behind(fmu: Path, tmp_path: Path) -> None:
@@ -126,37 +207,6 @@ def test_settings_come_by_ros_arguments_too(fmu: Path, tmp_path: Path) -> None:
     assert parameters.vehicle.mass == 200.0
     assert reader.metadata["mode"] == "1-2-1"
     assert reader.namespace == "/tests"
-
-
-def test_parameters_can_be_read_but_not_changed_while_it_lands(
-    fmu: Path, domain: int, processes: list[subprocess.Popen[str]], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    node = start("node", "--fmu", fmu, "--no-record", "--stop-time", 30, "--set", "vehicle.mass=200", domain=domain)
-    processes.append(node)
-    context = Context()
-    rclpy.init(context=context, domain_id=domain)
-    try:
-        asking = Node("asking", context=context)
-        executor = SingleThreadedExecutor(context=context)
-        executor.add_node(asking)
-        client = AsyncParameterClient(asking, "/landing/landing_node")
-        assert client.wait_for_services(TIMEOUT)
-        read = client.get_parameters(["vehicle.mass", "mode", "main_strut.length"])
-        executor.spin_until_future_complete(read, timeout_sec=TIMEOUT)
-        mass, mode, length = read.result().values
-        assert (mass.double_value, mode.string_value, length.double_value) == (200.0, "2-2", 1.426)
-        changed = client.set_parameters([Parameter("vehicle.mass", value=100.0)])
-        executor.spin_until_future_complete(changed, timeout_sec=TIMEOUT)
-        assert not changed.result().results[0].successful
-        executor.shutdown()
-        asking.destroy_node()
-    finally:
-        rclpy.shutdown(context=context)
-    node.send_signal(signal.SIGINT)
-    _, err = node.communicate(timeout=TIMEOUT)
-    assert node.returncode == 130
-    assert only_stalls(err), err
 
 
 def test_help_teaches_without_loading_ros(tmp_path: Path) -> None:

@@ -1,0 +1,87 @@
+"""The vehicle as URDF, and the model's variables as JSON. Needs no ROS 2."""
+
+from __future__ import annotations
+
+import json
+from math import acos, atan2, dist
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
+from rlv_landing.quantities import INPUT_QUANTITIES, LEGS, OUTPUT_QUANTITIES
+from rlv_landing.touchdown import footpad_at_rest
+
+from .legs import around
+from .topics import BODY_FRAME, TOP_FRAME
+
+Point = tuple[float, float, float]
+
+BODY_RADIUS, MAIN_RADIUS, AUXILIARY_RADIUS, FOOTPAD_RADIUS = 0.2, 0.03, 0.02, 0.06
+# URDF wants a limit of force [N] and speed [m/s] of every joint; the model has none.
+NO_LIMIT = {"effort": "1e7", "velocity": "100"}
+ORIGIN: Point = (0.0, 0.0, 0.0)
+
+
+def variables() -> str:
+    """The FMU's variables: for each its name, causality, unit and meaning."""
+    groups = (("parameter", PARAMETER_QUANTITIES.values()), ("input", INPUT_QUANTITIES), ("output", OUTPUT_QUANTITIES))
+    return json.dumps([{"name": q.name, "causality": kind, "unit": q.unit, "meaning": q.meaning} for kind, group in groups for q in group])
+
+
+def robot_description(parameters: Parameters) -> str:
+    """The vehicle as URDF, its root `base_link` at the CG: body, top sensor, and for each leg two struts.
+
+    A strut is a prismatic joint of the name that it has in `struts`, at 0 fully extended (auxiliary: unloaded), positive in compression.
+    Struts keep the direction that they have with all of them extended: turning with the strokes is left to the markers, which are exact.
+    """
+    p = parameters
+    robot = Element("robot", name="rlv_landing")
+    bottom, top = -max(p.main_strut.joint_depth, p.auxiliary_strut.joint_depth), p.vehicle.top_height
+    body = SubElement(robot, "link", name=BODY_FRAME)
+    _cylinder(body, (0.0, 0.0, 0.5 * (top + bottom)), BODY_RADIUS, top - bottom)
+    SubElement(robot, "link", name=TOP_FRAME)
+    _joint(robot, f"{TOP_FRAME}_mount", "fixed", BODY_FRAME, TOP_FRAME, (0.0, 0.0, top))
+    radius, height = footpad_at_rest(p)
+    feet = around(p.drop.mode, radius, height)
+    for strut, own, width, travel in (
+        ("main_strut", p.main_strut, MAIN_RADIUS, (0.0, p.main_strut.stroke_max)),
+        ("auxiliary_strut", p.auxiliary_strut, AUXILIARY_RADIUS, (-0.5 * p.auxiliary_strut.length, 0.5 * p.auxiliary_strut.length)),
+    ):
+        joints = around(p.drop.mode, own.joint_radius, -own.joint_depth)
+        for leg, joint, foot in zip(LEGS, joints, feet):
+            _strut(robot, f"leg_{leg}_{strut}", joint, foot, width, travel)
+    indent(robot)
+    return '<?xml version="1.0"?>\n' + tostring(robot, encoding="unicode") + "\n"
+
+
+def _strut(robot: Element, name: str, joint: Point, foot: Point, radius: float, travel: tuple[float, float]) -> None:
+    """A cylinder at the body and a rod that goes into it; z of both runs along the strut, down to the foot."""
+    length = dist(joint, foot)
+    x, y, z = ((b - a) / length for a, b in zip(joint, foot))
+    cylinder = SubElement(robot, "link", name=f"{name}_cylinder")
+    _cylinder(cylinder, (0.0, 0.0, 0.25 * length), 1.5 * radius, 0.5 * length)
+    rod = SubElement(robot, "link", name=f"{name}_rod")
+    _cylinder(rod, (0.0, 0.0, -0.3 * length), radius, 0.6 * length)
+    foot_visual = SubElement(rod, "visual")
+    SubElement(SubElement(foot_visual, "geometry"), "sphere", radius=repr(FOOTPAD_RADIUS))
+    _joint(robot, f"{name}_mount", "fixed", BODY_FRAME, f"{name}_cylinder", joint, (0.0, acos(z), atan2(y, x)))
+    moving = _joint(robot, name, "prismatic", f"{name}_cylinder", f"{name}_rod", (0.0, 0.0, length))
+    SubElement(moving, "axis", xyz="0 0 -1")
+    SubElement(moving, "limit", {"lower": repr(travel[0]), "upper": repr(travel[1]), **NO_LIMIT})
+
+
+def _joint(robot: Element, name: str, kind: str, parent: str, child: str, xyz: Point, rpy: Point = ORIGIN) -> Element:
+    joint = SubElement(robot, "joint", name=name, type=kind)
+    SubElement(joint, "parent", link=parent)
+    SubElement(joint, "child", link=child)
+    _origin(joint, xyz, rpy)
+    return joint
+
+
+def _cylinder(link: Element, centre: Point, radius: float, length: float) -> None:
+    visual = SubElement(link, "visual")
+    _origin(visual, centre)
+    SubElement(SubElement(visual, "geometry"), "cylinder", radius=repr(radius), length=repr(length))
+
+
+def _origin(element: Element, xyz: Point, rpy: Point = ORIGIN) -> None:
+    SubElement(element, "origin", xyz=" ".join(map(repr, xyz)), rpy=" ".join(map(repr, rpy)))

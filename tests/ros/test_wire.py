@@ -1,0 +1,80 @@
+"""Messages packed from numbers are rclpy's own serialisation, byte for byte."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from rclpy.serialization import deserialize_message, serialize_message
+from rosbags.typesys import Stores, get_typestore
+
+from rlv_landing import load_preset
+from rlv_landing.quantities import OUTPUT_NAMES
+from rlv_ros_bridge.markers import Wireframe
+from rlv_ros_bridge.messages import SampleBytes, SampleMessages
+from rlv_ros_bridge.topics import CLOCK, MARKERS
+from rlv_ros_bridge.wire import padded
+
+FINITE = st.floats(allow_nan=False, allow_infinity=False)
+SAMPLES = st.lists(FINITE, min_size=len(OUTPUT_NAMES), max_size=len(OUTPUT_NAMES))
+STAMPS = st.integers(0, 2**31 * 10**9 - 1)
+STORE = get_typestore(Stores.ROS2_KILTED if hasattr(Stores, "ROS2_KILTED") else Stores.ROS2_JAZZY)
+
+
+def assert_same(ours: bytes, theirs: bytes, type_name: str) -> None:
+    """The same bytes but for the gaps between fields, which rclpy leaves as its memory was. Where these are, an independent
+    serialisation tells: it leaves zeros there, and changing them changes no field."""
+    assert len(ours) == len(theirs)
+    differing = [i for i, (a, b) in enumerate(zip(ours, theirs)) if a != b]
+    if not differing:
+        return
+    kind = message_class(type_name)
+    independent = padded(bytes(STORE.serialize_cdr(STORE.deserialize_cdr(theirs, type_name), type_name)))
+    assert len(independent) == len(theirs)
+    gaps = bytearray(independent)
+    for i in differing:
+        assert independent[i] == 0
+        gaps[i] = 255
+    assert deserialize_message(bytes(gaps), kind) == deserialize_message(independent, kind)
+    assert deserialize_message(ours, kind) == deserialize_message(theirs, kind)
+
+
+def message_class(name: str) -> Any:
+    package, middle, short = name.split("/")
+    return getattr(importlib.import_module(f"{package}.{middle}"), short)
+
+
+@settings(max_examples=50, deadline=None)
+@given(STAMPS, SAMPLES)
+def test_packed_samples_are_rclpys_own_bytes(nanoseconds: int, values: list[float]) -> None:
+    packer, messages = SampleBytes(), SampleMessages()
+    messages.fill(nanoseconds, values)
+    expected = {CLOCK: messages.clock, **dict(messages.messages)}
+    packed = dict(zip(packer.topics, packer.pack(nanoseconds, values)))
+    assert packed.keys() == expected.keys()
+    for topic, data in packed.items():
+        assert_same(data, padded(serialize_message(expected[topic])), topic.type_name)
+
+
+@pytest.mark.parametrize("mode", ["2-2", "1-2-1"])
+def test_packed_markers_are_rclpys_own_bytes(mode: str) -> None:
+    wireframe = Wireframe(load_preset("yue2022-figures", mode))
+
+    @settings(max_examples=20, deadline=None)
+    @given(STAMPS, st.lists(st.floats(-1e6, 1e6), min_size=len(OUTPUT_NAMES), max_size=len(OUTPUT_NAMES)))
+    def holds(nanoseconds: int, values: list[float]) -> None:
+        data = padded(wireframe.pack(nanoseconds, values))
+        assert_same(data, padded(serialize_message(wireframe.fill(nanoseconds, values))), MARKERS.type_name)
+
+    holds()
+
+
+def test_a_packer_keeps_nothing_of_the_sample_before() -> None:
+    packer, fresh = SampleBytes(), SampleBytes()
+    first, second = [float(i) for i in range(len(OUTPUT_NAMES))], [-float(i) for i in range(len(OUTPUT_NAMES))]
+    packer.pack(5, first)
+    for topic, used, new in zip(packer.topics, packer.pack(7, second), fresh.pack(7, second)):
+        assert_same(used, new, topic.type_name)
