@@ -31,8 +31,10 @@ HERE = Path(__file__).parent
 ROOT = HERE.parent
 PACKAGE = HERE / "rlv_landing"
 MODULES = ("__init__.py", "errors.py", "quantities.py", "parameters.py", "touchdown.py", "landing.py")
-# pythonfmu's command line and CSV tool, which no slave imports
-NOT_NEEDED = ("__main__.py", "csvbuilder.py", "deploy.py")
+# pythonfmu's command line, CSV tool and builder, which no slave needs
+NOT_NEEDED = ("__main__.py", "csvbuilder.py", "deploy.py", "builder.py", "osutil.py")
+# the line of pythonfmu's `__init__.py` that imports the builder, and with it argparse, logging and minidom: a third of an instance
+IMPORTS_BUILDER = "from .builder import FmuBuilder\n"
 # what a zip file can date: 1980, which stands for a source without a date, to 2107
 OLDEST, NEWEST = 315532800, 4354819199
 
@@ -95,6 +97,13 @@ def unpack_pythonfmus(folder: Path) -> Path:
         archive.extractall(files)
     for name in NOT_NEEDED:
         (files / "resources" / "pythonfmu" / name).unlink()
+    init = files / "resources" / "pythonfmu" / "__init__.py"
+    text = init.read_text()
+    if text.count(IMPORTS_BUILDER) != 1:
+        raise SystemExit(
+            "error: pythonfmu's __init__.py does not import its builder as 0.7.0's does; look at IMPORTS_BUILDER in build_fmu.py"
+        )
+    init.write_text(text.replace(IMPORTS_BUILDER, ""))
     return files
 
 

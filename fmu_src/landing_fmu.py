@@ -15,6 +15,7 @@ from contextlib import suppress
 from functools import wraps
 from typing import Any
 from uuid import NAMESPACE_URL, uuid5
+from xml.etree.ElementTree import Element
 
 from pythonfmu import Boolean, DefaultExperiment, Fmi2Causality, Fmi2Initial, Fmi2Slave, Fmi2Variability, Integer, Real, String
 from pythonfmu.enums import Fmi2Status
@@ -78,7 +79,8 @@ class RlvLanding(Fmi2Slave):
         self._refused_rates: set[str] = set()
         self._landing: Landing | None = None
         self._broken = ""
-        self._outputs: list[float] = []
+        # values of all variables, once outputs were asked for at this time
+        self._outputs: list[Any] = []
         for q in PARAMETER_QUANTITIES.values():
             self._register(q, q.default, Fmi2Causality.parameter, Fmi2Variability.fixed, Fmi2Initial.exact)
         for q in INPUT_QUANTITIES:
@@ -88,9 +90,12 @@ class RlvLanding(Fmi2Slave):
             changes = Fmi2Variability.continuous if q.kind == "real" else Fmi2Variability.discrete
             self._register(q, 0.0, Fmi2Causality.output, changes, Fmi2Initial.calculated)
         self._names = [v.name for v in self.vars.values()]
-        self.guid = uuid5(
-            NAMESPACE_URL, f"rlv-landing {__version__} " + repr([*PARAMETER_QUANTITIES.values(), INPUT_QUANTITIES, OUTPUT_QUANTITIES])
-        )
+
+    def to_xml(self, model_options: dict[str, str] | None = None) -> Element:
+        """pythonfmu's description, with a GUID made from the version and the variables. Called at build time only."""
+        quantities = [*PARAMETER_QUANTITIES.values(), INPUT_QUANTITIES, OUTPUT_QUANTITIES]
+        self.guid = uuid5(NAMESPACE_URL, f"rlv-landing {__version__} {quantities!r}")
+        return super().to_xml(model_options or {})
 
     def _register(self, q: Quantity, value: Any, causality: Any, variability: Any, initial: Any) -> None:
         attributes = {"causality": causality, "variability": variability, "initial": initial, "getter": lambda: None}
@@ -167,15 +172,17 @@ class RlvLanding(Fmi2Slave):
 
     @logs_faults
     def _values_of(self, vrs: list[int]) -> list[Any]:
-        first = self._first_output
-        if any(vr >= first for vr in vrs):
+        known = self._values
+        if max(vrs, default=0) >= self._first_output:
             landing = self._present()
             # inputs act at once; those that are out of bounds the next step refuses
-            with suppress(LandingError):
-                self._apply_inputs()
+            if self._inputs or self._rates:
+                with suppress(LandingError):
+                    self._apply_inputs()
             if not self._outputs:
-                self._outputs = landing.values()
-        return [self._outputs[vr - first] if vr >= first else self._values[vr] for vr in vrs]
+                self._outputs = known[: self._first_output] + landing.values()
+            known = self._outputs
+        return list(map(known.__getitem__, vrs))
 
     def get_real(self, vrs: list[int]) -> list[float]:
         return self._values_of(vrs) or [math.nan] * len(vrs)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from difflib import get_close_matches
 
 
 class LandingError(ValueError):
@@ -15,6 +14,8 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
     The last parts of dotted names count too, so that `mass` finds `vehicle.mass`.
     """
+    from difflib import get_close_matches  # which takes longer to import than most of this package
+
     known = list(known)
     close = get_close_matches(name, known, n=1, cutoff=0.6)
     if not close:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from array import array
 from collections.abc import Callable, Mapping
 from math import inf, isfinite
+from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 from .core import DormandPrince, Exponential, Model, Solver, layout, output_size, state_size
@@ -105,7 +106,9 @@ class Landing:
         self._y = array("d", bytes(8 * n))
         self._out = array("d", bytes(8 * output_size(groups)))
         self._out_time = inf
-        self._order = output_order(self.parameters.drop.mode)
+        order = output_order(self.parameters.drop.mode)
+        self._pick = itemgetter(*(i for i, _ in order))
+        self._turned = [k for k, (_, factor) in enumerate(order) if factor < 0.0]
         self.reset()
 
     @classmethod
@@ -222,8 +225,10 @@ class Landing:
             self._solver.interpolate(self._time, self._y)
             self._solver.outputs_at(self._time, self._y, self._out)
             self._out_time = self._time
-        out = self._out
-        return [factor * out[i] for i, factor in self._order]
+        values = list(self._pick(self._out))
+        for i in self._turned:
+            values[i] = -values[i]
+        return values
 
     def outputs(self) -> dict[str, float]:
         """All outputs at the present time, by name."""

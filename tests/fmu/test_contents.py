@@ -38,7 +38,7 @@ def test_every_file_serves_the_run_the_reader_or_the_licence(archive):
     tag = __version__.replace(".", "_")
     names = archive.namelist()
     of_pythonfmu = {n.rsplit("/", 1)[1] for n in names if n.startswith("resources/pythonfmu/")}
-    needed = {"builder", "default_experiment", "enums", "fmi2slave", "logmsg", "osutil", "variables"}
+    needed = {"default_experiment", "enums", "fmi2slave", "logmsg", "variables"}
     assert of_pythonfmu == {"__init__.py", "_version.py", *(f"{module}.py" for module in needed)}
     assert not [n for n in names if "__pycache__" in n or n.endswith((".pyc", ".pxd", ".j2", ".c"))]
     assert {n.split("/")[1] for n in names if n.startswith("resources/")} == {
