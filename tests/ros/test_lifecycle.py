@@ -27,7 +27,9 @@ Processes = list[subprocess.Popen[str]]
 def managed(fmu: Path, tmp_path: Path, domain: int, processes: Processes) -> Iterator[tuple[subprocess.Popen[str], Remote]]:
     """A node that waits for transitions, and a participant that makes them. Its logs and temporary files are below `tmp_path`."""
     (tmp_path / "tmp").mkdir()
-    options = ("--managed", "--fmu", fmu, "--realtime-factor", 0, "--log-root", tmp_path / "logs")
+    # What it says at each configuration would fill the pipe in a thousand of them.
+    quiet = ("--ros-args", "--log-level", "warn")
+    options = ("--managed", "--fmu", fmu, "--realtime-factor", 0, "--log-root", tmp_path / "logs", *quiet)
     node = start("node", *options, domain=domain, TMPDIR=str(tmp_path / "tmp"))
     processes.append(node)
     with Remote(domain) as remote:
