@@ -18,7 +18,6 @@ from .fmu_folder import FmuFolder
 
 MODEL_NAME = "RlvLanding"
 FATAL = 4
-ERROR = 3
 
 
 class FmuRunner:
@@ -95,8 +94,6 @@ class FmuRunner:
         self._call("setReal", [self._references[n] for n in reals], list(reals.values()))
         self._call("setString", [self._references[n] for n in texts], list(texts.values()))
         self._call("exitInitializationMode")
-        if any(status >= ERROR for status, _ in self._messages):
-            raise LandingError(f"{self.path} refuses these parameters: {self._reason('no reason given')}")
 
     def _make_callbacks(self) -> Any:
         from fmpy import calloc, fmi2, free
