@@ -50,7 +50,7 @@ $(COFMUPY): tests/importers/cofmupy.txt | $(VENV)/.packages
 	@touch $@
 
 test: $(FMU) $(COFMUPY) lint
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 torture: $(FMU)
 	RLV_TORTURE=50 $(BIN)/python -m pytest -m torture

@@ -17,8 +17,11 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
 TIMEOUT = 60.0
-# Domains 1 to 100 keep their ports below the ephemeral ones; runs of the suite side by side begin at different ones.
-_DOMAINS = itertools.cycle((os.getpid() * 37 + i) % 100 + 1 for i in range(100))
+# Domains 1 to 100 keep their ports below the ephemeral ones. Each of pytest's workers has its share of them; runs of the suite side by side
+# begin at different ones.
+_WORKER, _WORKERS = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0")[2:]), int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+_SHARE = 100 // _WORKERS
+_DOMAINS = itertools.cycle(_WORKER * _SHARE + (os.getpid() * 37 + i) % _SHARE + 1 for i in range(_SHARE))
 
 
 def new_domain() -> int:
