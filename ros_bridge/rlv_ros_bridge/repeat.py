@@ -9,16 +9,17 @@ from rlv_landing import Landing, Parameters
 from rlv_landing.errors import LandingError
 from rlv_landing.quantities import OUTPUT_NAMES
 
-from .log_reader import LogReader
-from .topics import resolve
+from .inputs import READINGS
+from .log_reader import Decoder, LogReader
+from .topics import APPLIED, resolve
 
-# Topics by which a run may be steered. No node of ours takes any yet; with them a landing follows from its parameters only together
-# with what they brought, to be given to `Landing.set_inputs` in `Run.samples` at the times of the messages.
-INPUT_TOPICS = ("external_wrench", "ground")
+# Inputs by the number of the sample from which on they act.
+Inputs = dict[int, list[dict[str, float]]]
 
 
 class Run:
-    """What it takes to repeat the run of a log that has been read: parameters, step [s], and the FMU to use instead of `Landing`, if any.
+    """What it takes to repeat the run of a log that has been read: parameters, step [s], inputs with their times, and the FMU to use
+    instead of `Landing`, if any. `input_messages` counts the inputs.
 
     Raises LandingError, naming what is missing and what would be needed.
     """
@@ -37,21 +38,20 @@ class Run:
         mode = reader.metadata.get("mode", parameters.drop.mode)
         if mode != parameters.drop.mode:
             raise LandingError(cannot + f"its metadata say mode {mode}, its parameters.toml {parameters.drop.mode}; one was changed")
-        steered = [name for name in INPUT_TOPICS if resolve(reader.namespace, name) in reader.channels]
-        if steered:
-            raise LandingError(
-                cannot + f"it was steered by {', '.join(steered)}, which this version cannot repeat; use the one that recorded it"
-            )
+        self._inputs = _inputs(reader, self.step_ns, cannot)
+        self.input_messages = sum(map(len, self._inputs.values()))
         self._fmu = fmu
 
     def samples(self) -> Generator[dict[str, float], None, None]:
-        """All outputs by name at 0, one step, two steps, and so on without end."""
+        """All outputs by name at 0, one step, two steps, and so on without end; the inputs act at their times."""
         if self._fmu is None:
             landing = Landing(self.parameters)
             k = 0
             while True:
                 landing.advance_to(k * self.step)
                 yield landing.outputs()
+                for values in self._inputs.get(k, ()):
+                    landing.set_inputs(values)
                 k += 1
         from .fmu_runner import FmuRunner
 
@@ -59,8 +59,35 @@ class Run:
             k = 0
             while True:
                 yield dict(zip(OUTPUT_NAMES, runner.values()))
+                for values in self._inputs.get(k, ()):
+                    runner.set_inputs(values)
                 runner.step(k, self.step)
                 k += 1
+
+
+def _inputs(reader: LogReader, step_ns: int, cannot: str) -> Inputs:
+    """What the log says of inputs, in its order. Raises LandingError for one that cannot be, or whose time is not that of a sample."""
+    names = {resolve(reader.namespace, name): read for name, read in READINGS.items()}
+    for topic in (t for t in APPLIED if resolve(reader.namespace, t.name) in reader.channels):
+        found_type = reader.channels[resolve(reader.namespace, topic.name)].type_name
+        if found_type != topic.type_name:
+            raise LandingError(f"{cannot}its topic {topic.name} is {found_type}, not {topic.type_name}; another program has written it")
+    decode = Decoder(reader)
+    found: Inputs = {}
+    for message in reader.messages(names):
+        at = f"{cannot}its input {message.topic} at {message.log_time / 1e9:.9g} s "
+        decoded = decode(message)
+        stamp = decoded.header.stamp
+        k, rest = divmod(message.log_time, step_ns)
+        if stamp.sec * 1_000_000_000 + stamp.nanosec != message.log_time:
+            raise LandingError(at + f"has the stamp {stamp.sec}.{stamp.nanosec:09d} s; one of the two was changed")
+        if rest or k < 0:
+            raise LandingError(at + f"is not at a sample: those are {step_ns / 1e9:g} s apart; it was changed")
+        try:
+            found.setdefault(k, []).append(names[message.topic](decoded))
+        except LandingError as e:
+            raise LandingError(at + f"cannot be: {e}") from None
+    return found
 
 
 def _number(reader: LogReader, name: str, cannot: str) -> float:

@@ -45,8 +45,9 @@ class Difference:
 
 @dataclass
 class Verification:
-    """How a log compares: instants, messages and values compared, values that are not the same bits, the largest difference as a share of
-    its field's largest value; `not_exact` says why not all bits must be the same, or is empty; `first` is the first difference that counts.
+    """How a log compares: instants, messages and values compared, inputs repeated, values that are not the same bits, the largest
+    difference as a share of its field's largest value; `not_exact` says why not all bits must be the same, or is empty; `first` is the
+    first difference that counts.
     """
 
     path: str
@@ -55,6 +56,7 @@ class Verification:
     instants: int = 0
     messages: int = 0
     values: int = 0
+    inputs: int = 0
     other_bits: int = 0
     largest: float = 0.0
     first: Difference | None = None
@@ -75,6 +77,8 @@ class Verification:
         """As lines for people."""
         until = f"{self.instants} instants up to {self.end:g} s" + ("" if self.end >= self.stop_time else f" of {self.stop_time:g} s")
         lines = [f"compared  {self.values} values of {self.messages} messages at {until}"]
+        if self.inputs:
+            lines.append(f"steered   by {self.inputs} input{'s' if self.inputs > 1 else ''}, repeated at their times")
         if self.first is not None:
             lines.append(f"differs   first in {self.first.text()}")
         elif self.other_bits:
@@ -91,7 +95,8 @@ class Verification:
 
 def verify(reader: LogReader, fmu: Path | None = None) -> Verification:
     """Repeats the run of the log, by `Landing` or by the FMU `fmu`, and compares all that follows from it: every field of struts, pose,
-    rpy, twist, accel, top/accel, contacts and odom (markers and diagnostics are not compared).
+    rpy, twist, accel, top/accel, contacts and odom (markers and diagnostics are not compared). Inputs that the log tells of act
+    again at their times.
 
     Raises LandingError where the log cannot be repeated.
     """
@@ -100,6 +105,7 @@ def verify(reader: LogReader, fmu: Path | None = None) -> Verification:
     run = Run(reader, fmu)
     not_exact = why_not_exact(reader.metadata, fmu)
     found = Verification(str(reader.path), not_exact, TOLERANCE if not_exact else 0.0, stop_time=run.stop_time)
+    found.inputs = run.input_messages
     try:
         with closing(run.samples()) as samples:
             _Comparison(reader, run, found, most_instants).all(samples)

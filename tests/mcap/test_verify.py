@@ -3,21 +3,32 @@
 from __future__ import annotations
 
 import json
+import math
 import struct
 from collections.abc import Callable
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import pytest
 from bridge_tools import one_error_line, run
 from log_tools import in_attachment, in_message, in_metadata, rewrite, small_log
+from rclpy.serialization import serialize_message
 
+from rlv_landing import Landing
 from rlv_landing.errors import LandingError
+from rlv_ros_bridge.input_queue import Applied
+from rlv_ros_bridge.inputs import HEAVE, TILT, WRENCH
 from rlv_ros_bridge.log_reader import LogReader
+from rlv_ros_bridge.messages import SampleBytes
+from rlv_ros_bridge.qos import TELEMETRY
+from rlv_ros_bridge.recorder import RecordedTopic, Recorder
 from rlv_ros_bridge.recover import recover
+from rlv_ros_bridge.topics import APPLIED, APPLIED_GROUND, APPLIED_WRENCH, SAMPLED, Topic
 from rlv_ros_bridge.verify import TOLERANCE, Verification, verify
 
 AT = 300_000_000
+GROUND = (*HEAVE, *TILT)
 # A PoseStamped: encapsulation, stamp, frame "map", and the position from here on.
 POSITION = 4 + 8 + 4 + 4
 
@@ -181,25 +192,81 @@ def test_what_cannot_be_repeated_is_refused_with_what_is_missing(
     assert "\n" not in str(e.value)
 
 
-def test_a_steered_run_is_refused_rather_than_called_different(one_log: Path, tmp_path: Path) -> None:
-    from mcap.writer import Writer
-
-    file = only_file(one_log)
-    reader = LogReader(file)
+def steer(whole: Path, folder: Path) -> LogReader:
+    """A log as the node writes it, of the parameters of the log `whole` and inputs at random times and sizes."""
+    reader = LogReader(whole)
     reader.read_through()
-    steered = tmp_path / "steered.mcap"
-    with steered.open("wb") as f:
-        writer = Writer(f)
-        writer.start("ros2")
-        writer.add_metadata("rlv_landing", reader.metadata)
-        writer.add_attachment(0, 0, "parameters.toml", "application/toml", reader.attachments["parameters.toml"])
-        channel = writer.register_channel(
-            "/landing/external_wrench", "cdr", writer.register_schema("geometry_msgs/msg/Wrench", "ros2msg", b"")
-        )
-        writer.add_message(channel, 0, bytes(4), 0)
-        writer.finish()
-    with pytest.raises(LandingError, match="steered by external_wrench"):
-        verify(LogReader(steered))
+    parameters, random = reader.parameters(), Random(7)
+    assert parameters is not None
+    packer, landing = SampleBytes(), Landing(parameters)
+    entries = [RecordedTopic(f"/landing/{t.name}", t.type_name, TELEMETRY) for t in (*SAMPLED, *APPLIED)]
+    recorder = Recorder(folder, entries, reader.metadata, reader.attachments)
+    recorded = [t for t in packer.topics if t in SAMPLED]
+    for k in range(1001):
+        landing.advance_to(k * 1e-3)
+        messages = packer.pack(k * 1_000_000, tuple(landing.outputs().values()))
+        for topic, data in zip(recorded, messages[len(messages) - len(recorded) :]):
+            recorder.write(f"/landing/{topic.name}", k * 1_000_000, data)
+        for topic, names, sizes in ((APPLIED_WRENCH, WRENCH, (900.0, 400.0, 60.0)), (APPLIED_GROUND, GROUND, (1e-3, 0.1, 1e-3, 0.02))):
+            if random.random() < 0.1:
+                applied = Applied(topic, k * 1_000_000, {name: random.uniform(-s, s) for name, s in zip(names, sizes)})
+                landing.set_inputs(applied.values)
+                recorder.write(f"/landing/{topic.name}", k * 1_000_000, serialize_message(applied.message()))
+    recorder.close()
+    return LogReader(folder)
+
+
+@pytest.mark.parametrize("by_fmu", [False, True])
+def test_a_steered_run_is_repeated_bit_for_bit_with_its_inputs(log: Path, fmu: Path, tmp_path: Path, by_fmu: bool) -> None:
+    reader = steer(log, tmp_path / "steered")
+    found = verify(reader, fmu if by_fmu else None)
+    assert (found.first, found.other_bits, found.messages) == (None, 0, 11011)
+    assert found.inputs == sum(1 for _ in reader.messages([f"/landing/{t.name}" for t in APPLIED])) > 150
+    assert f"steered   by {found.inputs} inputs, repeated at their times" in found.text()
+
+
+@pytest.mark.parametrize("topic", [APPLIED_WRENCH, APPLIED_GROUND])
+def test_a_steered_run_differs_without_one_of_its_inputs(one_log: Path, tmp_path: Path, topic: Topic) -> None:
+    steered = steer(one_log, tmp_path / "steered")
+    times = [m.log_time for m in steered.messages([f"/landing/{topic.name}"])]
+    assert verify(LogReader(rewrite(steered.files[0], tmp_path / "same"))).same
+    gone = in_message(f"/landing/{topic.name}", times[len(times) // 2], lambda data: None)
+    found = verify(LogReader(rewrite(steered.files[0], tmp_path / "gone", gone)))
+    assert found.first is not None
+    assert found.first.time > times[len(times) // 2] / 1e9
+
+
+@pytest.mark.parametrize(
+    ("log_time", "reason"),
+    [
+        (500_000_000, "at 0.5 s has the stamp 0.500000001 s; one of the two was changed"),
+        (500_000_001, "at 0.500000001 s is not at a sample: those are 0.001 s apart"),
+    ],
+)
+def test_inputs_whose_times_were_changed_are_refused(one_log: Path, tmp_path: Path, log_time: int, reason: str) -> None:
+    message = Applied(APPLIED_WRENCH, 500_000_001, dict.fromkeys(WRENCH, 1.0)).message()
+    with pytest.raises(LandingError) as e:
+        verify(with_input(one_log, tmp_path / "log", log_time, serialize_message(message)))
+    assert reason in str(e.value)
+
+
+@pytest.mark.parametrize("force", [1e12, math.nan])
+def test_inputs_that_cannot_be_are_refused(one_log: Path, tmp_path: Path, force: float) -> None:
+    message = Applied(APPLIED_WRENCH, 500_000_000, dict.fromkeys(WRENCH, force)).message()
+    with pytest.raises(LandingError) as e:
+        verify(with_input(one_log, tmp_path / "log", 500_000_000, serialize_message(message)))
+    assert f"its input /landing/applied/external_wrench at 0.5 s cannot be: external.force_x = {force:g} N" in str(e.value)
+
+
+def with_input(log: Path, folder: Path, log_time: int, data: bytes) -> LogReader:
+    """A log with the metadata and parameters of `log` that holds one input and nothing else."""
+    reader = LogReader(log)
+    reader.read_through()
+    name = f"/landing/{APPLIED_WRENCH.name}"
+    recorder = Recorder(folder, [RecordedTopic(name, APPLIED_WRENCH.type_name, TELEMETRY)], reader.metadata, reader.attachments)
+    recorder.write(name, log_time, data)
+    recorder.close()
+    return LogReader(folder)
 
 
 def test_the_command_refuses_logs_that_are_not_of_a_landing(tmp_path: Path) -> None:

@@ -24,6 +24,7 @@ from rlv_ros_bridge.input_queue import Applied
 from rlv_ros_bridge.inputs import HEAVE, READINGS, TILT, WRENCH, read_ground, read_wrench
 from rlv_ros_bridge.log_reader import Decoder, LogReader
 from rlv_ros_bridge.topics import APPLIED_GROUND, APPLIED_WRENCH
+from rlv_ros_bridge.verify import verify
 
 FORCE, MOTION = st.floats(-1e7, 1e7), st.floats(-1.0, 1.0)
 
@@ -143,6 +144,8 @@ def assert_repeats(log: Path) -> None:
             landing.set_inputs(values)
         landing.advance_to((k + 1) * 1e-3)
     assert np.abs(found["body.x"][-1] - Landing(reader.parameters()).run(1.0, 1e-2)["body.x"][-1]) > 1e-3
+    verified = verify(LogReader(log))
+    assert (verified.first, verified.other_bits, verified.inputs) == (None, 0, sum(map(len, changes.values())))
 
 
 def test_bad_inputs_are_counted_in_the_diagnostics_and_change_nothing(stepped: tuple[subprocess.Popen[str], Remote]) -> None:
