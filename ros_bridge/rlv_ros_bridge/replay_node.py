@@ -6,22 +6,28 @@ import gc
 import math
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-from pathlib import Path
+from functools import partial
+from typing import Any
 
+from rclpy.exceptions import InvalidTopicNameException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.serialization import serialize_message
+from rclpy.validate_full_topic_name import validate_full_topic_name
+from std_srvs.srv import Trigger
 
-from rlv_landing.errors import LandingError, unknown
+from rlv_landing.errors import LandingError
 
 from . import topics as landing_topics
-from .log_reader import LogMessage, LogReader
+from .keyboard import Keyboard
+from .log_reader import LogReader
 from .message_types import message_class
 from .messages import set_stamp
 from .qos import CLOCK, parse_qos
+from .replay_clock import ReplayClock
+from .replay_selection import ReplayOptions, Selection
 from .restamp import Restamper
 from .ros_setup import StopFlag, ros_context, wait_for_acknowledgement, wait_for_subscribers
 
@@ -31,98 +37,53 @@ LOOK_ROUND_SECONDS = 0.05
 # One look at the node's services costs half a millisecond: in a pause, or at the latest after half a second.
 PAUSE_SECONDS = 2e-3
 LONGEST_DEAF_SECONDS = 0.5
-
-
-@dataclass(frozen=True)
-class ReplayOptions:
-    """What to play, and how. Times in s of the log; `clock` is the rate of /clock in Hz of wall time, 0 for none."""
-
-    path: Path
-    rate: float = 1.0
-    loop: bool = False
-    start: float = 0.0
-    duration: float = math.inf
-    topics: tuple[str, ...] = ()
-    clock: float = 0.0
-    wait_for_subscribers: int = 0
-    wait_timeout: float = 30.0
-
-    def check(self) -> None:
-        """Raises LandingError for a value that cannot be."""
-        for name, value, unit, lo, hi in (
-            ("--rate", self.rate, "", 1e-3, 1e3),
-            ("--start", self.start, "s", 0.0, math.inf),
-            ("--clock", self.clock, "Hz", 0.0, 1e4),
-            ("--wait-for-subscribers", float(self.wait_for_subscribers), "", 0.0, 1e3),
-            ("--wait-timeout", self.wait_timeout, "s", 0.0, 86400.0),
-        ):
-            if not (lo <= value <= hi and math.isfinite(value)):
-                raise LandingError(f"{name} = {value:g} {unit}".rstrip() + f" is outside [{lo:g}, {hi:g}] {unit}".rstrip())
-        if not self.duration > 0.0:
-            raise LandingError(f"--duration = {self.duration:g} s must be above 0 s")
+# How often the keyboard is asked [s], and what a press of up changes the rate by.
+KEY_SECONDS = 0.02
+RATE_FACTOR = 1.1
+BAR = "replay {percentage:3.0f}%|{bar}| {n:.2f}/{total:.2f} s [{elapsed}<{remaining}]{postfix}"
 
 
 @dataclass(frozen=True)
 class ReplaySummary:
-    """How a replay went: messages and whole turns played, the signal that ended it (or 0), lateness [s], whether the log was cut."""
+    """How a replay went: messages and whole turns played, the signal that ended it (or 0), whether a key did; lateness of messages in
+    median, 99th percentile and at most, and wall time given up after stalls [s]; whether the log was cut."""
 
     messages: int
     turns: int
     signal: int
+    quit: bool
     median_lateness: float
+    p99_lateness: float
     largest_lateness: float
+    lost: float
     acknowledged: bool
     cut: bool
 
 
-class Selection:
-    """The part of a log that is to be played, in memory. Raises LandingError where there is nothing to play."""
-
-    def __init__(self, reader: LogReader, options: ReplayOptions) -> None:
-        messages = list(reader.messages())
-        if not messages:
-            raise LandingError(f"{reader.path} holds no message that can be read; there is nothing to play")
-        chosen = select_topics(reader, options.topics)
-        self.first = min(m.log_time for m in messages) + round(options.start * 1e9)
-        last = self.first + round(options.duration * 1e9) if math.isfinite(options.duration) else math.inf
-        self.messages: list[LogMessage] = [m for m in messages if m.topic in chosen and self.first <= m.log_time <= last]
-        if not self.messages:
-            length = (max(m.log_time for m in messages) - min(m.log_time for m in messages)) / 1e9
-            raise LandingError(f"nothing to play from --start {options.start:g} s on: the log is {length:g} s long")
-        self.channels = [c for c in reader.channels.values() if c.topic in chosen]
-        self.length = max(m.log_time for m in self.messages) - self.first
-        self.cut = reader.cut
-
-
-def select_topics(reader: LogReader, names: Sequence[str]) -> set[str]:
-    """The full names of the topics to play: all, or `names`, each full or relative to the landing's namespace.
-
-    Raises LandingError, with the nearest name, for one that the log does not hold.
-    """
-    if not names:
-        return set(reader.channels)
-    chosen = set()
-    for name in names:
-        full = name if name in reader.channels else f"{reader.namespace}/{name}"
-        if full not in reader.channels:
-            known = [*reader.channels, *(t.removeprefix(reader.namespace + "/") for t in reader.channels)]
-            raise unknown("topic", name, known)
-        chosen.add(full)
-    return chosen
-
-
 class ReplayNode(Node):
-    """Publishes a selection of a log's messages. Raises LandingError where a message type is not installed."""
+    """Publishes a selection of a log's messages, at a pace that keys of `keyboard` and services (`~/pause`, `~/resume`, `~/play_next`)
+    change. Raises LandingError: a message type is not installed, a topic's new name cannot be."""
 
-    def __init__(self, selection: Selection, options: ReplayOptions) -> None:
+    def __init__(self, selection: Selection, options: ReplayOptions, keyboard: Keyboard, stop: StopFlag) -> None:
         super().__init__("replay_node")
         self._selection = selection
         self._options = options
+        self._keyboard = keyboard
+        self._stop = stop
+        self._quit = False
+        self._clock_of_log = ReplayClock(options.rate, options.start_paused)
         self._spinner = SingleThreadedExecutor(context=self.context)
         self._spinner.add_node(self)
+        self._offer_services()
         # `struts` last, as in the landing node: who waits for a match on it finds the others matched.
         channels = sorted(selection.channels, key=lambda c: c.topic.endswith(f"/{landing_topics.STRUTS.name}"))
-        self._outlets = {c.topic: self.create_publisher(message_class(c.type_name), c.topic, parse_qos(c.qos).profile()) for c in channels}
+        publishers: dict[str, Any] = {}
+        for c in channels:
+            name = selection.names[c.topic]
+            if name not in publishers:
+                _check_name(name)
+                publishers[name] = self.create_publisher(message_class(c.type_name), name, parse_qos(c.qos).profile())
+        self._outlets = {c.topic: publishers[selection.names[c.topic]] for c in channels}
         self._types = {c.topic: c.type_name for c in channels}
         self._waited_for = channels[-1].topic
         self._clock_message = message_class(landing_topics.CLOCK.type_name)()
@@ -130,23 +91,31 @@ class ReplayNode(Node):
         if options.clock > 0.0:
             self._clock_publisher = self.create_publisher(type(self._clock_message), landing_topics.CLOCK.name, CLOCK.profile())
         self._lateness: list[float] = []
-        self._spun = 0.0
+        self._spun = self._asked = 0.0
 
-    def play(self, stop: StopFlag) -> ReplaySummary:
-        """The selection once, or turn after turn with `loop`, until its end or a signal."""
-        o, selection = self._options, self._selection
+    def _offer_services(self) -> None:
+        clock = self._clock_of_log
+        for name, act, otherwise in (
+            ("pause", clock.pause, "the replay is paused already"),
+            ("resume", clock.resume, "the replay is not paused"),
+            ("play_next", clock.step, "the replay is not paused; pause it first"),
+        ):
+            self.create_service(Trigger, f"~/{name}", partial(_answer, act, otherwise))
+
+    def play(self) -> ReplaySummary:
+        """The selection once, or turn after turn with `loop`, until its end, a signal, or the key q."""
+        o, selection, stop = self._options, self._selection, self._stop
         wait_for_subscribers(self._outlets[self._waited_for], o.wait_for_subscribers, o.wait_timeout, self._spinner, stop)
         played = turns = 0
         # One step of the log lies between the last message of a turn and the first of the next.
-        step = _typical_step(selection.messages)
+        period = selection.length + selection.step
         gc.collect()
         gc.freeze()
         gc.disable()
         try:
-            started = time.perf_counter()
-            while not stop:
-                epoch = turns * (selection.length + step)
-                count = self._turn(started + epoch / 1e9 / o.rate, epoch, stop)
+            self._clock_of_log.start(time.perf_counter())
+            while not self._ended:
+                count = self._turn(turns * period)
                 played += count
                 if count < len(selection.messages):
                     break
@@ -162,53 +131,93 @@ class ReplayNode(Node):
             messages=played,
             turns=turns,
             signal=stop.number,
+            quit=self._quit,
             median_lateness=late[len(late) // 2] if late else 0.0,
+            p99_lateness=late[math.ceil(0.99 * len(late)) - 1] if late else 0.0,
             largest_lateness=late[-1] if late else 0.0,
+            lost=self._clock_of_log.lost,
             acknowledged=acknowledged,
             cut=selection.cut,
         )
 
-    def _turn(self, started: float, epoch: int, stop: StopFlag) -> int:
-        """One turn whose time 0 is at `started` of the wall clock; `epoch` [ns] is added to the stamps. How many messages were played."""
+    @property
+    def _ended(self) -> bool:
+        return bool(self._stop) or self._quit
+
+    def _turn(self, epoch: int) -> int:
+        """One turn; `epoch` [ns] is added to the stamps. How many messages were played."""
         from tqdm import tqdm
 
-        selection, rate = self._selection, self._options.rate
+        selection, clock = self._selection, self._clock_of_log
         restamp = Restamper(self._types, epoch) if epoch else None
-        tick = 1.0 / self._options.clock if self._clock_publisher is not None else math.inf
-        next_tick = started if self._clock_publisher is not None else math.inf
-        seconds = selection.length / 1e9
-        bar_format = "replay {percentage:3.0f}%|{bar}| {n:.2f}/{total:.2f} s [{elapsed}<{remaining}]"
-        with tqdm(total=seconds, disable=not sys.stderr.isatty(), bar_format=bar_format, file=sys.stderr) as bar:
+        next_tick = epoch / 1e9 if self._clock_publisher is not None else math.inf
+        with tqdm(
+            total=selection.length / 1e9, disable=not sys.stderr.isatty(), bar_format=BAR, file=sys.stderr, postfix=self._pace
+        ) as bar:
             for i, message in enumerate(selection.messages):
-                due = started + (message.log_time - selection.first) / 1e9 / rate
-                while next_tick <= due:
-                    if not self._wait_until(next_tick, stop):
+                position = (epoch + message.log_time - selection.first) / 1e9
+                while next_tick <= position:
+                    if not self._wait_until(next_tick, bar):
                         return i
-                    self._publish_clock(epoch + selection.first + round((next_tick - started) * rate * 1e9))
-                    next_tick += tick
-                if not self._wait_until(due, stop):
+                    self._publish_clock(selection.first + round(next_tick * 1e9))
+                    # Ticks are even in wall time, whatever the rate is at present.
+                    next_tick += clock.rate / self._options.clock
+                if not self._wait_until(position, bar):
                     return i
+                late = time.perf_counter() - clock.due(position)
                 data = message.data if restamp is None else restamp(message.topic, message.data)
                 self._outlets[message.topic].publish(data)
-                self._lateness.append(time.perf_counter() - due)
+                if math.isfinite(late):
+                    self._lateness.append(late)
+                clock.give_up(late)
+                clock.passed(position)
                 done = (message.log_time - selection.first) / 1e9
-                if done - bar.n > 0.02:
+                if done - bar.n > 0.02 or clock.paused:
                     bar.update(done - bar.n)
         return len(selection.messages)
 
-    def _wait_until(self, due: float, stop: StopFlag) -> bool:
-        """Waits until `due` of the wall clock; False where a signal came."""
-        while (left := due - time.perf_counter()) > 0.0:
-            if left > SPIN_SECONDS:
-                deaf = time.perf_counter() - self._spun
+    def _wait_until(self, position: float, bar: Any) -> bool:
+        """Waits until the time `position` of the log is due; False where the replay is to end."""
+        clock = self._clock_of_log
+        while not self._ended:
+            now = time.perf_counter()
+            if self._keyboard.there and now - self._asked > KEY_SECONDS:
+                self._asked = now
+                self._obey(self._keyboard.keys(), bar)
+                continue
+            left = clock.due(position) - now
+            if left <= 0.0:
+                return True
+            if clock.paused:
+                self._spinner.spin_once(timeout_sec=KEY_SECONDS)
+            elif left > SPIN_SECONDS:
+                deaf = now - self._spun
                 if (deaf > LOOK_ROUND_SECONDS and left > PAUSE_SECONDS) or deaf > LONGEST_DEAF_SECONDS:
                     self._spinner.spin_once(timeout_sec=0)
                     self._spun = time.perf_counter()
                 else:
-                    time.sleep(min(left - SPIN_SECONDS, LOOK_ROUND_SECONDS))
-            if stop:
-                return False
-        return not stop
+                    time.sleep(min(left - SPIN_SECONDS, KEY_SECONDS))
+        return False
+
+    def _obey(self, keys: Sequence[str], bar: Any) -> None:
+        clock = self._clock_of_log
+        for key in keys:
+            now = time.perf_counter()
+            if key == "space":
+                (clock.resume if clock.paused else clock.pause)(now)
+            elif key == "right":
+                clock.step()
+            elif key == "q":
+                self._quit = True
+            else:
+                clock.change_rate(RATE_FACTOR if key == "up" else 1.0 / RATE_FACTOR, now)
+        if keys:
+            bar.set_postfix_str(self._pace)
+
+    @property
+    def _pace(self) -> str:
+        clock = self._clock_of_log
+        return f"rate {clock.rate:.3g}{', paused' if clock.paused else ''}"
 
     def _publish_clock(self, nanoseconds: int) -> None:
         if self._clock_publisher is not None:
@@ -221,19 +230,26 @@ class ReplayNode(Node):
         super().destroy_node()
 
 
-def _typical_step(messages: Sequence[LogMessage]) -> int:
-    """The smallest time between two instants of the log [ns]; a millisecond where there is only one."""
-    times = sorted({m.log_time for m in messages})
-    return min((b - a for a, b in pairwise(times)), default=1_000_000)
+def _answer(act: Callable[[float], bool], otherwise: str, _request: Any, response: Any) -> Any:
+    response.success = act(time.perf_counter())
+    response.message = "" if response.success else otherwise
+    return response
+
+
+def _check_name(name: str) -> None:
+    try:
+        validate_full_topic_name(name)
+    except InvalidTopicNameException as e:
+        raise LandingError(f"{name!r} cannot be a topic: {' '.join(str(e).split())}") from None
 
 
 def replay(options: ReplayOptions, ros_args: Sequence[str], stop: StopFlag) -> ReplaySummary:
     """Plays a log in a ROS 2 of its own, started with `ros_args`. Raises LandingError: bad options, a log or a topic that is not there."""
     options.check()
     selection = Selection(LogReader(options.path), options)
-    with ros_context(ros_args):
-        node = ReplayNode(selection, options)
+    with ros_context(ros_args), Keyboard() as keyboard:
+        node = ReplayNode(selection, options, keyboard, stop)
         try:
-            return node.play(stop)
+            return node.play()
         finally:
             node.destroy_node()

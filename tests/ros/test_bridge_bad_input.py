@@ -92,6 +92,12 @@ def test_replay_refuses(one_log: Path, tmp_path: Path) -> None:
         ((one_log, "--start", "7"), "the log is 1 s long"),
         ((one_log, "--duration", "-1"), "--duration = -1 s must be above 0 s"),
         ((whole, "more"), "unknown argument 'more'"),
+        ((one_log, "--remap", "struts"), "--remap 'struts' is not OLD:=NEW"),
+        ((one_log, "--remap", "strust:=a"), "unknown topic 'strust'; did you mean struts?"),
+        ((one_log, "--remap", "struts:=a", "--remap", "/landing/struts:=b"), "two names, 'a' and 'b'"),
+        ((one_log, "--remap", "struts:=pose"), "cannot both be played as /landing/pose"),
+        ((one_log, "--remap", "struts:=2 b"), "'/landing/2 b' cannot be a topic: "),
+        ((one_log, "--topics", "pose", "--remap", "struts:=a"), "is not among the topics chosen by --topics"),
     ):
         if message.startswith("text.mcap"):
             empty.unlink()

@@ -62,6 +62,17 @@ def test_a_part_of_the_log_can_be_played_at_another_rate(one_log: Path, tmp_path
     assert np.median(np.abs(np.diff(struts) - 4e6)) < 1e6
 
 
+def test_topics_are_played_under_other_names(one_log: Path, tmp_path: Path, domain: int) -> None:
+    original, types = contents(one_log)
+    kind = types["/landing/struts"]
+    remap = ("--remap", "struts:=recorded/struts", "--remap", "/landing/pose:=/elsewhere")
+    names = {"/landing/struts": "/landing/recorded/struts", "/landing/pose": "/elsewhere"}
+    heard_types = {"/elsewhere": types["/landing/pose"], "/landing/struts": kind, "/landing/recorded/struts": kind}
+    expected = {"/elsewhere": 1001, "/landing/recorded/struts": 1001}
+    heard = play(one_log, heard_types, expected, tmp_path, domain, "--topics", "struts,pose", *remap)
+    assert [(m.topic, m.data) for m in heard] == [(names[m.topic], m.data) for m in original if m.topic in names]
+
+
 def test_time_never_runs_backwards_when_a_replay_loops(
     one_log: Path, tmp_path: Path, domain: int, processes: list[subprocess.Popen[str]]
 ) -> None:

@@ -1,0 +1,105 @@
+"""A command of the bridge on a terminal of its own (a pseudo-terminal), with job control as a shell has it."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import pty
+import select
+import signal
+import struct
+import subprocess
+import sys
+import termios
+import time
+from contextlib import suppress
+from types import TracebackType
+
+from bridge_tools import TIMEOUT, command, environment
+
+# Stands for the shell: starts the command as a job in the foreground of the terminal, and tells on file 3 when it stops or ends.
+SHELL = """
+import fcntl, os, signal, sys, termios
+signal.signal(signal.SIGTTOU, signal.SIG_IGN)
+fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+child = os.fork()
+if child == 0:
+    os.setpgid(0, 0)
+    os.tcsetpgrp(0, os.getpid())
+    signal.signal(signal.SIGTTOU, signal.SIG_DFL)
+    os.close(3)
+    os.execv(sys.argv[1], sys.argv[1:])
+os.write(3, f"{child}\\n".encode())
+while True:
+    _, status = os.waitpid(child, os.WUNTRACED)
+    os.write(3, f"{status}\\n".encode())
+    if not os.WIFSTOPPED(status):
+        break
+"""
+
+
+class Terminal:
+    """The command `arguments` on a terminal, to be entered. `shown` is what the terminal shows so far, the command's stdout included."""
+
+    def __init__(self, *arguments: object, domain: int) -> None:
+        self.master, self.slave = pty.openpty()
+        # A line of 150 columns: of a terminal without a size the progress line would show nothing.
+        fcntl.ioctl(self.slave, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 150, 0, 0))
+        self.settings = termios.tcgetattr(self.slave)
+        self.shown = ""
+        told, tell = os.pipe()
+        self._told = os.fdopen(told)
+        self._shell = subprocess.Popen(
+            [sys.executable, "-c", f"import os; os.dup2({tell}, 3)\n{SHELL}", *command(*arguments)],
+            env=environment(domain, PYTHONUNBUFFERED="1"),
+            stdin=self.slave,
+            stdout=self.slave,
+            stderr=self.slave,
+            start_new_session=True,
+            pass_fds=(tell,),
+        )
+        os.close(tell)
+        self.pid = int(self._told.readline())
+
+    def __enter__(self) -> Terminal:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        for process in (self.pid, self._shell.pid):
+            with suppress(ProcessLookupError):
+                os.kill(process, signal.SIGKILL)
+        self._shell.wait(TIMEOUT)
+        os.close(self.master)
+        os.close(self.slave)
+        self._told.close()
+
+    def press(self, keys: str) -> None:
+        """Types `keys`."""
+        os.write(self.master, keys.encode())
+
+    def until(self, text: str) -> None:
+        """Returns once the terminal has shown `text` after what was looked for before."""
+        end = time.monotonic() + TIMEOUT
+        start = 0
+        while (at := self.shown.find(text, start)) < 0:
+            assert time.monotonic() < end, self.shown
+            if select.select([self.master], [], [], 0.1)[0]:
+                self.shown += os.read(self.master, 65536).decode(errors="replace")
+        self.shown = self.shown[at + len(text) :]
+
+    def status(self) -> int:
+        """The wait status of the command's next stop, or of its end. What it shows meanwhile is read, lest it waits for that."""
+        while not select.select([self._told], [], [], 0.0)[0]:
+            if select.select([self.master, self._told], [], [], TIMEOUT)[0] and select.select([self.master], [], [], 0.0)[0]:
+                self.shown += os.read(self.master, 65536).decode(errors="replace")
+        return int(self._told.readline())
+
+    @property
+    def is_as_it_was(self) -> bool:
+        """Whether the terminal has the settings that it had at first."""
+        return termios.tcgetattr(self.slave) == self.settings
+
+    @property
+    def line_by_line(self) -> bool:
+        """Whether the terminal hands on whole lines, as it does for a shell, not single keys."""
+        return bool(termios.tcgetattr(self.slave)[3] & termios.ICANON)
