@@ -8,6 +8,7 @@ import select
 import signal
 import sys
 import termios
+import threading
 import tty
 from types import FrameType, TracebackType
 from typing import Any
@@ -30,7 +31,7 @@ class Keyboard:
     """Keys of the terminal on standard input while it is entered; where that is no terminal, or another program has it, none ever come.
 
     The terminal's settings are restored at the end, also by an error, SIGHUP, SIGQUIT, and while the process is stopped by Ctrl-Z.
-    Ctrl-C stays a signal. To be entered in the main thread.
+    Ctrl-C stays a signal. Python takes signals in the main thread only, so in others no keys come.
     """
 
     def __init__(self) -> None:
@@ -47,7 +48,8 @@ class Keyboard:
     def __enter__(self) -> Keyboard:
         try:
             fd = sys.stdin.fileno()
-            if not (os.isatty(fd) and os.tcgetpgrp(fd) == os.getpgrp()):
+            mine = threading.current_thread() is threading.main_thread()
+            if not (mine and os.isatty(fd) and os.tcgetpgrp(fd) == os.getpgrp()):
                 return self
             self._saved = termios.tcgetattr(fd)
         except (AttributeError, OSError, ValueError, termios.error):
