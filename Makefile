@@ -65,6 +65,7 @@ coverage: $(FMU)
 
 docs: $(FMU)
 	$(BIN)/rlv-landing simulate --mode 2-2 --plot docs/landing-2-2.png --force
+	$(BIN)/rlv-landing animate --mode 2-2 docs/landing-2-2.gif --fps 20 --end 0.6 --width 880 --force
 	$(BIN)/python examples/ship_deck/run.py --picture examples/ship_deck/ship_deck.png
 
 clean:

@@ -58,6 +58,7 @@ def cli() -> None:
     rlv-landing audit                                  energy, mass, momentum, rest, convergence
     rlv-landing node --mode 2-2                        the ROS 2 node: steps the FMU, publishes, records
     rlv-landing log info logs/NAME                     what a log holds
+    rlv-landing animate logs/NAME landing.mp4          a log, or a landing, as a moving picture
     rlv-landing replay logs/NAME                       publish it again
 
     SI units and radians throughout; a value may carry its unit: --set drop.tilt="-2 deg".

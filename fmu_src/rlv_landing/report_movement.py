@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .history import History
-from .parameters import Parameters, azimuth
+from .parameters import Parameters
 from .plots import COLOURS
-from .quantities import LEGS, MODES
 from .report_figures import PITCH, draw_marks, marks
+from .wireframe import Lines, ground_height, wireframe
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,28 +17,6 @@ if TYPE_CHECKING:
     from .studies.validate import Validation
 
 FRAMES = 13
-Line = tuple[tuple[float, float], ...]
-
-
-def wireframe(history: History, parameters: Parameters, row: int) -> dict[str, list[Line]]:
-    """Body, struts and footpads at one sample as lines in the symmetric plane, inertial (x, y) [m]."""
-    x, y, pitch = (float(history[f"body.{n}"][row]) for n in ("x", "y", "pitch"))
-    sine, cosine = np.sin(pitch), np.cos(pitch)
-    v, m, a = parameters.vehicle, parameters.main_strut, parameters.auxiliary_strut
-
-    def place(bx: float, by: float) -> tuple[float, float]:
-        return float(x + bx * cosine + by * sine), float(y - bx * sine + by * cosine)
-
-    half, bottom = min(m.joint_radius, a.joint_radius), -max(m.joint_depth, a.joint_depth)
-    corners = ((-half, bottom), (half, bottom), (half, v.top_height), (-half, v.top_height), (-half, bottom))
-    lines: dict[str, list[Line]] = {"body": [tuple(place(*c) for c in corners)], "main": [], "auxiliary": [], "feet": []}
-    turns = {leg: azimuth(g.azimuth)[1] for g in MODES[parameters.drop.mode] for leg, _ in g.legs}
-    for leg in LEGS:
-        foot = (float(history[f"leg[{leg}].footpad.x"][row]), float(history[f"leg[{leg}].footpad.y"][row]))
-        lines["main"].append((place(m.joint_radius * turns[leg], -m.joint_depth), foot))
-        lines["auxiliary"].append((place(a.joint_radius * turns[leg], -a.joint_depth), foot))
-        lines["feet"].append((foot,))
-    return lines
 
 
 def movement_figure(found: Validation, mode: str) -> tuple[Figure, dict[str, str]]:
@@ -54,9 +31,10 @@ def movement_figure(found: Validation, mode: str) -> tuple[Figure, dict[str, str
     ax, below = figure.subplots(1, 2, width_ratios=(1.35, 1.0))
     end = min(float(history.time[-1]), 0.9)
     shades = colormaps["Blues"](np.linspace(0.18, 1.0, FRAMES))
-    for t, shade in zip(np.linspace(0.0, end, FRAMES), shades):
-        row = int(np.argmin(np.abs(history.time - t)))
-        _draw(ax, wireframe(history, parameters, row), shade)
+    instants = np.linspace(0.0, end, FRAMES)
+    lines = wireframe(history, parameters, [int(np.argmin(np.abs(history.time - t))) for t in instants])
+    for i, (t, shade) in enumerate(zip(instants, shades)):
+        _draw(ax, {part: each[i] for part, each in lines.items()}, shade)
         below.axvline(t, ymax=0.04, color=shade, linewidth=3.0, zorder=0)
     _ground(ax, parameters)
     ax.set_aspect("equal")
@@ -74,15 +52,14 @@ def movement_figure(found: Validation, mode: str) -> tuple[Figure, dict[str, str
     return figure, said
 
 
-def _draw(ax: Any, lines: dict[str, list[Line]], shade: Any) -> None:
-    for part, width in (("body", 1.0), ("main", 1.4), ("auxiliary", 0.9)):
+def _draw(ax: Any, lines: dict[str, Lines], shade: Any) -> None:
+    for part, width in (("outline", 1.0), ("main", 1.4), ("auxiliary", 0.9)):
         for line in lines[part]:
-            ax.plot(*zip(*line), color=shade, linewidth=width, solid_capstyle="round")
-    ax.plot(*zip(*(p for line in lines["feet"] for p in line)), "o", color=shade, markersize=3)
+            ax.plot(line[:, 0], line[:, 1], color=shade, linewidth=width, solid_capstyle="round")
+    ax.plot(lines["feet"][..., 0].ravel(), lines["feet"][..., 1].ravel(), "o", color=shade, markersize=3)
 
 
 def _ground(ax: Any, parameters: Parameters) -> None:
-    low, high = ax.get_xlim()
-    slope = np.tan(parameters.ground.slope)
-    ax.plot((low, high), (-slope * low, -slope * high), color="#555555", linewidth=1.2, zorder=0)
-    ax.set_xlim(low, high)
+    ends = np.array(ax.get_xlim())
+    ax.plot(ends, ground_height(parameters, ends), color="#555555", linewidth=1.2, zorder=0)
+    ax.set_xlim(*ends)

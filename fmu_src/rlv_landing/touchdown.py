@@ -10,12 +10,17 @@ from .quantities import MODES
 
 def footpad_at_rest(parameters: Parameters) -> tuple[float, float]:
     """Radius and height (body axes, from the CG) [m] of a footpad whose struts are both at full length: the outer meeting point."""
+    return footpad_between(parameters, parameters.main_strut.length, parameters.auxiliary_strut.length)
+
+
+def footpad_between(parameters: Parameters, main: float, auxiliary: float) -> tuple[float, float]:
+    """Radius and height (body axes, from the CG) [m] of a footpad whose struts have these lengths [m]: the outer meeting point."""
     m, a = parameters.main_strut, parameters.auxiliary_strut
     x1, y1, x2, y2 = m.joint_radius, -m.joint_depth, a.joint_radius, -a.joint_depth
     dx, dy = x2 - x1, y2 - y1
     apart = (dx * dx + dy * dy) ** 0.5
-    along = (m.length**2 - a.length**2 + apart**2) / (2.0 * apart)
-    off = (m.length**2 - along**2) ** 0.5
+    along = (main**2 - auxiliary**2 + apart**2) / (2.0 * apart)
+    off = (main**2 - along**2) ** 0.5
     mid_x, mid_y = x1 + along * dx / apart, y1 + along * dy / apart
     return max((mid_x - off * dy / apart, mid_y + off * dx / apart), (mid_x + off * dy / apart, mid_y - off * dx / apart))
 

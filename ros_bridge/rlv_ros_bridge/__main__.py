@@ -1,4 +1,4 @@
-"""`python -m rlv_ros_bridge node|replay|log`: the bridge's commands without the `rlv-landing` front."""
+"""`python -m rlv_ros_bridge node|replay|log|animate`: the bridge's commands without the `rlv-landing` front."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from rlv_landing.errors import LandingError
 from .cli import replay
 from .log_cli import log
 from .node_command import node
+from .picture_cli import animate
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -21,6 +22,7 @@ def main() -> None:
 main.add_command(node)
 main.add_command(replay)
 main.add_command(log)
+main.add_command(animate)
 
 
 def run() -> int:

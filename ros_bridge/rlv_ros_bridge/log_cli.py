@@ -24,6 +24,11 @@ def log() -> None:
 
     LOG is a log's folder or its .mcap file (.mcap.part: not finished by its writer).
     """
+    require_log_readers()
+
+
+def require_log_readers() -> None:
+    """Raises LandingError, saying what to install, unless the libraries that read logs are there."""
     try:
         import mcap  # noqa: F401
         import mcap_ros2  # noqa: F401
