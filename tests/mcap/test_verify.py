@@ -258,12 +258,17 @@ def test_inputs_that_cannot_be_are_refused(one_log: Path, tmp_path: Path, force:
     assert f"its input /landing/applied/external_wrench at 0.5 s cannot be: external.force_x = {force:g} N" in str(e.value)
 
 
-def with_input(log: Path, folder: Path, log_time: int, data: bytes) -> LogReader:
+def test_inputs_of_another_type_are_refused(one_log: Path, tmp_path: Path) -> None:
+    with pytest.raises(LandingError, match="external_wrench is std_msgs/msg/String, not geometry_msgs/msg/WrenchStamped"):
+        verify(with_input(one_log, tmp_path / "log", 0, bytes(16), "std_msgs/msg/String"))
+
+
+def with_input(log: Path, folder: Path, log_time: int, data: bytes, type_name: str = APPLIED_WRENCH.type_name) -> LogReader:
     """A log with the metadata and parameters of `log` that holds one input and nothing else."""
     reader = LogReader(log)
     reader.read_through()
     name = f"/landing/{APPLIED_WRENCH.name}"
-    recorder = Recorder(folder, [RecordedTopic(name, APPLIED_WRENCH.type_name, TELEMETRY)], reader.metadata, reader.attachments)
+    recorder = Recorder(folder, [RecordedTopic(name, type_name, TELEMETRY)], reader.metadata, reader.attachments)
     recorder.write(name, log_time, data)
     recorder.close()
     return LogReader(folder)
