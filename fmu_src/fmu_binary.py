@@ -1,12 +1,17 @@
-"""The FMU's binary: compiles the front in `fmu_front/` and lays pythonfmu's own binary beside it. Runs at build time only."""
+"""The FMU's binaries: compiles the front in `fmu_front/` and lays pythonfmu's own binary beside it. Runs at build time only.
+
+Windows' front is compiled where mingw-w64 is found (`x86_64-w64-mingw32-gcc`); else the FMU has pythonfmu's own DLL there.
+"""
 
 from __future__ import annotations
 
 import os
+import shutil
 import struct
 import subprocess
 import sys
 import sysconfig
+import tempfile
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -16,7 +21,10 @@ from pythonfmu import __version__ as pythonfmu_version
 FRONT = Path(__file__).parent / "fmu_front"
 HEADERS = Path(fmpy.__file__).parent / "c-code"
 CAUSALITIES = {"parameter": "p", "input": "i", "output": "o"}
-FLAGS = ["-std=c11", "-O2", "-fPIC", "-fvisibility=hidden", "-Wall", "-Wextra", "-g0", "-s"]
+FLAGS = ["-std=c11", "-O2", "-fvisibility=hidden", "-Wall", "-Wextra", "-g0", "-s", "-shared"]
+MINGW = "x86_64-w64-mingw32-gcc"
+# no library of mingw's own beside the DLL, C's printf, the same bytes at any time and in any folder
+FOR_WINDOWS = ["-D__USE_MINGW_ANSI_STDIO=1", "-static", "-Wl,--no-insert-timestamp,--disable-auto-image-base"]
 DT_FINI_ARRAY, DT_FINI_ARRAYSZ = 26, 28
 SHT_DYNAMIC = 6
 
@@ -30,22 +38,31 @@ def replace_binaries(files: Path) -> None:
     simulation = root.find("CoSimulation")
     assert simulation is not None
     binary = files / "binaries" / "linux64" / f"{simulation.attrib['modelIdentifier']}.so"
-    stock = binary.with_name(f"pythonfmu-export-{pythonfmu_version}.so")
-    stock.write_bytes(without_last_finaliser(binary.read_bytes()))
-    header = files / "variables.h"
-    header.write_text(variables_header(root, stock.name))
-    compile_front(binary, files)
-    header.unlink()
+    put_front(binary, without_last_finaliser(binary.read_bytes()), root)
+    dll = files / "binaries" / "win64" / f"{binary.stem}.dll"
+    if shutil.which(MINGW):
+        put_front(dll, dll.read_bytes(), root)
     library = libpython()
     if library:
         (files / "resources" / "libpython.txt").write_text(library + "\n")
 
 
+def put_front(binary: Path, stock: bytes, root: ElementTree.Element) -> None:
+    """Put the front in the place of `binary`, and `stock`, pythonfmu's, beside it; `root` is the FMU's description."""
+    beside = binary.with_name(f"pythonfmu-export-{pythonfmu_version}{binary.suffix}")
+    beside.write_bytes(stock)
+    with tempfile.TemporaryDirectory(prefix="rlv_landing_") as folder:
+        (Path(folder) / "variables.h").write_text(variables_header(root, beside.name))
+        compile_front(binary, Path(folder))
+
+
 def compile_front(target: Path, include: Path) -> None:
-    """Compile the front to the shared library `target`; `include` holds `variables.h`."""
-    compiler = os.environ.get("CC", "gcc")
-    sources = [str(p) for p in sorted(FRONT.glob("*.c"))]
-    command = [compiler, *FLAGS, "-shared", "-I", str(include), "-isystem", str(HEADERS), "-o", str(target), *sources, "-ldl"]
+    """Compile the front to the shared library `target`, for Windows if it is a `.dll`; `include` holds `variables.h`."""
+    windows = target.suffix == ".dll"
+    compiler = MINGW if windows else os.environ.get("CC", "gcc")
+    sources = [str(p) for p in sorted(FRONT.glob("*.c")) if p.name != ("posix.c" if windows else "windows.c")]
+    own = FOR_WINDOWS if windows else ["-fPIC", "-ldl"]
+    command = [compiler, *FLAGS, "-I", str(include), "-isystem", str(HEADERS), "-o", str(target), *sources, *own]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
         raise SystemExit(f"error: the FMU's front does not compile: {' '.join(command)}\n{done.stderr}")

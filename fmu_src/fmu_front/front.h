@@ -69,7 +69,7 @@ struct instance {
 
 /* Log for the host, as far as it wants to know; errors that it does not want to know of go to standard error. */
 #if defined(__GNUC__)
-__attribute__((format(printf, 3, 4)))
+__attribute__((format(gnu_printf, 3, 4)))
 #endif
 void say(const struct instance *c, fmi2Status status, const char *format, ...);
 /* pythonfmu's logger: notes the status and passes the message on. */

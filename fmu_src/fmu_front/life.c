@@ -36,6 +36,8 @@ static bool locate(struct instance *c, const char *uri, char folder[PATH_SIZE])
         return false;
     }
     const char *path = folder;
+    if (!is_plain(folder))
+        shorten(folder);
     if (!is_plain(folder)) {
         if (!link_folder(folder, c->link)) {
             c->link[0] = '\0';
@@ -44,9 +46,9 @@ static bool locate(struct instance *c, const char *uri, char folder[PATH_SIZE])
         }
         path = c->link;
     }
-    c->location = malloc(strlen(path) + 8);
+    c->location = malloc(strlen(path) + 9);
     if (c->location)
-        sprintf(c->location, "file://%s", path);
+        sprintf(c->location, "file://%s%s", path[0] == '/' ? "" : "/", path); /* C:/... on Windows */
     return c->location != NULL;
 }
 

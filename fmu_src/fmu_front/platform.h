@@ -21,12 +21,19 @@ void share_loaded_python(void);
 bool library_path(const void *address, char path[PATH_SIZE]);
 
 bool file_exists(const char *path);
-/* First line of the output of a command, without its end; false if there is none. */
-bool first_line_of(const char *command, char line[PATH_SIZE]);
-/* Make a link to the folder `target` in a new temporary folder of plain name; write where. false and errno if it cannot be done. */
+/* The value of an environment variable that is a path; false if it is not set or empty. */
+bool environment(const char *name, char value[PATH_SIZE]);
+/* The libpython of a Python 3.<oldest> to 3.<newest> that is installed where no loader looks; false if there is none. */
+bool installed_python(int oldest, int newest, char path[PATH_SIZE]);
+/* Replace a path by the short name that the system keeps for it, if it does. */
+void shorten(char path[PATH_SIZE]);
+/* Make a link to the folder `target`, or a copy, under a plain name in the temporary folder; write where. false and errno if it fails. */
 bool link_folder(const char *target, char link[PATH_SIZE]);
 /* Remove what link_folder made. */
 void unlink_folder(const char *link);
+
+/* Called when this library is unloaded; on Windows not at the end of the process, when other libraries may be gone. */
+void unloaded(void);
 
 /* One lock of the whole process, also for another copy of this library. Never held while waiting for Python. */
 void lock(void);
@@ -39,5 +46,7 @@ void restore_locale(void);
 /* The name under which the loader knows libpython 3.<minor>; files of the standard library below a Python's home, by home and minor. */
 extern const char *const PYTHON_LIBRARY;
 extern const char *const STANDARD_LIBRARIES[];
+/* Where installed_python looks. */
+extern const char *const LAST_RESORT;
 
 #endif

@@ -12,6 +12,10 @@
 
 const char *const PYTHON_LIBRARY = "libpython3.%d.so.1.0";
 const char *const STANDARD_LIBRARIES[] = {"%s/lib/python3.%d/os.py", "%s/lib64/python3.%d/os.py", NULL};
+const char *const LAST_RESORT = "python3 on PATH:";
+
+static const char ASK_PYTHON[] =
+    "python3 -I -S -c \"import os, sysconfig as s; print(os.path.join(s.get_config_var('LIBDIR'), s.get_config_var('INSTSONAME')))\" 2>/dev/null";
 
 static char *locale_name;
 
@@ -78,9 +82,16 @@ bool file_exists(const char *path)
     return access(path, R_OK) == 0;
 }
 
-bool first_line_of(const char *command, char line[PATH_SIZE])
+bool environment(const char *name, char value[PATH_SIZE])
 {
-    FILE *output = popen(command, "r");
+    const char *text = getenv(name);
+    return text && *text && snprintf(value, PATH_SIZE, "%s", text) < PATH_SIZE;
+}
+
+bool installed_python(int oldest, int newest, char line[PATH_SIZE])
+{
+    (void)oldest, (void)newest; /* the caller looks at the version */
+    FILE *output = popen(ASK_PYTHON, "r");
     if (!output)
         return false;
     bool found = fgets(line, PATH_SIZE, output) != NULL;
@@ -88,6 +99,11 @@ bool first_line_of(const char *command, char line[PATH_SIZE])
     if (found)
         line[strcspn(line, "\r\n")] = '\0';
     return found && line[0] != '\0';
+}
+
+void shorten(char path[PATH_SIZE])
+{
+    (void)path;
 }
 
 bool link_folder(const char *target, char link[PATH_SIZE])

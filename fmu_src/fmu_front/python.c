@@ -7,9 +7,6 @@
 
 enum { OLDEST = 10, NEWEST = 13 };
 
-static const char ASK_PYTHON[] =
-    "python3 -I -S -c \"import os, sysconfig as s; print(os.path.join(s.get_config_var('LIBDIR'), s.get_config_var('INSTSONAME')))\" 2>/dev/null";
-
 /* Minor version of the Python 3 that `get_version` belongs to; 0 for another Python. */
 static int minor_version(void *get_version)
 {
@@ -110,9 +107,8 @@ static bool read_line(const char *folder, const char *name, char line[PATH_SIZE]
 static bool find_python(const char *resources, struct message *reason)
 {
     char path[PATH_SIZE];
-    const char *named = getenv("RLV_LANDING_LIBPYTHON");
-    if (named && *named)
-        return try_library(named, "RLV_LANDING_LIBPYTHON =", reason); /* a wish that cannot be met is an error, not a hint */
+    if (environment("RLV_LANDING_LIBPYTHON", path))
+        return try_library(path, "RLV_LANDING_LIBPYTHON =", reason); /* a wish that cannot be met is an error, not a hint */
     add(reason, "; RLV_LANDING_LIBPYTHON: not set");
     if (read_line(resources, "libpython.txt", path) && try_library(path, "recorded at build:", reason))
         return true;
@@ -125,9 +121,9 @@ static bool find_python(const char *resources, struct message *reason)
         if (try_library(path, "the loader's", reason))
             return true;
     }
-    if (first_line_of(ASK_PYTHON, path))
-        return try_library(path, "that of python3 on PATH:", reason);
-    add(reason, "; python3 on PATH: none that names its library");
+    if (installed_python(OLDEST, NEWEST, path))
+        return try_library(path, LAST_RESORT, reason);
+    add(reason, "; %s none that names its library", LAST_RESORT);
     return false;
 }
 

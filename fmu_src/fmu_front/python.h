@@ -8,7 +8,8 @@
  * Make sure that this process has a running Python 3.10 or newer; `resources` is the FMU's folder of that name.
  *
  * The host's own Python, if it has one, is used. Else libpython is looked for: in the file that RLV_LANDING_LIBPYTHON names; in the one
- * recorded when the FMU was built (resources/libpython.txt); under the usual names; beside the `python3` of PATH. It is opened for all,
+ * recorded when the FMU was built (resources/libpython.txt); under the usual names; where Python is installed (that of the `python3`
+ * of PATH; Windows: of the registry). It is opened for all,
  * started without signal handlers, environment and site-packages (the slave needs none, and a .pth there can restart the process), and
  * never finalised: Python cannot be started again in the same process.
  *

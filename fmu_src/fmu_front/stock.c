@@ -37,11 +37,12 @@ bool load_stock(struct message *reason)
     return true;
 }
 
-#if defined(__GNUC__)
 /* An importer that unloads the FMU unloads pythonfmu's binary with it. */
-__attribute__((destructor)) static void unload_stock(void)
+#if !defined(_WIN32)
+__attribute__((destructor))
+#endif
+void unloaded(void)
 {
     if (library)
         library_close(library);
 }
-#endif

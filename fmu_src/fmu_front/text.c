@@ -35,8 +35,14 @@ bool decode_utf8(const char *text, wchar_t *wide, size_t size)
         if (point < shortest[more] || point > 0x10ffff || (point >= 0xd800 && point < 0xe000))
             return false;
         if (wide) {
-            if (n + 1 >= size)
+            if (n + 2 >= size)
                 return false;
+#if WCHAR_MAX < 0x10ffff /* UTF-16 */
+            if (point > 0xffff) {
+                wide[n++] = (wchar_t)(0xd7c0 + (point >> 10));
+                point = 0xdc00 | (point & 0x3ff);
+            }
+#endif
             wide[n++] = (wchar_t)point;
         }
     }
@@ -75,11 +81,14 @@ bool folder_of_uri(const char *uri, char folder[PATH_SIZE])
         path += 5;
         if (strncmp(path, "//localhost/", 12) == 0)
             path += 11;
-        else if (strncmp(path, "//", 2) == 0)
-            path += 2;
 #ifdef _WIN32
+        else if (strncmp(path, "///", 3) == 0) /* //server/... is a path there */
+            path += 2;
         if (path[0] == '/' && isalpha((unsigned char)path[1]) && path[2] == ':')
             path++;
+#else
+        else if (strncmp(path, "//", 2) == 0)
+            path += 2;
 #endif
         decode_percent(path, folder);
         if (has_slave(folder))

@@ -12,7 +12,7 @@ struct message {
 };
 
 #if defined(__GNUC__)
-__attribute__((format(printf, 2, 3)))
+__attribute__((format(gnu_printf, 2, 3)))
 #endif
 void add(struct message *message, const char *format, ...);
 

@@ -1,0 +1,250 @@
+/* Windows' part of the front: see platform.h. Paths are UTF-8 with / here, UTF-16 with \ in the system's functions. */
+#define PSAPI_VERSION 2
+#include "platform.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <windows.h>
+
+#include <psapi.h>
+#include <shellapi.h>
+
+const char *const PYTHON_LIBRARY = "python3%d.dll";
+const char *const STANDARD_LIBRARIES[] = {"%s/Lib/os.py", "%s/python3%d.zip", NULL};
+const char *const LAST_RESORT = "registry (PythonCore):";
+
+static HMODULE python; /* what posix.c opens for all */
+
+static bool to_wide(const char *path, wchar_t wide[PATH_SIZE])
+{
+    if (!MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, path, -1, wide, PATH_SIZE))
+        return false;
+    for (; *wide; wide++)
+        if (*wide == L'/')
+            *wide = L'\\';
+    return true;
+}
+
+static bool to_utf8(const wchar_t *wide, char path[PATH_SIZE])
+{
+    if (!WideCharToMultiByte(CP_UTF8, 0, wide, -1, path, PATH_SIZE, NULL, NULL))
+        return false;
+    for (; *path; path++)
+        if (*path == '\\')
+            *path = '/';
+    return true;
+}
+
+static bool module_path(HMODULE module, char path[PATH_SIZE])
+{
+    wchar_t wide[PATH_SIZE];
+    DWORD length = GetModuleFileNameW(module, wide, PATH_SIZE);
+    return length && length < PATH_SIZE && to_utf8(wide, path);
+}
+
+/* pythonfmu's binary is linked with python3.dll, which passes on to python3<minor>.dll and lies beside it, where nobody looks. */
+static void share_python(HMODULE module)
+{
+    char path[PATH_SIZE];
+    python = module;
+    if (module_path(module, path)) {
+        char *file = strrchr(path, '/') + 1;
+        snprintf(file, (size_t)(path + sizeof path - file), "python3.dll");
+        library_open(path, false);
+    }
+}
+
+void *library_open(const char *path, bool for_all)
+{
+    wchar_t wide[PATH_SIZE];
+    if (!to_wide(path, wide)) {
+        SetLastError(ERROR_INVALID_NAME);
+        return NULL;
+    }
+    /* a library of known place may have what it needs beside it */
+    HMODULE module = LoadLibraryExW(wide, NULL, wcschr(wide, L'\\') ? LOAD_WITH_ALTERED_SEARCH_PATH : 0);
+    if (module && for_all)
+        share_python(module);
+    return module;
+}
+
+void library_close(void *library)
+{
+    FreeLibrary(library);
+}
+
+void *library_symbol(void *library, const char *name)
+{
+    return (void *)(INT_PTR)GetProcAddress(library, name);
+}
+
+const char *library_error(void)
+{
+    static char text[40];
+    snprintf(text, sizeof text, "Windows error %lu", GetLastError());
+    return text;
+}
+
+void *process_symbol(const char *name)
+{
+    return python ? library_symbol(python, name) : NULL;
+}
+
+void share_loaded_python(void)
+{
+    HMODULE modules[1024];
+    DWORD size = 0;
+    if (!EnumProcessModules(GetCurrentProcess(), modules, sizeof modules, &size))
+        return;
+    if (size > sizeof modules)
+        size = sizeof modules;
+    for (DWORD i = 0; i < size / sizeof *modules; i++) {
+        char path[PATH_SIZE];
+        int minor, length = 0;
+        if (!module_path(modules[i], path) || !strrchr(path, '/'))
+            continue;
+        const char *file = _strlwr(strrchr(path, '/') + 1);
+        if (sscanf(file, "python3%d.dll%n", &minor, &length) == 1 && length && !file[length]) {
+            share_python(modules[i]);
+            return;
+        }
+    }
+}
+
+bool library_path(const void *address, char path[PATH_SIZE])
+{
+    HMODULE module;
+    DWORD flags = GET_MODULE_HANDLE_EX_FLAG_FROM_ADDRESS | GET_MODULE_HANDLE_EX_FLAG_UNCHANGED_REFCOUNT;
+    return GetModuleHandleExW(flags, address, &module) && module_path(module, path);
+}
+
+bool file_exists(const char *path)
+{
+    wchar_t wide[PATH_SIZE];
+    return to_wide(path, wide) && GetFileAttributesW(wide) != INVALID_FILE_ATTRIBUTES;
+}
+
+bool environment(const char *name, char value[PATH_SIZE])
+{
+    wchar_t wide_name[PATH_SIZE], wide[PATH_SIZE];
+    if (!to_wide(name, wide_name))
+        return false;
+    DWORD length = GetEnvironmentVariableW(wide_name, wide, PATH_SIZE);
+    return length && length < PATH_SIZE && to_utf8(wide, value);
+}
+
+bool installed_python(int oldest, int newest, char path[PATH_SIZE])
+{
+    for (int minor = newest; minor >= oldest; minor--)
+        for (int all_users = 0; all_users < 2; all_users++) {
+            wchar_t key[80], folder[PATH_SIZE];
+            DWORD size = sizeof folder;
+            swprintf(key, sizeof key / sizeof *key, L"Software\\Python\\PythonCore\\3.%d\\InstallPath", minor);
+            if (RegGetValueW(all_users ? HKEY_LOCAL_MACHINE : HKEY_CURRENT_USER, key, NULL, RRF_RT_REG_SZ, NULL, folder, &size) ||
+                !to_utf8(folder, path))
+                continue;
+            size_t length = strlen(path);
+            snprintf(path + length, PATH_SIZE - length, "%spython3%d.dll", length && path[length - 1] == '/' ? "" : "/", minor);
+            if (file_exists(path))
+                return true;
+        }
+    return false;
+}
+
+void shorten(char path[PATH_SIZE])
+{
+    wchar_t wide[PATH_SIZE], other[PATH_SIZE];
+    DWORD length = to_wide(path, wide) ? GetShortPathNameW(wide, other, PATH_SIZE) : 0;
+    if (length && length < PATH_SIZE)
+        to_utf8(other, path);
+}
+
+/* Copy or delete a folder; the names must end with two zeros. */
+static bool change_folder(UINT what, const wchar_t *from, const wchar_t *to)
+{
+    SHFILEOPSTRUCTW change = {.wFunc = what, .pFrom = from, .pTo = to, .fFlags = FOF_NO_UI};
+    return SHFileOperationW(&change) == 0 && !change.fAnyOperationsAborted;
+}
+
+/* A copy: links need rights that few users have. */
+bool link_folder(const char *target, char link[PATH_SIZE])
+{
+    static volatile LONG count;
+    wchar_t from[PATH_SIZE + 1] = {0}, to[PATH_SIZE + 1] = {0};
+    DWORD length = GetTempPathW(PATH_SIZE, to);
+    errno = ENAMETOOLONG;
+    if (!length || length >= PATH_SIZE || !to_utf8(to, link) || !to_wide(target, from))
+        return false;
+    shorten(link);
+    length = (DWORD)strlen(link);
+    snprintf(link + length, PATH_SIZE - length, "rlv_landing_%lu_%ld", GetCurrentProcessId(), InterlockedIncrement(&count));
+    if (!to_wide(link, to))
+        return false;
+    errno = EACCES;
+    return change_folder(FO_COPY, from, to);
+}
+
+void unlink_folder(const char *link)
+{
+    wchar_t folder[PATH_SIZE + 1] = {0};
+    if (to_wide(link, folder))
+        change_folder(FO_DELETE, folder, NULL);
+}
+
+static HANDLE lock_of_process(void)
+{
+    static HANDLE mutex;
+    wchar_t name[40];
+    swprintf(name, sizeof name / sizeof *name, L"Local\\rlv_landing_%lu", GetCurrentProcessId());
+    if (!mutex) {
+        HANDLE made = CreateMutexW(NULL, FALSE, name);
+        if (InterlockedCompareExchangePointer(&mutex, made, NULL))
+            CloseHandle(made);
+    }
+    return mutex;
+}
+
+void lock(void)
+{
+    WaitForSingleObject(lock_of_process(), INFINITE);
+}
+
+void unlock(void)
+{
+    ReleaseMutex(lock_of_process());
+}
+
+/* Python's C library is ucrtbase.dll, as most hosts' is. */
+static char *ucrt_locale(const char *name)
+{
+    HMODULE ucrt = LoadLibraryW(L"ucrtbase.dll");
+    char *(*set)(int, const char *);
+    *(void **)&set = ucrt ? library_symbol(ucrt, "setlocale") : NULL;
+    return set ? set(2 /* LC_CTYPE */, name) : NULL;
+}
+
+static char *locale_name;
+
+void keep_locale(void)
+{
+    const char *name = ucrt_locale(NULL);
+    locale_name = name ? _strdup(name) : NULL;
+}
+
+void restore_locale(void)
+{
+    if (locale_name)
+        ucrt_locale(locale_name);
+    free(locale_name);
+    locale_name = NULL;
+}
+
+BOOL WINAPI DllMain(HINSTANCE library, DWORD why, LPVOID ending)
+{
+    (void)library;
+    if (why == DLL_PROCESS_DETACH && !ending)
+        unloaded();
+    return TRUE;
+}
