@@ -125,7 +125,7 @@ class ReplayNode(Node):
         finally:
             gc.enable()
             gc.unfreeze()
-        acknowledged = wait_for_acknowledgement(list(self._outlets.values()), interrupted=bool(stop))
+        acknowledged = wait_for_acknowledgement(list(self._outlets.values()), interrupted=bool(stop)) or bool(stop)
         late = sorted(self._lateness)
         return ReplaySummary(
             messages=played,

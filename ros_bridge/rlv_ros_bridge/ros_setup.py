@@ -127,8 +127,8 @@ def wait_until_matched(publisher: Publisher[Any], count: int, timeout: float, in
 
 
 def wait_for_acknowledgement(publishers: Sequence[Publisher[Any]], interrupted: bool) -> bool:
-    """Whether all reliable subscribers have acknowledged all samples in due time; not waited for to the end where `interrupted`."""
+    """Whether all reliable subscribers have acknowledged all samples in due time, which is short where `interrupted`."""
     from rclpy.duration import Duration
 
     end = time.monotonic() + (INTERRUPTED_SECONDS if interrupted else ACKNOWLEDGE_SECONDS)
-    return all(p.wait_for_all_acked(Duration(seconds=max(0.0, end - time.monotonic()))) for p in publishers) or interrupted
+    return all(p.wait_for_all_acked(Duration(seconds=max(0.0, end - time.monotonic()))) for p in publishers)

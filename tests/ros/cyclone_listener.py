@@ -1,6 +1,6 @@
 """A participant that is no ROS and no Fast DDS: `cyclone_listener.py OUTPUT COUNT` hears `rt/landing/struts` by Cyclone DDS.
 
-Prints `listening` once its reader is there. Ends when it has had COUNT samples, and writes stamps, positions and forces as JSON.
+Prints `matched` once its reader has found the writer. Ends when it has had COUNT samples, and writes stamps, positions and forces as JSON.
 """
 
 import json
@@ -9,7 +9,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from cyclonedds.core import Policy, Qos
+from cyclonedds.core import Listener, Policy, Qos
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.idl import IdlStruct
 from cyclonedds.idl.types import float64, int32, sequence, uint32
@@ -42,8 +42,9 @@ class JointState(IdlStruct, typename="sensor_msgs::msg::dds_::JointState_"):
 def main(output: str, count: int) -> None:
     participant = DomainParticipant(int(os.environ["ROS_DOMAIN_ID"]))
     qos = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepAll)
-    reader = DataReader(participant, Topic(participant, "rt/landing/struts", JointState), qos=qos)
-    print("listening", flush=True)
+    # a volatile reader gets what is written after it has found the writer, whatever the writer knows of it by then
+    matched = Listener(on_subscription_matched=lambda _reader, status: print("matched", flush=True) if status.current_count else None)
+    reader = DataReader(participant, Topic(participant, "rt/landing/struts", JointState), qos=qos, listener=matched)
     heard: list[tuple[int, list[str], list[float], list[float]]] = []
     while len(heard) < count:
         for m in reader.take_iter(timeout=duration(seconds=60)):

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 from bridge_tools import HERE, ROOT, TIMEOUT, command, environment
+from remote import ACTIVATE, CLEANUP, CONFIGURE, DEACTIVATE, Remote
 
 from rlv_ros_bridge.log_reader import Decoder, LogReader
 
@@ -31,13 +32,20 @@ def test_cyclone_dds_in_another_process_gets_every_joint_state(
         text=True,
     )
     processes.append(listener)
-    assert listener.stdout is not None
-    assert listener.stdout.readline().strip() == "listening"
-    line = command("node", "--fmu", fmu, "--record", tmp_path / "log", "--wait-for-subscribers", 1)
+    line = command("node", "--managed", "--fmu", fmu, "--record", tmp_path / "log", "--wait-for-subscribers", 1)
     env = environment(domain, FASTDDS_DEFAULT_PROFILES_FILE=str(PROFILE))
     node = subprocess.Popen(line, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     processes.append(node)
-    _, err = node.communicate(timeout=TIMEOUT)
+    assert listener.stdout is not None
+    assert listener.stdout.readline().strip() == "matched"
+    with Remote(domain) as remote:
+        assert remote.change(CONFIGURE)
+        assert remote.change(ACTIVATE)
+        remote.until(lambda: listener.poll() is not None)
+        assert remote.change(DEACTIVATE)
+        assert remote.change(CLEANUP)
+        remote.shut_down()
+        _, err = node.communicate(timeout=TIMEOUT)
     assert node.returncode == 0, err
     _, err = listener.communicate(timeout=TIMEOUT)
     assert listener.returncode == 0, err

@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from bridge_tools import ROOT, TIMEOUT, Listener, by_topic, command, environment, only_stalls, run, start
+from bridge_tools import ROOT, TIMEOUT, Listener, by_topic, command, complaints, environment, only_stalls, run, start
 from rclpy.qos import ReliabilityPolicy
 from remote import ACTIVATE, CONFIGURE, Remote
 from std_msgs.msg import String
@@ -74,14 +74,16 @@ def test_a_signal_in_mid_landing_leaves_a_complete_log(
     finally:
         listener.stop()
     assert node.returncode == code, err
-    assert only_stalls(err), err
+    # Ctrl-C does not wait long for slow subscribers; the node tells whether they had everything.
+    cut_off = [line for line in complaints(err) if "acknowledged" in line]
+    assert only_stalls("\n".join(line for line in err.splitlines() if line not in cut_off)), err
     reader = LogReader(folder)
     logged = [m.data for m in reader.messages(["/landing/struts"])]
     assert not reader.cut
     assert (folder / "metadata.yaml").is_file()
     assert 300 <= len(logged) < 20000
-    assert [m for m in logged if m not in set(heard)] == []
-    assert logged == heard
+    assert heard == logged[: len(heard)]
+    assert cut_off or len(heard) == len(logged)
     assert f"interrupted: {len(logged)} samples" in out
 
 
