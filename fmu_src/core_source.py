@@ -1,8 +1,8 @@
 """Joins the kernels of `rlv_landing/core` to one Cython module, so that one small binary holds the compiled core.
 
 The kernels are plain Python and import each other and `math`. Compiled, they call each other and libm directly: this drops their
-imports, puts the files in the order of their imports, and turns the names of `layout.py` into C constants. Nothing else of
-the text changes, so compiled and pure core compute the same digits.
+imports, puts the files in the order of their imports, and turns the names of `layout.py` into C constants, an array that kernels pass
+to each other into its address. Nothing else of the text changes, so compiled and pure core compute the same digits.
 """
 
 from __future__ import annotations
@@ -23,6 +23,11 @@ DIRECTIVES = {
     "infer_types": True,
     "embedsignature": False,
 }
+# these become C: constants, and the address of an array
+TRANSLATED = ("layout", "pointer")
+POINTER = """cdef inline double* data(double[::1] numbers) noexcept nogil:
+    return &numbers[0]
+"""
 # the first version whose limited API has buffers
 LIMITED_API = "0x030B0000"
 COMPILE_ARGS = ["-O3", "-ffp-contract=off", "-fno-math-errno", "-g0"]
@@ -32,10 +37,10 @@ def kernels(core: Path = CORE) -> list[Path]:
     """The kernel files, each after those that it imports."""
     imports: dict[str, list[str]] = {}
     for path in sorted(core.glob("*.py")):
-        if path.stem in ("__init__", "layout"):
+        if path.stem in ("__init__", *TRANSLATED):
             continue
         nodes = [n for n in ast.parse(path.read_text()).body if isinstance(n, ast.ImportFrom) and n.level == 1]
-        imports[path.stem] = [n.module for n in nodes if n.module and n.module != "layout"]
+        imports[path.stem] = [n.module for n in nodes if n.module and n.module not in TRANSLATED]
     return [core / f"{name}.py" for name in TopologicalSorter(imports).static_order()]
 
 
@@ -76,8 +81,8 @@ def write_source(folder: Path, core: Path = CORE) -> Path:
     sources = kernels(core)
     enum = "".join(f"    {name} = {value}\n" for name, value in layout_constants(core).items())
     pxd = "from libc.math cimport cos, exp, expm1, fabs, log, pow, sin, sqrt, tanh\n\ncdef enum:\n" + enum
-    pxd += "".join(p.with_suffix(".pxd").read_text() for p in sources if p.with_suffix(".pxd").exists())
-    python = "".join(f"# {p.name}\n{without_imports(p.read_text())}" for p in sources) + f'SOURCE_DIGEST = "{digest(core)}"\n'
+    pxd += POINTER + "".join(p.with_suffix(".pxd").read_text() for p in sources if p.with_suffix(".pxd").exists())
+    python = "from cython import nogil\n\n" + "".join(f"# {p.name}\n{without_imports(p.read_text())}" for p in sources) + f'SOURCE_DIGEST = "{digest(core)}"\n'
     package = folder / package_name(core)
     package.mkdir(parents=True, exist_ok=True)
     (package / "__init__.py").touch()

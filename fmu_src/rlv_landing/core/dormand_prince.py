@@ -4,7 +4,10 @@ Coefficients: Dormand and Prince (1980); the fourth-order interpolant: Hairer, N
 Equations I, II.6.
 """
 
+from array import array
+
 from .integrator import BETA, Solver
+from .pointer import data
 
 A21 = 1.0 / 5.0
 A31, A32 = 3.0 / 40.0, 9.0 / 40.0
@@ -22,15 +25,17 @@ class DormandPrince(Solver):
 
     def __init__(self, model, scale, relative, rtol):
         super().__init__(model, scale, relative, rtol)
+        self.k5 = array("d", bytes(8 * self.n))
+        self.k6 = array("d", bytes(8 * self.n))
         self.exponent = 0.2 - 0.75 * BETA
 
     def attempt(self, h):
         """Write the seven stages and the new state of a step of `h` [s]."""
         n = self.n
         t = self.t
-        y = self.y
-        s = self.y_stage
-        k1, k2, k3, k4, k5, k6 = self.k1, self.k2, self.k3, self.k4, self.k5, self.k6
+        y, s, end, e = data(self.y), data(self.y_stage), data(self.y_new), data(self.deviation)
+        k1, k2, k3, k4 = data(self.k1), data(self.k2), data(self.k3), data(self.k4)
+        k5, k6, k7 = data(self.k5), data(self.k6), data(self.k_end)
         for i in range(n):
             s[i] = y[i] + h * (A21 * k1[i])
         self.slope(t + 0.2 * h, s, k2)
@@ -47,10 +52,10 @@ class DormandPrince(Solver):
             s[i] = y[i] + h * (A61 * k1[i] + A62 * k2[i] + A63 * k3[i] + A64 * k4[i] + A65 * k5[i])
         self.slope(t + h, s, k6)
         for i in range(n):
-            self.y_new[i] = y[i] + h * (A71 * k1[i] + A73 * k3[i] + A74 * k4[i] + A75 * k5[i] + A76 * k6[i])
-        self.slope(t + h, self.y_new, self.k_end)
+            end[i] = y[i] + h * (A71 * k1[i] + A73 * k3[i] + A74 * k4[i] + A75 * k5[i] + A76 * k6[i])
+        self.slope(t + h, end, k7)
         for i in range(n):
-            self.deviation[i] = h * (E1 * k1[i] + E3 * k3[i] + E4 * k4[i] + E5 * k5[i] + E6 * k6[i] + E7 * self.k_end[i])
+            e[i] = h * (E1 * k1[i] + E3 * k3[i] + E4 * k4[i] + E5 * k5[i] + E6 * k6[i] + E7 * k7[i])
 
     def bend(self, h):
         """The interpolant's fourth-order part."""

@@ -11,10 +11,12 @@ The step's error is that against a third-order companion whose last stage is the
 step's first. Both see the step's end only; a part of the difference to a second-order companion shows them a kink inside the step.
 """
 
+from array import array
 from math import expm1, fabs
 
 from .integrator import BETA, Solver
 from .layout import BODY, L_DECAY1, L_DECAY2, LEG, LOADS, P1, P2, STAGES, WEIGHTS
+from .pointer import data
 
 THIRD, SIXTH = 1.0 / 3.0, 1.0 / 6.0
 # below it, the differences that phi2 and phi3 are made of would cancel
@@ -48,6 +50,9 @@ class Exponential(Solver):
 
     def __init__(self, model, scale, relative, rtol):
         super().__init__(model, scale, relative, rtol)
+        self.decay = array("d", bytes(8 * 2 * model.n_groups))
+        self.driven = array("d", bytes(8 * STAGES * model.n_groups))
+        self.weights = array("d", bytes(8 * WEIGHTS * model.n_groups))
         self.exponent = 0.25 - 0.75 * BETA
 
     def begin(self):
@@ -59,30 +64,32 @@ class Exponential(Solver):
             self.driven[STAGES * g] = self.k1[j + P2] - self.k1[j + P1]
 
     def weigh(self, h):
-        """Write the weights for a step of `h` [s], `WEIGHTS` numbers a leg: Krogstad's a21; a31, a32; a41, a43; b1, b2 = b3, b4."""
-        w = self.weights
+        """Write the weights for a step of `h` [s], `WEIGHTS` numbers a leg: Krogstad's a21, 0; a31, a32; a41, a43; b1, b2 = b3, b4."""
+        w = data(self.weights)
         for g in range(self.model.n_groups):
             i = WEIGHTS * g
             z = h * (self.decay[2 * g] + self.decay[2 * g + 1])
             f1 = phi1(0.5 * z)
             f2 = phi2(0.5 * z, f1)
             w[i] = 0.5 * f1
-            w[i + 1] = 0.5 * f1 - f2
-            w[i + 2] = f2
+            w[i + 1] = 0.0
+            w[i + 2] = 0.5 * f1 - f2
+            w[i + 3] = f2
             f1 = phi1(z)
             f2 = phi2(z, f1)
             f3 = phi3(z, f2)
-            w[i + 3] = f1 - 2.0 * f2
-            w[i + 4] = 2.0 * f2
-            w[i + 5] = f1 - 3.0 * f2 + 4.0 * f3
-            w[i + 6] = 2.0 * f2 - 4.0 * f3
-            w[i + 7] = 4.0 * f3 - f2
+            w[i + 4] = f1 - 2.0 * f2
+            w[i + 5] = 2.0 * f2
+            w[i + 6] = f1 - 3.0 * f2 + 4.0 * f3
+            w[i + 7] = 2.0 * f2 - 4.0 * f3
+            w[i + 8] = 4.0 * f3 - f2
 
     def drive(self, stage, s, k):
         """Keep the rate of each leg's P2 - P1 at a stage, less the decay of its growth: from the state `s` and the rates `k` there."""
+        y = data(self.y)
         for g in range(self.model.n_groups):
             j = BODY + LEG * g
-            growth = s[j + P2] - s[j + P1] - (self.y[j + P2] - self.y[j + P1])
+            growth = s[j + P2] - s[j + P1] - (y[j + P2] - y[j + P1])
             self.driven[STAGES * g + stage] = k[j + P2] - k[j + P1] + (self.decay[2 * g] + self.decay[2 * g + 1]) * growth
 
     def settle(self, g, s, growth, plain):
@@ -94,46 +101,35 @@ class Exponential(Solver):
         s[j + P1] += a1 * shift
         s[j + P2] -= a2 * shift
 
+    def stage(self, i, ahead, h, k, k_next):
+        """Stage `i` of a step of `h` [s], `ahead` [s] from its start: from the rates `k` of the stage before to `k_next`."""
+        y, s, d, w = data(self.y), data(self.y_stage), data(self.driven), data(self.weights)
+        for j in range(self.n):
+            s[j] = y[j] + ahead * k[j]
+        for g in range(self.model.n_groups):
+            j, q, v = BODY + LEG * g, STAGES * g, WEIGHTS * g + 2 * (i - 1)
+            self.settle(g, s, h * (w[v] * d[q] + w[v + 1] * d[q + i - 1]), ahead * (k[j + P2] - k[j + P1]))
+        self.slope(self.t + ahead, s, k_next)
+        self.drive(i, s, k_next)
+
     def attempt(self, h):
         """Write the stages and the new state of a step of `h` [s], the right-hand side there, and the error."""
-        n = self.n
-        t = self.t
-        y, s, d, w = self.y, self.y_stage, self.driven, self.weights
-        k1, k2, k3, k4 = self.k1, self.k2, self.k3, self.k4
-        half = 0.5 * h
+        k1, k2, k3, k4 = data(self.k1), data(self.k2), data(self.k3), data(self.k4)
         self.weigh(h)
-        for i in range(n):
-            s[i] = y[i] + half * k1[i]
-        for g in range(self.model.n_groups):
-            j, q, v = BODY + LEG * g, STAGES * g, WEIGHTS * g
-            self.settle(g, s, h * w[v] * d[q], half * (k1[j + P2] - k1[j + P1]))
-        self.slope(t + half, s, k2)
-        self.drive(1, s, k2)
-        for i in range(n):
-            s[i] = y[i] + half * k2[i]
-        for g in range(self.model.n_groups):
-            j, q, v = BODY + LEG * g, STAGES * g, WEIGHTS * g
-            self.settle(g, s, h * (w[v + 1] * d[q] + w[v + 2] * d[q + 1]), half * (k2[j + P2] - k2[j + P1]))
-        self.slope(t + half, s, k3)
-        self.drive(2, s, k3)
-        for i in range(n):
-            s[i] = y[i] + h * k3[i]
-        for g in range(self.model.n_groups):
-            j, q, v = BODY + LEG * g, STAGES * g, WEIGHTS * g
-            self.settle(g, s, h * (w[v + 3] * d[q] + w[v + 4] * d[q + 2]), h * (k3[j + P2] - k3[j + P1]))
-        self.slope(t + h, s, k4)
-        self.drive(3, s, k4)
+        self.stage(1, 0.5 * h, h, k1, k2)
+        self.stage(2, 0.5 * h, h, k2, k3)
+        self.stage(3, h, h, k3, k4)
         self.finish(h)
 
     def finish(self, h):
         """The new state from the four stages, the right-hand side there, and the error."""
-        y, s, d, w, e = self.y, self.y_new, self.driven, self.weights, self.deviation
-        k1, k2, k3, k4, k5 = self.k1, self.k2, self.k3, self.k4, self.k_end
+        y, s, e, d, w = data(self.y), data(self.y_new), data(self.deviation), data(self.driven), data(self.weights)
+        k1, k2, k3, k4, k5 = data(self.k1), data(self.k2), data(self.k3), data(self.k4), data(self.k_end)
         for i in range(self.n):
             s[i] = y[i] + h * (SIXTH * (k1[i] + k4[i]) + THIRD * (k2[i] + k3[i]))
         for g in range(self.model.n_groups):
             j, q, v = BODY + LEG * g, STAGES * g, WEIGHTS * g
-            growth = h * (w[v + 5] * d[q] + w[v + 6] * (d[q + 1] + d[q + 2]) + w[v + 7] * d[q + 3])
+            growth = h * (w[v + 6] * d[q] + w[v + 7] * (d[q + 1] + d[q + 2]) + w[v + 8] * d[q + 3])
             self.settle(g, s, growth, (s[j + P2] - s[j + P1]) - (y[j + P2] - y[j + P1]))
         self.slope(self.t + h, s, k5)
         self.drive(4, s, k5)
@@ -141,7 +137,7 @@ class Exponential(Solver):
             e[i] = h * SIXTH * (k4[i] - k5[i])
         for g in range(self.model.n_groups):
             j, q, v = BODY + LEG * g, STAGES * g, WEIGHTS * g
-            self.settle(g, e, h * w[v + 7] * (d[q + 3] - d[q + 4]), e[j + P2] - e[j + P1])
+            self.settle(g, e, h * w[v + 8] * (d[q + 3] - d[q + 4]), e[j + P2] - e[j + P1])
         for i in range(self.n):
             if self.relative[i] == 0.0:
                 e[i] = fabs(e[i]) + KINK * h * SIXTH * fabs(k1[i] - k2[i] - k3[i] + k4[i])

@@ -6,9 +6,10 @@ Step control and interpolants: Hairer, Norsett and Wanner, Solving Ordinary Diff
 from array import array
 from math import fabs, pow, sqrt
 
-from .layout import BODY, BODY_LOADS, HEAVE, HEAVE_RATE, INPUTS, INTEGRALS, LEG, LOADS, STAGES, SX, SZ, TILT, TILT_RATE, WEIGHTS
+from .layout import BODY, BODY_LOADS, HEAVE, HEAVE_RATE, INPUTS, INTEGRALS, LEG, LOADS, SX, SZ, TILT, TILT_RATE
 from .model import Model  # noqa: F401  (the compiled core needs the type)
 from .outputs import BODY_OUTPUTS, ENERGY_OUTPUTS, LEG_OUTPUTS, STATUS_OUTPUTS, outputs
+from .pointer import data, nogil
 from .vehicle import right_hand_side
 
 SAFETY, SHRINK, GROW, BETA = 0.9, 0.2, 5.0, 0.04
@@ -32,6 +33,7 @@ class Solver:
         n = len(scale)
         self.model = model
         self.n = n
+        self.row = output_size(model.n_groups)
         self.rtol = rtol
         self.scale = scale
         self.relative = relative
@@ -42,13 +44,8 @@ class Solver:
         self.k2 = array("d", bytes(8 * n))
         self.k3 = array("d", bytes(8 * n))
         self.k4 = array("d", bytes(8 * n))
-        self.k5 = array("d", bytes(8 * n))
-        self.k6 = array("d", bytes(8 * n))
         self.k_end = array("d", bytes(8 * n))
         self.deviation = array("d", bytes(8 * n))
-        self.decay = array("d", bytes(8 * 2 * model.n_groups))
-        self.driven = array("d", bytes(8 * STAGES * model.n_groups))
-        self.weights = array("d", bytes(8 * WEIGHTS * model.n_groups))
         self.dense = array("d", bytes(8 * 5 * n))
         self.u = array("d", bytes(8 * INPUTS))
         self.u_rate = array("d", bytes(8 * INPUTS))
@@ -77,10 +74,14 @@ class Solver:
         self.u_now[HEAVE] = self.u[HEAVE] + (self.u[HEAVE_RATE] + 0.5 * self.u_rate[HEAVE_RATE] * dt) * dt
         self.u_now[TILT] = self.u[TILT] + (self.u[TILT_RATE] + 0.5 * self.u_rate[TILT_RATE] * dt) * dt
 
+    def derivatives(self, t, y, dy):
+        """Write dy/dt at time `t` [s] and state `y` to `dy`, for other solvers."""
+        self.slope(t, data(y), data(dy))
+
     def slope(self, t, y, dy):
-        """Write dy/dt at time `t`."""
+        """What `derivatives` does, for the kernels."""
         self.move_inputs(t)
-        right_hand_side(y, self.u_now, self.model, dy, self.w)
+        right_hand_side(y, data(self.u_now), self.model, dy, data(self.w))
         self.rhs_calls += 1.0
 
     def restart(self, t):
@@ -95,12 +96,12 @@ class Solver:
             self.dense[i] = self.y[i]
         if self.h > FIRST_STEP:
             self.h = FIRST_STEP
-        self.slope(t, self.y, self.k1)
+        self.slope(t, data(self.y), data(self.k1))
         self.begin()
 
     def refresh(self):
         """Work out again, after the stored numbers were overwritten, what is not stored."""
-        self.slope(self.t, self.y, self.k1)
+        self.slope(self.t, data(self.y), data(self.k1))
         self.begin()
 
     def attempt(self, h):
@@ -108,13 +109,14 @@ class Solver:
 
     def error(self):
         """Error of the step just computed, in units of the tolerance (root mean square over the state without the energy integrals)."""
+        y, end, scale, relative, deviation = data(self.y), data(self.y_new), data(self.scale), data(self.relative), data(self.deviation)
         total = 0.0
         m = self.n - INTEGRALS
         for i in range(m):
-            limit = self.scale[i]
-            if self.relative[i] > 0.0:
-                limit += max(fabs(self.y[i]), fabs(self.y_new[i]))
-            e = self.deviation[i] / (self.rtol * limit)
+            limit = scale[i]
+            if relative[i] > 0.0:
+                limit += max(fabs(y[i]), fabs(end[i]))
+            e = deviation[i] / (self.rtol * limit)
             total += e * e
         return sqrt(total / m)
 
@@ -127,22 +129,22 @@ class Solver:
     def accept(self, h):
         """Make the step just computed the last one: keep its interpolant, move on."""
         n = self.n
-        d = self.dense
+        d, y, end, k1, k_end = data(self.dense), data(self.y), data(self.y_new), data(self.k1), data(self.k_end)
         for i in range(n):
-            change = self.y_new[i] - self.y[i]
-            bend = h * self.k1[i] - change
-            d[i] = self.y[i]
+            change = end[i] - y[i]
+            bend = h * k1[i] - change
+            d[i] = y[i]
             d[n + i] = change
             d[2 * n + i] = bend
-            d[3 * n + i] = change - h * self.k_end[i] - bend
-            self.y[i] = self.y_new[i]
+            d[3 * n + i] = change - h * k_end[i] - bend
+            y[i] = end[i]
         self.bend(h)
         for i in range(n):
-            self.k1[i] = self.k_end[i]
+            k1[i] = k_end[i]
         limit = self.model.s_r0
         for g in range(self.model.n_groups):
             for i in range(BODY + LEG * g + SX, BODY + LEG * g + SZ + 1):
-                self.y[i] = min(max(self.y[i], -limit), limit)
+                y[i] = min(max(y[i], -limit), limit)
         self.t_old = self.t
         self.t += h
         self.steps += 1.0
@@ -150,6 +152,10 @@ class Solver:
 
     def advance(self, t_end):
         """Take internal steps until `t` is at or past `t_end` [s]. Returns False if the step size has collapsed."""
+        return self.go_to(t_end)
+
+    def go_to(self, t_end):
+        """What `advance` does, for the kernels."""
         while self.t < t_end:
             h = self.h
             if h < SHORTEST_STEP:
@@ -173,20 +179,46 @@ class Solver:
                 self.h = h * factor
         return True
 
-    def interpolate(self, t, y):
-        """Write the state at time `t` [s], inside the last internal step, to `y`."""
+    def state_at(self, t, y):
+        """What `interpolate` does, for the kernels."""
         n = self.n
-        d = self.dense
+        d = data(self.dense)
         span = self.t - self.t_old
         a = (t - self.t_old) / span if span > 0.0 else 0.0
         b = 1.0 - a
         for i in range(n):
             y[i] = d[i] + a * (d[n + i] + b * (d[2 * n + i] + a * (d[3 * n + i] + b * d[4 * n + i])))
 
+    def interpolate(self, t, y):
+        """Write the state at time `t` [s], inside the last internal step, to `y`."""
+        self.state_at(t, data(y))
+
     def outputs_at(self, t, y, out):
         """Write the outputs at time `t` [s] and state `y` to `out`; uses and spoils the stage arrays."""
         self.move_inputs(t)
-        outputs(y, self.u_now, self.model, self.k2, self.w, self.energy_start, out)
+        outputs(data(y), data(self.u_now), self.model, data(self.k2), data(self.w), self.energy_start, data(out), 0)
+
+    def fill(self, start, every, first, last, rows):
+        """What `record` does, for the kernels."""
+        y = data(self.y_stage)
+        for k in range(first, last):
+            t = start + k * every
+            if not self.go_to(t):
+                return k
+            self.state_at(t, y)
+            self.move_inputs(t)
+            outputs(y, data(self.u_now), self.model, data(self.k2), data(self.w), self.energy_start, rows, k * self.row)
+        return last
+
+    def record(self, start, every, first, last, rows):
+        """Go on and write the outputs at times start + k every [s], k from `first` to `last` - 1, to row k of `rows`, flat, a row `row` long.
+
+        Returns the first k that was not reached: `last`, or earlier if the step size has collapsed. Other threads run meanwhile.
+        """
+        numbers = data(rows)
+        with nogil:
+            reached = self.fill(start, every, first, last, numbers)
+        return reached
 
 
 def state_size(n_groups):

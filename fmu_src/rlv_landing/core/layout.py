@@ -37,4 +37,4 @@ B_AX, B_AY, B_PITCH_ACC = 0, 1, 2
 BODY_LOADS = 3
 
 # what the exponential method keeps for each leg group: driven rates of its stages, weights
-STAGES, WEIGHTS = 5, 8
+STAGES, WEIGHTS = 5, 9

@@ -114,23 +114,26 @@ def leg_outputs(y, p, w, i, out, o):
     out[o + 16] = 1.0 if w[j + L_PENETRATION] > 0.0 else 0.0
 
 
-def outputs(y, u, p, dy, w, E0, out):
-    """Fill `out`: body, energies, status, then each leg group. `E0` [J] is the mechanical energy at the start; `dy`, `w` are work."""
+def outputs(y, u, p, dy, w, E0, out, o):
+    """Fill `out[o:]`: body, energies, status, then each leg group.
+
+    `E0` [J] is the mechanical energy at the start; `dy`, `w` are overwritten.
+    """
     right_hand_side(y, u, p, dy, w)
     j = LOADS * p.n_groups
     rate = y[PITCH_RATE]
-    out[0] = y[X]
-    out[1] = y[Y]
-    out[2] = y[PITCH]
-    out[3] = y[VX]
-    out[4] = y[VY]
-    out[5] = rate
-    out[6] = dy[VX]
-    out[7] = dy[VY]
-    out[8] = w[j + B_PITCH_ACC]
-    out[9] = w[j + B_AY] - rate * rate * p.H
+    out[o] = y[X]
+    out[o + 1] = y[Y]
+    out[o + 2] = y[PITCH]
+    out[o + 3] = y[VX]
+    out[o + 4] = y[VY]
+    out[o + 5] = rate
+    out[o + 6] = dy[VX]
+    out[o + 7] = dy[VY]
+    out[o + 8] = w[j + B_PITCH_ACC]
+    out[o + 9] = w[j + B_AY] - rate * rate * p.H
 
-    o = BODY_OUTPUTS
+    o += BODY_OUTPUTS
     out[o] = kinetic_energy(y, p)
     out[o + 1] = potential_energy(y, p)
     out[o + 2] = liquid_energy(y, p, w)
