@@ -82,7 +82,8 @@ def write_source(folder: Path, core: Path = CORE) -> Path:
     enum = "".join(f"    {name} = {value}\n" for name, value in layout_constants(core).items())
     pxd = "from libc.math cimport cos, exp, expm1, fabs, log, pow, sin, sqrt, tanh\n\ncdef enum:\n" + enum
     pxd += POINTER + "".join(p.with_suffix(".pxd").read_text() for p in sources if p.with_suffix(".pxd").exists())
-    python = "from cython import nogil\n\n" + "".join(f"# {p.name}\n{without_imports(p.read_text())}" for p in sources) + f'SOURCE_DIGEST = "{digest(core)}"\n'
+    texts = "".join(f"# {p.name}\n{without_imports(p.read_text())}" for p in sources)
+    python = f'from cython import nogil\n\n{texts}SOURCE_DIGEST = "{digest(core)}"\n'
     package = folder / package_name(core)
     package.mkdir(parents=True, exist_ok=True)
     (package / "__init__.py").touch()

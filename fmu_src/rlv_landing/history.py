@@ -60,23 +60,3 @@ class History:
         writer.writerow(list(self))
         for t, row in zip(self.time.tolist(), self.data.tolist()):
             writer.writerow([repr(t), *map(repr, row)])
-
-
-class Recording:
-    """A history in the making: room for `count` samples of `names`."""
-
-    def __init__(self, names: Sequence[str], count: int) -> None:
-        self._names = names
-        self._time = np.empty(count)
-        self._data = np.empty((count, len(names)))
-        self._filled = 0
-
-    def add(self, time: float, values: Sequence[float]) -> None:
-        """Append one sample."""
-        self._time[self._filled] = time
-        self._data[self._filled] = values
-        self._filled += 1
-
-    def history(self, parameters: Parameters | None) -> History:
-        """What was recorded."""
-        return History(self._time[: self._filled], self._names, self._data[: self._filled], parameters)

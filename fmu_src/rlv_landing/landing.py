@@ -15,6 +15,9 @@ from .quantities import INPUT_NAMES, INPUT_QUANTITIES, LEG_QUANTITIES, MODES, OU
 from .touchdown import before_contact, clearance, footpad_at_rest
 
 if TYPE_CHECKING:
+    from numpy import float64
+    from numpy.typing import NDArray
+
     from .history import History
 
 # Typical size of each state: the absolute part of the error that is allowed is rtol times this.
@@ -24,6 +27,8 @@ DEFAULT_RTOL = 1e-5
 # the integration methods: see `rlv_landing.core.exponential` and `dormand_prince`
 METHODS: dict[str, type[Solver]] = {"exponential": Exponential, "dormand-prince": DormandPrince}
 HEADER = 10
+# samples between two looks at signals and two calls of `progress` in a run
+SLICE = 250
 # where a ground motion's rate is an input of its own
 RATE_INPUTS = {layout.HEAVE: layout.HEAVE_RATE, layout.TILT: layout.TILT_RATE}
 # parts of the free flight, before the first contact, at which the footpads must be above the ground
@@ -106,9 +111,9 @@ class Landing:
         self._y = array("d", bytes(8 * n))
         self._out = array("d", bytes(8 * output_size(groups)))
         self._out_time = inf
-        order = output_order(self.parameters.drop.mode)
-        self._pick = itemgetter(*(i for i, _ in order))
-        self._turned = [k for k, (_, factor) in enumerate(order) if factor < 0.0]
+        self._order = output_order(self.parameters.drop.mode)
+        self._pick = itemgetter(*(i for i, _ in self._order))
+        self._turned = [k for k, (_, factor) in enumerate(self._order) if factor < 0.0]
         self.reset()
 
     @classmethod
@@ -216,7 +221,7 @@ class Landing:
         if not (isfinite(time) and time >= self._time):
             raise LandingError(f"time = {time:g} s is not a time from {self._time:g} s on; reset() starts again")
         if not self._solver.advance(time):
-            raise LandingError(f"the integrator's step size has collapsed at t = {self._solver.t:g} s; soften the parameters or the loads")
+            raise self._collapsed()
         self._time = time
 
     def values(self) -> list[float]:
@@ -271,22 +276,34 @@ class Landing:
     def run(self, until: float = 1.0, every: float = 1e-3, progress: Callable[[float], object] | None = None) -> History:
         """Land from now until `until` [s]; return the outputs every `every` [s], the present time included.
 
-        Times are counted, now + k * every, never summed. `progress` is called with each time. Raises LandingError unless
-        `every` is above 0 and `until` is ahead.
+        Times are counted, now + k * every, never summed. Other threads run meanwhile: landings in several threads use several cores.
+        `progress` is called with the time reached, every SLICE samples. Raises LandingError unless `every` is above 0 and `until` is
+        ahead.
         """
-        from .history import Recording
+        import numpy as np
+
+        from .history import History
 
         if not 0.0 < every < inf:
             raise LandingError(f"every = {every:g} s must be finite and above 0 s")
         if not (isfinite(until) and until > self._time):
             raise LandingError(f"until = {until:g} s must be finite and after the present time, {self._time:g} s")
-        start = self._time
-        count = int((until - start) / every * (1.0 + 1e-12) + 1e-9)
-        recording = Recording(OUTPUT_NAMES, count + 1)
-        recording.add(start, self.values())
-        for k in range(1, count + 1):
-            self.advance_to(start + k * every)
-            recording.add(self._time, self.values())
+        start, solver = self._time, self._solver
+        samples = int((until - start) / every * (1.0 + 1e-12) + 1e-9) + 1
+        rows = np.empty((samples, solver.row))
+        flat = rows.reshape(-1)
+        reached = 0
+        while reached < samples:
+            goal = min(reached + SLICE, samples)
+            reached = solver.record(start, every, reached, goal, flat)
+            if reached < goal:
+                raise self._collapsed()
+            self._time = start + (reached - 1) * every
             if progress is not None:
                 progress(self._time)
-        return recording.history(self.parameters)
+        columns, factors = zip(*self._order)
+        time: NDArray[float64] = np.array([start + k * every for k in range(samples)])
+        return History(time, OUTPUT_NAMES, rows[:, columns] * np.array(factors), self.parameters)
+
+    def _collapsed(self) -> LandingError:
+        return LandingError(f"the integrator's step size has collapsed at t = {self._solver.t:g} s; soften the parameters or the loads")

@@ -3,6 +3,9 @@
 import os
 import subprocess
 import sys
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
 from math import exp, factorial
 
 import numpy as np
@@ -73,9 +76,9 @@ def test_the_exponential_methods_functions_are_their_integrals(z):
 def test_the_methods_agree(mode):
     """To what friction lets any two solvers agree in; see `convergence`."""
     ours, papers = (Landing(load_preset("yue2022-figures"), mode, 1e-8, method) for method in METHODS)
-    for time in (0.15, 0.3, 0.6):
-        ours.advance_to(time)
-        papers.advance_to(time)
+    for t in (0.15, 0.3, 0.6):
+        ours.advance_to(t)
+        papers.advance_to(t)
         for name in ("body.x", "body.y", "body.pitch", "leg[1].main_strut.stroke", "leg[3].main_strut.stroke"):
             assert ours.get(name) == approx(papers.get(name), abs=1e-6)
 
@@ -172,6 +175,46 @@ def test_compiled_and_pure_core_give_the_same_digits(mode, method):
     assert compiled[0] == "True", "the core is not compiled here: run make"
     assert pure[0] == "False"
     assert compiled[1] == pure[1]
+
+
+@pytest.mark.skipif(not core.COMPILED, reason="measured on the pure core")
+def test_other_threads_run_during_a_run():
+    """The interpreter does not switch threads of itself here: the other one gets on only where the core lets it."""
+    solver = Landing()._solver
+    rows = np.empty(1000 * solver.row)
+    turns, waiting, done = [0], threading.Event(), threading.Event()
+
+    def other():
+        while not done.is_set():
+            turns[0] += 1
+            waiting.set()
+            time.sleep(0.0)
+
+    usual = sys.getswitchinterval()
+    thread = threading.Thread(target=other)
+    thread.start()
+    try:
+        waiting.wait()
+        sys.setswitchinterval(1000.0)
+        before = turns[0]
+        reached = solver.record(0.0, 1e-3, 0, 1000, rows)
+        after = turns[0]
+    finally:
+        sys.setswitchinterval(usual)
+        done.set()
+        thread.join()
+    assert reached == 1000
+    assert after > before + 10
+
+
+def test_landings_in_several_threads_are_the_same_as_one_by_one(mode):
+    def land(slope):
+        parameters = load_preset("yue2022-figures", mode).with_values({"ground.slope": slope})
+        return Landing(parameters, rtol=1e-4).run(0.3).data
+
+    slopes = np.linspace(-0.1, 0.1, 8).tolist()
+    with ThreadPoolExecutor(4) as pool:
+        assert all(map(np.array_equal, pool.map(land, slopes), map(land, slopes)))
 
 
 @pytest.mark.skipif(not core.COMPILED, reason="measured on the pure core")

@@ -211,7 +211,7 @@ class Solver:
         return last
 
     def record(self, start, every, first, last, rows):
-        """Go on and write the outputs at times start + k every [s], k from `first` to `last` - 1, to row k of `rows`, flat, a row `row` long.
+        """Go on and write the outputs at times start + k every [s], k from `first` to `last` - 1, to `rows`: row k begins at k times `row`.
 
         Returns the first k that was not reached: `last`, or earlier if the step size has collapsed. Other threads run meanwhile.
         """

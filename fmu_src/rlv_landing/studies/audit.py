@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..history import History, Recording
+from ..history import History
 from ..landing import DEFAULT_RTOL, Landing
 from ..parameters import Parameters
 from ..quantities import LEGS, MODES, OUTPUT_NAMES
@@ -154,11 +154,11 @@ def _contact(parameters: Parameters, until: float) -> list[Check]:
 
 
 def _sample(landing: Landing, times: Any) -> History:
-    recording = Recording(OUTPUT_NAMES, len(times))
-    for t in times.tolist():
-        landing.advance_to(t)
-        recording.add(t, landing.values())
-    return recording.history(landing.parameters)
+    def values(time: float) -> list[float]:
+        landing.advance_to(time)
+        return landing.values()
+
+    return History(times, OUTPUT_NAMES, np.array([values(t) for t in times.tolist()]), landing.parameters)
 
 
 def _rest(parameters: Parameters) -> tuple[dict[str, float], list[Check]]:
