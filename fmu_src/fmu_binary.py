@@ -77,7 +77,8 @@ def variables_header(root: ElementTree.Element, stock: str) -> str:
             raise SystemExit(f"error: value reference of {variable.attrib['name']} is not {i}; the front counts on them being in order")
         causality = CAUSALITIES.get(variable.attrib["causality"], "-")
         lines.append(f"    {{'{variable[0].tag[0]}', '{causality}', {quoted(variable.attrib['name'])}}},")
-    lines += ["};", "static const char *const CATEGORIES[] __attribute__((unused)) = {"]
+    lines += ["};", "enum { VARIABLE_COUNT = sizeof VARIABLES / sizeof *VARIABLES };"]
+    lines += ["static const char *const CATEGORIES[] __attribute__((unused)) = {"]
     lines += [f"    {quoted(category.attrib['name'])}," for category in root.findall("LogCategories/Category")]
     lines += ["};", f"#define GUID {quoted(root.attrib['guid'])}", f"#define STOCK_BINARY {quoted(stock)}"]
     lines.append(f"#define BUILD_PYTHON_MINOR {sys.version_info.minor}")

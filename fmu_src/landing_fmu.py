@@ -79,8 +79,8 @@ class RlvLanding(Fmi2Slave):
         self._refused_rates: set[str] = set()
         self._landing: Landing | None = None
         self._broken = ""
-        # values of all variables, once outputs were asked for at this time
-        self._outputs: list[Any] = []
+        # once they were asked for at this time
+        self._outputs: list[float] = []
         for q in PARAMETER_QUANTITIES.values():
             self._register(q, q.default, Fmi2Causality.parameter, Fmi2Variability.fixed, Fmi2Initial.exact)
         for q in INPUT_QUANTITIES:
@@ -90,6 +90,7 @@ class RlvLanding(Fmi2Slave):
             changes = Fmi2Variability.continuous if q.kind == "real" else Fmi2Variability.discrete
             self._register(q, 0.0, Fmi2Causality.output, changes, Fmi2Initial.calculated)
         self._names = [v.name for v in self.vars.values()]
+        self._output_references = list(range(self._first_output, len(self._names)))
 
     def to_xml(self, model_options: dict[str, str] | None = None) -> Element:
         """pythonfmu's description, with a GUID made from the version and the variables. Called at build time only."""
@@ -172,17 +173,18 @@ class RlvLanding(Fmi2Slave):
 
     @logs_faults
     def _values_of(self, vrs: list[int]) -> list[Any]:
-        known = self._values
-        if max(vrs, default=0) >= self._first_output:
+        known, first = self._values, self._first_output
+        # all outputs are what the front asks for
+        whole = vrs == self._output_references
+        if whole or max(vrs, default=0) >= first:
             landing = self._present()
             # inputs act at once; those that are out of bounds the next step refuses
             if self._inputs or self._rates:
                 with suppress(LandingError):
                     self._apply_inputs()
             if not self._outputs:
-                self._outputs = known[: self._first_output] + landing.values()
-            known = self._outputs
-        return list(map(known.__getitem__, vrs))
+                self._outputs = landing.values()
+        return self._outputs if whole else [known[vr] if vr < first else self._outputs[vr - first] for vr in vrs]
 
     def get_real(self, vrs: list[int]) -> list[float]:
         return self._values_of(vrs) or [math.nan] * len(vrs)

@@ -65,6 +65,8 @@ struct instance {
     fmi2Status worst;    /* that the slave has logged during the present call */
     fmi2Status last_step;
     double last_time; /* end of the last step done, else the start time */
+    bool fresh;       /* whether `values` are the present outputs */
+    fmi2Real values[]; /* of the outputs that are numbers, by value reference */
 };
 
 /* Log for the host, as far as it wants to know; errors that it does not want to know of go to standard error. */
@@ -77,7 +79,7 @@ void relay(fmi2ComponentEnvironment c, fmi2String name, fmi2Status status, fmi2S
 /* Which log category has this name; -1 if none. */
 int category_index(const char *name);
 
-/* Begin the call `function` on the instance: false, said why, if it is none, or not in one of the `phases`. */
+/* Begin the call `function` on the instance: false, said why, if it is none, or not in one of the `phases`. Outputs are not fresh then. */
 bool begin(struct instance *c, const char *function, unsigned phases);
 /* End it: the worse of pythonfmu's status and of what the slave has logged. Fatal, after which pythonfmu must not be called, loses the slave. */
 fmi2Status end(struct instance *c, fmi2Status status);

@@ -82,7 +82,7 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
                               const fmi2CallbackFunctions *functions, fmi2Boolean visible, fmi2Boolean loggingOn)
 {
     (void)visible;
-    struct instance *c = calloc(1, sizeof *c);
+    struct instance *c = calloc(1, sizeof *c + VARIABLE_COUNT * sizeof *c->values);
     if (!c)
         return NULL;
     if (functions)

@@ -74,6 +74,7 @@ bool begin(struct instance *c, const char *function, unsigned phases)
     if (!c)
         return false;
     c->worst = fmi2OK;
+    c->fresh = false;
     if (c->phase & phases)
         return true;
     const char *now = c->phase == INSTANTIATED   ? "before fmi2EnterInitializationMode"

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import ctypes
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from operator import itemgetter
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, NoReturn
 
 from rlv_landing.errors import LandingError, unknown
 from rlv_landing.parameters import PARAMETER_QUANTITIES
@@ -17,7 +17,10 @@ from rlv_landing.quantities import INPUT_NAMES, OUTPUT_NAMES, OUTPUT_QUANTITIES
 from .fmu_folder import FmuFolder
 
 MODEL_NAME = "RlvLanding"
-FATAL = 4
+WARNING, FATAL = 1, 4
+# Arguments of the functions that are called at every step: component, then as FMI has them; arrays by their address.
+DO_STEP = (ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int)
+GET = (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
 
 
 class FmuRunner:
@@ -35,6 +38,13 @@ class FmuRunner:
         self.path = Path(fmu_path)
         self._messages: list[tuple[int, str]] = []
         self._slave: Any = None
+        self._component: int | None = None
+        # Of each type of output: the getter's name, the getter, and its arguments, among them addresses of value references and of values.
+        self._reads: list[tuple[str, Any, tuple[Any, ...]]] = []
+        self._asked: list[Any] = []
+        self._reals: Any = None
+        # Outputs that are not real: where they belong in a sample, and where they are read to.
+        self._others: list[tuple[int, Any, int]] = []
         self._folder: FmuFolder | None = None
         description = read_description(self.path)
         self.guid: str = description.guid
@@ -48,26 +58,12 @@ class FmuRunner:
             if name not in PARAMETER_QUANTITIES:
                 raise unknown("parameter", name, PARAMETER_QUANTITIES)
         self._references = references
-        self._prepare_outputs(references)
         try:
             self._instantiate(description, values)
+            self._prepare_outputs(references)
         except BaseException:
             self.close()
             raise
-
-    def _prepare_outputs(self, references: Mapping[str, int]) -> None:
-        self._reads: list[tuple[str, Any, Any]] = []
-        order: list[int] = []
-        for kind, getter, c_type in (
-            ("real", "Real", ctypes.c_double),
-            ("integer", "Integer", ctypes.c_int),
-            ("boolean", "Boolean", ctypes.c_int),
-        ):
-            where = [i for i, q in enumerate(OUTPUT_QUANTITIES) if q.kind == kind]
-            asked = (ctypes.c_uint * len(where))(*(references[OUTPUT_NAMES[i]] for i in where))
-            self._reads.append((f"fmi2Get{getter}", asked, (c_type * len(where))()))
-            order += where
-        self._in_order = itemgetter(*(order.index(i) for i in range(len(order))))
 
     def _instantiate(self, description: Any, values: Mapping[str, float | str]) -> None:
         from fmpy import extract
@@ -86,7 +82,8 @@ class FmuRunner:
             slave.instantiate(callbacks=self._make_callbacks(), loggingOn=True)
         except Exception as e:
             raise LandingError(f"{self.path} does not load here: {self._reason(str(e))}") from None
-        self._slave = slave
+        self._slave, self._component = slave, slave.component
+        self._do_step = self._function("fmi2DoStep", DO_STEP)
         self._call("setupExperiment", startTime=0.0)
         self._call("enterInitializationMode")
         reals = {n: float(v) for n, v in values.items() if not isinstance(v, str)}
@@ -94,6 +91,30 @@ class FmuRunner:
         self._call("setReal", [self._references[n] for n in reals], list(reals.values()))
         self._call("setString", [self._references[n] for n in texts], list(texts.values()))
         self._call("exitInitializationMode")
+
+    def _function(self, name: str, arguments: Sequence[Any]) -> Any:
+        """The FMU's own function: FMPy's wrapper of it takes as long as reading twenty values."""
+        function = self._slave.dll[name]
+        function.argtypes, function.restype = arguments, ctypes.c_int
+        return function
+
+    def _prepare_outputs(self, references: Mapping[str, int]) -> None:
+        for kind, getter, c_type in (
+            ("real", "fmi2GetReal", ctypes.c_double),
+            ("integer", "fmi2GetInteger", ctypes.c_int),
+            ("boolean", "fmi2GetBoolean", ctypes.c_int),
+        ):
+            where = [i for i, q in enumerate(OUTPUT_QUANTITIES) if q.kind == kind]
+            asked = (ctypes.c_uint * len(where))(*(references[OUTPUT_NAMES[i]] for i in where))
+            got = (c_type * len(where))()
+            arguments = (self._component, ctypes.addressof(asked), len(where), ctypes.addressof(got))
+            self._reads.append((getter, self._function(getter, GET), arguments))
+            self._asked.append(asked)
+            if kind == "real":
+                self._reals = got
+            else:
+                self._others += [(i, got, j) for j, i in enumerate(where)]
+        self._others.sort(key=itemgetter(0))
 
     def _make_callbacks(self) -> Any:
         from fmpy import calloc, fmi2, free
@@ -117,10 +138,18 @@ class FmuRunner:
         try:
             getattr(self._slave, function)(*args, **kwargs)
         except FMICallException as e:
-            if e.status == FATAL:
-                # After Fatal the instance must not be touched again, not even to be freed.
-                self._slave = None
-            raise LandingError(f"{self.path}: {function} failed: {self._reason(str(e))}") from None
+            self._fail(function, e.status, str(e))
+
+    def _fail(self, function: str, status: int, text: str = "") -> NoReturn:
+        if status == FATAL:
+            # After Fatal the instance must not be touched again, not even to be freed.
+            self._let_go()
+        raise LandingError(f"{self.path}: {function} failed: {self._reason(text or f'status {status}')}") from None
+
+    def _let_go(self) -> Any:
+        slave, self._slave = self._slave, None
+        self._component, self._reads = None, []
+        return slave
 
     def _reason(self, otherwise: str) -> str:
         texts = list(dict.fromkeys(text for _, text in self._messages if text))
@@ -133,16 +162,20 @@ class FmuRunner:
         """
         now = k * h
         self._messages.clear()
-        self._call("doStep", currentCommunicationPoint=now, communicationStepSize=(k + 1) * h - now)
+        status = self._do_step(self._component, now, (k + 1) * h - now, True)
+        if status > WARNING:
+            self._fail("doStep", status)
 
-    def values(self) -> tuple[float, ...]:
-        """All outputs at the present time, in the order of `OUTPUT_NAMES`."""
-        slave = self._slave
-        found: list[float] = []
-        for function, asked, got in self._reads:
-            getattr(slave, function)(slave.component, asked, len(got), got)
-            found += got
-        values: tuple[float, ...] = self._in_order(found)
+    def values(self) -> list[float]:
+        """All outputs at the present time, in the order of `OUTPUT_NAMES`. Raises LandingError where the FMU refuses."""
+        for name, get, arguments in self._reads:
+            status = get(*arguments)
+            if status > WARNING:
+                self._fail(name, status)
+        values: list[float] = self._reals[:]
+        # In ascending order, so that each comes to stand in its place.
+        for i, got, j in self._others:
+            values.insert(i, got[j])
         return values
 
     def set_inputs(self, inputs: Mapping[str, float]) -> None:
@@ -154,7 +187,7 @@ class FmuRunner:
 
     def close(self) -> None:
         """Terminate and free the instance, and remove the folder that it was unpacked to. May be called again."""
-        slave, self._slave = self._slave, None
+        slave = self._let_go()
         folder, self._folder = self._folder, None
         try:
             if slave is not None:
