@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -69,9 +69,7 @@ class LandingRun:
         self.realtime_factor = settings.realtime_factor
         self._folder, self._live, self._outlets, self._names, self._qos = folder, live, outlets, names, qos
         self._inputs, self._namespace, self._tell = inputs, namespace, tell
-        self._packer = SampleBytes()
-        self._sample_outlets = [outlets[t] for t in self._packer.topics if t in outlets]
-        self._skipped = len(self._packer.topics) - len(self._sample_outlets)
+        self._take_packer(SampleBytes())
         self._wireframe = Wireframe(settings.parameters)
         self._health = Health(node_name, settings.mode)
         self._pacer = Pacer(0.0)
@@ -95,8 +93,16 @@ class LandingRun:
         metadata = log_metadata(self.settings, self._namespace, self.fmu)
         self.recorder = Recorder(self._folder, recorded, metadata, {"parameters.toml": to_toml(self.settings.parameters).encode("utf-8")})
         self.recorder.write(self._names[topics.ROBOT_DESCRIPTION], 0, padded(self.description))
-        # Names are looked up once, not at every message.
-        self._recorded_names = [self._names[t] for t in self._packer.topics if t in topics.RECORDED]
+        packer = self._packer
+        sizes = {t: place.stop - place.start for t, place in zip(packer.topics, packer.places) if t in topics.RECORDED}
+        heads = self.recorder.begin_samples({self._names[t]: size for t, size in sizes.items()})
+        self._take_packer(SampleBytes(dict(zip(sizes, heads))))
+
+    def _take_packer(self, packer: SampleBytes) -> None:
+        self._packer = packer
+        self._places = [(self._outlets[t], place) for t, place in zip(packer.topics, packer.places) if t in self._outlets]
+        # The clock comes first, and is not recorded.
+        self._records = slice(packer.places[0].stop, None)
 
     def go_on(self, interrupted: Callable[[], bool]) -> None:
         """Lands on in its own pace until the end, or until `interrupted` gets true. Raises LandingError for a step that the FMU refuses."""
@@ -116,7 +122,7 @@ class LandingRun:
                 values, messages = self._next(k)
                 self._work += MEMORY * (time.perf_counter() - started - self._work)
                 pacer.hold(k, interrupted)
-                live.offer_sample(self._sample_outlets, messages, k, pacer.due(k))
+                live.offer_sample(self._places, messages, k, pacer.due(k))
                 self._occasional(k, values)
                 self.samples = k + 1
                 live.publish(pacer.due(k + 1) - 1.5 * self._work)
@@ -132,7 +138,7 @@ class LandingRun:
         while not self.end and self.samples <= goal:
             k = self.samples
             values, messages = self._next(k)
-            self._live.offer_sample(self._sample_outlets, messages, k, time.perf_counter())
+            self._live.offer_sample(self._places, messages, k, time.perf_counter())
             self._occasional(k, values)
             self.samples = k + 1
             self._live.publish(0.0)
@@ -143,7 +149,7 @@ class LandingRun:
         """Simulation time of the last sample [s]; 0 before the first."""
         return max(0, self.samples - 1) * self.settings.step_size
 
-    def _next(self, k: int) -> tuple[tuple[float, ...], list[bytes]]:
+    def _next(self, k: int) -> tuple[list[float], bytes]:
         """Sample k and its messages, recorded."""
         s, recorder = self.settings, self.recorder
         if k:
@@ -156,17 +162,16 @@ class LandingRun:
         toppled = values[PHASE] == TOPPLED
         self.end = "toppled" if toppled else "finished" if k == s.steps else ""
         stamp = k * s.step_ns
-        messages = self._packer.pack(stamp, values)
+        messages = self._packer.pack(stamp, values, k)
         if recorder is not None:
-            for name, data in zip(self._recorded_names, messages[1:]):
-                recorder.write(name, stamp, data)
+            recorder.write_sample(stamp, messages[self._records])
             recorder.flush()
             if recorder.error and not self._told:
                 self._told = True
                 self._tell(f"{recorder.error}; the landing goes on unrecorded")
-        return values, messages[self._skipped :]
+        return values, messages
 
-    def _occasional(self, k: int, values: tuple[float, ...]) -> None:
+    def _occasional(self, k: int, values: Sequence[float]) -> None:
         every, stamp = self.settings.every, k * self.settings.step_ns
         if k % every[topics.MARKERS] == 0 or self.end:
             self._say(topics.MARKERS, stamp, padded(self._wireframe.pack(stamp, values)))
@@ -182,7 +187,7 @@ class LandingRun:
         if self._pacer.period:
             self._pacer.note_published(due)
 
-    def _report(self, k: int, values: tuple[float, ...]) -> Any:
+    def _report(self, k: int, values: Sequence[float]) -> Any:
         recorder = self.recorder
         told = {
             "phase": phase_name(values[PHASE]),

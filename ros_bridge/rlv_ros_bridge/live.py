@@ -73,12 +73,12 @@ class LivePublisher:
         if outlet.heard:
             self._queue.append((outlet, data, 0.0))
 
-    def offer_sample(self, outlets: Sequence[Outlet], data: Sequence[bytes], k: int, due: float) -> None:
-        """A sample's messages, the k-th, due at `due` of `time.perf_counter`."""
+    def offer_sample(self, places: Sequence[tuple[Outlet, slice]], data: bytes, k: int, due: float) -> None:
+        """A sample's messages, the k-th, due at `due` of `time.perf_counter`; `places` tell where in `data` each one stands."""
         append = self._queue.append
-        for outlet, message in zip(outlets, data):
+        for outlet, place in places:
             if outlet.heard and k % outlet.every == 0:
-                append((outlet, message, 0.0))
+                append((outlet, data[place], 0.0))
         append((None, b"", due))
         while len(self._queue) > QUEUE_MESSAGES:
             self._drop(self._queue.popleft()[0])

@@ -93,5 +93,4 @@ class Wireframe:
         if self._frame is None:
             probe = probe_numbers(len(OUTPUT_NAMES))
             self._frame = WireFrame([serialize_message(self.fill(PROBE_STAMP, probe))], self.numbers(probe))
-        (data,) = self._frame.pack(nanoseconds, self.numbers(values))
-        return data
+        return self._frame.pack(nanoseconds, self.numbers(values))

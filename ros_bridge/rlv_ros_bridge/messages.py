@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from builtin_interfaces.msg import Time
@@ -114,9 +114,13 @@ class SampleMessages:
 
 
 class SampleBytes:
-    """The serialised messages of `SampleMessages` without the message objects: the same bytes, at a fraction of the cost."""
+    """The serialised messages of `SampleMessages` without the message objects: the same bytes, at a fraction of the cost.
 
-    def __init__(self) -> None:
+    `topics` are in the order of the messages; `places` tell where each one's message stands in what `pack` gives, `heads`, by topic,
+    what comes before it (see `WireFrame`).
+    """
+
+    def __init__(self, heads: Mapping[Topic, bytes] | None = None) -> None:
         messages = SampleMessages()
         probe = probe_numbers(len(OUTPUT_NAMES))
         messages.fill(PROBE_STAMP, probe)
@@ -124,7 +128,9 @@ class SampleBytes:
         self._turned = columns(*(f"leg[{leg}].contact.force_z" for leg in LEGS))
         self.topics: tuple[Topic, ...] = (topics.CLOCK, *(topic for topic, _ in messages.messages))
         sent = (messages.clock, *(message for _, message in messages.messages))
-        self._frame = WireFrame([serialize_message(m) for m in sent], self._numbers(probe))
+        begun = [(heads or {}).get(topic, b"") for topic in self.topics]
+        self._frame = WireFrame([serialize_message(m) for m in sent], self._numbers(probe), begun)
+        self.places = self._frame.places
 
     def _numbers(self, values: Sequence[float]) -> list[float]:
         """The sample, and after it what the messages carry that is not in it."""
@@ -133,6 +139,6 @@ class SampleBytes:
         vx, _, vz = to_ros(values[self._vx], values[self._vy], IN_PLANE)
         return [*values, qy, qw, *world_to_body(vx, vz, pitch), *[to_ros(0.0, 0.0, values[i])[1] for i in self._turned]]
 
-    def pack(self, nanoseconds: int, values: Sequence[float]) -> list[bytes]:
-        """The messages of the sample `values` at the simulation time `nanoseconds`, in the order of `topics`."""
-        return self._frame.pack(nanoseconds, self._numbers(values))
+    def pack(self, nanoseconds: int, values: Sequence[float], count: int = 0) -> bytes:
+        """The messages of the sample `values` at the simulation time `nanoseconds`; `count` is for their heads."""
+        return self._frame.pack(nanoseconds, self._numbers(values), count)

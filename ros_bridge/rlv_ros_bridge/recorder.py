@@ -11,6 +11,7 @@ from rlv_landing.errors import LandingError
 
 from .bag_writer import CHUNK_BYTES, BagTopic, BagWriter, media_type
 from .definitions import Definition, definition
+from .open_chunk import RECORD_SIZE, OpenChunk, message_head
 from .qos import Qos
 
 __all__ = ["CHUNK_BYTES", "FLUSH_SECONDS", "RecordedTopic", "Recorder"]
@@ -63,7 +64,9 @@ class Recorder:
         self._entries = {t.name: BagTopic(t.name, t.type_name, [t.qos.record()], definitions[t.type_name].type_hash) for t in self.topics}
         self._bag.bag.topics = list(self._entries.values())
         self._span = self._bag.bag.span
-        self._add_message = self._bag.mcap.add_message
+        # Of the messages of a sample: the channels; how many samples were recorded.
+        self._sampled: tuple[str, ...] = ()
+        self._samples = 0
         try:
             for name, data in (attachments or {}).items():
                 self._bag.mcap.add_attachment(create_time=0, log_time=0, name=name, media_type=media_type(name), data=data)
@@ -71,6 +74,7 @@ class Recorder:
                 self._bag.mcap.add_metadata("rlv_landing", dict(metadata))
             self._channels = self._register(definitions)
             self._bag.mcap.flush()
+            self._chunk = OpenChunk(self._bag.mcap, CHUNK_BYTES)
         except BaseException as e:
             self.discard()
             if isinstance(e, OSError):
@@ -95,7 +99,30 @@ class Recorder:
     @property
     def count(self) -> int:
         """Messages recorded so far."""
-        return sum(t.count for t in self._entries.values())
+        return sum(t.count for t in self._entries.values()) + self._samples * len(self._sampled)
+
+    def begin_samples(self, sizes: Mapping[str, int]) -> list[bytes]:
+        """From now on samples are recorded as a whole: messages of the topics in `sizes`, of that many bytes each. How the record of each
+        begins; a sequence number and the time twice (as in `open_chunk.TIMES`), and the message follow."""
+        self._sampled = tuple(sizes)
+        place = 0
+        for topic, size in sizes.items():
+            self._chunk.sampled[self._channels[topic]] = place
+            place += RECORD_SIZE + size
+        return [message_head(self._channels[topic], size) for topic, size in sizes.items()]
+
+    def write_sample(self, log_time_ns: int, records: bytes) -> None:
+        """Record a sample's messages at the simulation time `log_time_ns`: their records, in the order of `begin_samples`, the number of
+        the sample as their sequence number. After an error it does nothing."""
+        if self.error:
+            return
+        try:
+            self._chunk.add_sample(log_time_ns, records)
+        except OSError as e:
+            self._fail(e.strerror or str(e))
+            return
+        self._samples += 1
+        self._span.add(log_time_ns)
 
     def write(self, topic: str, log_time_ns: int, data: bytes) -> None:
         """Record the serialised message `data` of `topic` at the simulation time `log_time_ns`. After an error it does nothing."""
@@ -103,7 +130,7 @@ class Recorder:
             return
         entry = self._entries[topic]
         try:
-            self._add_message(self._channels[topic], log_time_ns, data, log_time_ns, entry.count & 0xFFFFFFFF)
+            self._chunk.add(self._channels[topic], entry.count & 0xFFFFFFFF, log_time_ns, data)
         except OSError as e:
             self._fail(e.strerror or str(e))
             return
@@ -117,7 +144,7 @@ class Recorder:
             return
         self._flushed = now
         try:
-            self._bag.mcap.flush()
+            self._chunk.write()
             if not self._bag.is_there():
                 self._fail("the file was removed or moved away")
         except OSError as e:
@@ -129,6 +156,10 @@ class Recorder:
             return
         try:
             if not self.error:
+                self._chunk.write()
+                for topic in self._sampled:
+                    self._entries[topic].count = self._samples
+                self._sampled = ()
                 self._bag.finish()
         except OSError as e:
             self._fail(e.strerror or str(e))

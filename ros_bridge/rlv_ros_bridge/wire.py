@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
-from itertools import pairwise
 from operator import itemgetter
 
 from rlv_landing.errors import LandingError
@@ -37,29 +36,43 @@ class WireFrame:
     Args:
         serialised: each message as rclpy serialises it, stamped with `PROBE_STAMP`, with the `probe` numbers in it.
         probe: the numbers. Those that are 0 are taken for constants, the others must differ from each other.
+        heads: what comes before each message, if anything; behind a head that is not empty come a count (4 bytes) and the stamp in ns
+            (8 bytes), twice, and then the message: a record of MCAP.
+
+    `places` is where each message itself stands in what `pack` gives.
 
     Raises:
         LandingError: the messages are not in little-endian plain CDR, which is what Fast DDS and Cyclone DDS give on x86-64 and ARM.
     """
 
-    def __init__(self, serialised: Sequence[bytes], probe: Sequence[float]) -> None:
+    def __init__(self, serialised: Sequence[bytes], probe: Sequence[float], heads: Sequence[bytes] = ()) -> None:
         if any(data[:2] != b"\x00\x01" for data in serialised):
             raise LandingError("messages are not serialised as little-endian CDR here; choose RMW_IMPLEMENTATION=rmw_fastrtps_cpp")
+        # A list to pick from: the numbers, the stamp as seconds and nanoseconds and whole, the count, the constants.
         self._stamp_at = len(probe)
         self._places = {struct.pack("<d", value): i for i, value in enumerate(probe) if value != 0.0}
         self._form = ["<"]
         self._constants: list[bytes] = []
+        self.places: list[slice] = []
         picked: list[int] = []
-        ends = [0]
-        for data in map(padded, serialised):
+        for head, data in zip(heads or [b""] * len(serialised), map(padded, serialised)):
+            if head:
+                picked += [self._constant(head), self._stamp_at + 3, self._stamp_at + 2, self._stamp_at + 2]
+                self._form.append("IQQ")
+            start = struct.calcsize("".join(self._form))
             picked += self._learn(data)
-            ends.append(ends[-1] + len(data))
-        self._slices = [slice(a, b) for a, b in pairwise(ends)]
+            self.places.append(slice(start, start + len(data)))
         self._pick = itemgetter(*picked)
         self._pack = struct.Struct("".join(self._form)).pack
 
+    def _constant(self, data: bytes) -> int:
+        """Adds constant bytes to the form; where they stand in the list."""
+        self._form.append(f"{len(data)}s")
+        self._constants.append(data)
+        return self._stamp_at + 3 + len(self._constants)
+
     def _learn(self, data: bytes) -> list[int]:
-        """Adds `data` to the form; where each part of it stands in the list of numbers, stamp and constants."""
+        """Adds `data` to the form; where each part of it stands in the list."""
         stamp = struct.pack("<iI", *divmod(PROBE_STAMP, NANOSECONDS))
         picked: list[int] = []
         at = plain = 0
@@ -68,9 +81,7 @@ class WireFrame:
             number = self._places.get(word) if (at - START) % 8 == 0 else None
             if word == stamp or number is not None or at == len(data):
                 if at > plain:
-                    self._form.append(f"{at - plain}s")
-                    picked.append(self._stamp_at + 2 + len(self._constants))
-                    self._constants.append(data[plain:at])
+                    picked.append(self._constant(data[plain:at]))
                 if at < len(data):
                     self._form.append("d" if number is not None else "iI")
                     picked += [number] if number is not None else [self._stamp_at, self._stamp_at + 1]
@@ -80,7 +91,8 @@ class WireFrame:
                 at += 4
         return picked
 
-    def pack(self, nanoseconds: int, numbers: Sequence[float]) -> list[bytes]:
-        """The messages, in the order in which they were given, of the `numbers` at the stamp `nanoseconds`."""
-        whole = self._pack(*self._pick([*numbers, *divmod(nanoseconds, NANOSECONDS), *self._constants]))
-        return [whole[s] for s in self._slices]
+    def pack(self, nanoseconds: int, numbers: Sequence[float], count: int = 0) -> bytes:
+        """The messages, one after the other, of the `numbers` at the stamp `nanoseconds`; `count` is what their heads carry."""
+        return self._pack(
+            *self._pick([*numbers, nanoseconds // NANOSECONDS, nanoseconds % NANOSECONDS, nanoseconds, count, *self._constants])
+        )
