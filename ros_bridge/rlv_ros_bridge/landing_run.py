@@ -72,6 +72,7 @@ class LandingRun:
         self._take_packer(SampleBytes())
         self._wireframe = Wireframe(settings.parameters)
         self._health = Health(node_name, settings.mode)
+        self._markers_every, self._diagnostics_every = settings.every[topics.MARKERS], settings.every[topics.DIAGNOSTICS]
         self._pacer = Pacer(0.0)
         self._work = 0.0
         self._told = False
@@ -172,10 +173,10 @@ class LandingRun:
         return values, messages
 
     def _occasional(self, k: int, values: Sequence[float]) -> None:
-        every, stamp = self.settings.every, k * self.settings.step_ns
-        if k % every[topics.MARKERS] == 0 or self.end:
+        stamp = k * self.settings.step_ns
+        if k % self._markers_every == 0 or self.end:
             self._say(topics.MARKERS, stamp, padded(self._wireframe.pack(stamp, values)))
-        if k % every[topics.DIAGNOSTICS] == 0 or self.end:
+        if k % self._diagnostics_every == 0 or self.end:
             self._say(topics.DIAGNOSTICS, stamp, padded(serialize_message(self._report(k, values))))
 
     def _say(self, topic: Topic, stamp: int, data: bytes) -> None:

@@ -93,6 +93,10 @@ class LivePublisher:
         `time.perf_counter`; while writes are slow only the latter."""
         now = time.perf_counter()
         self.look_round(now)
+        while self._queue and self._queue[0][0] is None:
+            self._published_at(self._queue.popleft()[2])
+        if not self._queue:
+            return
         if now - self._written > PROBE_SECONDS:
             # Lest a subscriber that takes messages again goes unnoticed.
             until = max(until, now + self._needed + 1e-9)
