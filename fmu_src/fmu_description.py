@@ -11,7 +11,7 @@ from xml.etree.ElementTree import Element, SubElement
 from fmu_dependencies import inputs_of, known_at_start
 from rlv_landing import __version__
 from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.quantities import BASE_UNITS, DISPLAY_UNITS, INPUT_QUANTITIES, OUTPUT_QUANTITIES, Quantity
+from rlv_landing.quantities import BASE_UNITS, DISPLAY_UNITS, INPUT_QUANTITIES, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES, Quantity
 
 DIMENSIONLESS = "1"
 # SI unit -> physical kind, FMI's `quantity`
@@ -46,7 +46,7 @@ CAPABILITIES = {
     "canGetAndSetFMUstate": True,
     "canSerializeFMUstate": True,
 }
-QUANTITIES = {q.name: q for q in (*PARAMETER_QUANTITIES.values(), *INPUT_QUANTITIES, *OUTPUT_QUANTITIES)}
+QUANTITIES = {q.name: q for q in (*PARAMETER_QUANTITIES.values(), *INPUT_QUANTITIES, *OUTPUT_QUANTITIES, *STATISTIC_QUANTITIES)}
 
 
 def describe(root: Element, date: str) -> None:

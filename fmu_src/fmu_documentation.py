@@ -18,7 +18,7 @@ from fmu_drawing import vehicle_figure
 from rlv_landing import Parameters, __version__
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.plots import inline_svg
-from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES, Quantity
+from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES, Quantity
 
 ROOT = Path(__file__).parent.parent
 TEMPLATE = Path(__file__).with_name("fmu_documentation.html.j2")
@@ -66,6 +66,7 @@ def render(files: Path, description: Element) -> str:
             ("parameters", "Parameters", "fixed; set them before or in initialization mode", rows(PARAMETER_QUANTITIES.values())),
             ("inputs", "Inputs", "continuous; 0 by default", rows(INPUT_QUANTITIES)),
             ("outputs", "Outputs", "calculated; leg[1] stands for every leg, numbered as drawn", rows(outputs_of_one_leg())),
+            ("statistics", "Statistics", "local; what the integrator has done", rows(STATISTIC_QUANTITIES)),
         ],
     )
 

@@ -23,10 +23,11 @@ from pythonfmu.enums import Fmi2Status
 from rlv_landing import Landing, LandingError, Parameters, __version__
 from rlv_landing.landing import DEFAULT_RTOL
 from rlv_landing.parameters import PARAMETER_QUANTITIES, check_value
-from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES, Quantity
+from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES, Quantity
 
 # value references of the front's own: the rate of input i is set as the real RATES + i
 RATES = 2_000_000
+LARGEST_INTEGER = 2**31 - 1
 _kept: list[Any] = []
 keep = _kept.append
 KINDS = {"real": Real, "integer": Integer, "boolean": Boolean, "string": String}
@@ -89,12 +90,14 @@ class RlvLanding(Fmi2Slave):
         for q in OUTPUT_QUANTITIES:
             changes = Fmi2Variability.continuous if q.kind == "real" else Fmi2Variability.discrete
             self._register(q, 0.0, Fmi2Causality.output, changes, Fmi2Initial.calculated)
+        self._output_references = list(range(self._first_output, len(self.vars)))
+        for q in STATISTIC_QUANTITIES:
+            self._register(q, 0.0, Fmi2Causality.local, Fmi2Variability.discrete, Fmi2Initial.calculated)
         self._names = [v.name for v in self.vars.values()]
-        self._output_references = list(range(self._first_output, len(self._names)))
 
     def to_xml(self, model_options: dict[str, str] | None = None) -> Element:
         """pythonfmu's description, with a GUID made from the version and the variables. Called at build time only."""
-        quantities = [*PARAMETER_QUANTITIES.values(), INPUT_QUANTITIES, OUTPUT_QUANTITIES]
+        quantities = [*PARAMETER_QUANTITIES.values(), INPUT_QUANTITIES, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES]
         self.guid = uuid5(NAMESPACE_URL, f"rlv-landing {__version__} {quantities!r}")
         return super().to_xml(model_options or {})
 
@@ -184,7 +187,12 @@ class RlvLanding(Fmi2Slave):
                     self._apply_inputs()
             if not self._outputs:
                 self._outputs = landing.values()
-        return self._outputs if whole else [known[vr] if vr < first else self._outputs[vr - first] for vr in vrs]
+        if whole:
+            return self._outputs
+        calculated: list[Any] = self._outputs
+        if max(vrs, default=0) >= first + len(OUTPUT_QUANTITIES):
+            calculated = [*calculated, *(min(count, LARGEST_INTEGER) for count in self._present().statistics.values())]
+        return [known[vr] if vr < first else calculated[vr - first] for vr in vrs]
 
     def get_real(self, vrs: list[int]) -> list[float]:
         return self._values_of(vrs) or [math.nan] * len(vrs)

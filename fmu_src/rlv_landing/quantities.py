@@ -162,6 +162,12 @@ def _leg_quantity(leg: int, q: Quantity) -> Quantity:
 SHARED_QUANTITIES = BODY_QUANTITIES + ENERGY_QUANTITIES + STATUS_QUANTITIES
 OUTPUT_QUANTITIES: tuple[Quantity, ...] = SHARED_QUANTITIES + tuple(_leg_quantity(leg, q) for leg in LEGS for q in LEG_QUANTITIES)
 OUTPUT_NAMES: tuple[str, ...] = tuple(q.name for q in OUTPUT_QUANTITIES)
+# What the integrator has done: `Landing.statistics`.
+STATISTIC_QUANTITIES: tuple[Quantity, ...] = (
+    Quantity("", "steps of the integrator since the start", 0.0, name="solver.steps", kind="integer"),
+    Quantity("", "steps that the integrator has rejected and tried again shorter", 0.0, name="solver.rejected", kind="integer"),
+    Quantity("", "calls of the right-hand side since the start", 0.0, name="solver.rhs_calls", kind="integer"),
+)
 INPUT_NAMES: tuple[str, ...] = tuple(q.name for q in INPUT_QUANTITIES)
 
 

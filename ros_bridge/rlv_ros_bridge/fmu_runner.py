@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 
 from rlv_landing.errors import LandingError, unknown
 from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.quantities import INPUT_NAMES, OUTPUT_NAMES, OUTPUT_QUANTITIES
+from rlv_landing.quantities import INPUT_NAMES, OUTPUT_NAMES, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES
 
 from .fmu_folder import FmuFolder
 
@@ -51,7 +51,8 @@ class FmuRunner:
         self.version: str = description.version or ""
         self.made_by: str = description.generationTool or ""
         references = {v.name: v.valueReference for v in description.modelVariables}
-        missing = [n for n in (*OUTPUT_NAMES, *INPUT_NAMES, *PARAMETER_QUANTITIES) if n not in references]
+        needed = (*OUTPUT_NAMES, *INPUT_NAMES, *PARAMETER_QUANTITIES, *(q.name for q in STATISTIC_QUANTITIES))
+        missing = [n for n in needed if n not in references]
         if missing:
             raise LandingError(f"{self.path} (version {self.version}) has no variable {missing[0]!r}; build it again with ./build_fmu.sh")
         for name in values:
@@ -177,6 +178,11 @@ class FmuRunner:
         for i, got, j in self._others:
             values.insert(i, got[j])
         return values
+
+    def statistics(self) -> dict[str, int]:
+        """What the integrator has done so far, by the FMU's names."""
+        names = [q.name for q in STATISTIC_QUANTITIES]
+        return dict(zip(names, self._slave.getInteger([self._references[name] for name in names])))
 
     def set_inputs(self, inputs: Mapping[str, float]) -> None:
         """Inputs by name, SI, from now on; others go on as they were. Raises LandingError for an unknown name."""

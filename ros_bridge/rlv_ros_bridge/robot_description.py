@@ -7,7 +7,7 @@ from math import acos, atan2, dist
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
-from rlv_landing.quantities import INPUT_QUANTITIES, LEGS, OUTPUT_QUANTITIES
+from rlv_landing.quantities import INPUT_QUANTITIES, LEGS, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES
 from rlv_landing.touchdown import footpad_at_rest
 
 from .legs import around
@@ -23,7 +23,12 @@ ORIGIN: Point = (0.0, 0.0, 0.0)
 
 def variables() -> str:
     """The FMU's variables: for each its name, causality, unit and meaning."""
-    groups = (("parameter", PARAMETER_QUANTITIES.values()), ("input", INPUT_QUANTITIES), ("output", OUTPUT_QUANTITIES))
+    groups = (
+        ("parameter", PARAMETER_QUANTITIES.values()),
+        ("input", INPUT_QUANTITIES),
+        ("output", OUTPUT_QUANTITIES),
+        ("local", STATISTIC_QUANTITIES),
+    )
     return json.dumps([{"name": q.name, "causality": kind, "unit": q.unit, "meaning": q.meaning} for kind, group in groups for q in group])
 
 

@@ -15,7 +15,7 @@ from fmpy.validation import validate_fmu
 
 from rlv_landing import Landing, __version__, load_preset
 from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_NAMES, OUTPUT_QUANTITIES
+from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_NAMES, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES
 
 FIGURES = "yue2022-figures"
 
@@ -31,12 +31,14 @@ def test_fmpy_validate_reports_nothing(fmu):
 
 def test_every_quantity_is_a_variable_with_its_unit_causality_and_start(description):
     variables = {v.name: v for v in description.modelVariables}
-    assert list(variables) == [*PARAMETER_QUANTITIES, *(q.name for q in INPUT_QUANTITIES), *OUTPUT_NAMES]
+    others = [q.name for q in (*INPUT_QUANTITIES, *OUTPUT_QUANTITIES, *STATISTIC_QUANTITIES)]
+    assert list(variables) == [*PARAMETER_QUANTITIES, *others]
     units = {u.name for u in description.unitDefinitions}
     for causality, quantities in (
         ("parameter", PARAMETER_QUANTITIES.values()),
         ("input", INPUT_QUANTITIES),
         ("output", OUTPUT_QUANTITIES),
+        ("local", STATISTIC_QUANTITIES),
     ):
         for q in quantities:
             v = variables[q.name]
@@ -158,7 +160,7 @@ slave.exit_initialization_mode()
 for k in range(130):
     assert slave.do_step(k * 1e-3, 1e-3)
 third_party = sorted(m for m in sys.modules if m.split(".")[0] in ("numpy", "scipy", "click", "pint", "rlv_landing"))
-print(third_party, " ".join(v.hex() for v in slave.get_real(list(range(slave._first_output, len(slave.vars))))))
+print(third_party, " ".join(v.hex() for v in slave.get_real(slave._output_references)))
 """
 
 

@@ -12,7 +12,7 @@ from fmpy.fmi1 import FMICallException
 from fmu_instance import DISCARD, ERROR, OK, Instance
 
 from rlv_landing import Landing
-from rlv_landing.quantities import OUTPUT_NAMES
+from rlv_landing.quantities import OUTPUT_NAMES, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES
 
 REAL, TEXT = "external.force_x", "drop.mode"
 
@@ -377,3 +377,58 @@ def test_an_input_shows_in_the_outputs_before_the_next_step(instance):
     assert instance.step(100e-3, 1e-3) == DISCARD
     instance.set(REAL, 1000.0)
     assert instance.step(100e-3, 1e-3) == OK
+
+
+# -- all outputs at once, kept until something changes
+
+
+def read_one_by_one(instance: Instance) -> list[float]:
+    """All outputs, each by its own call of the function of its type."""
+    found = []
+    for q in OUTPUT_QUANTITIES:
+        read = {"real": instance.slave.getReal, "integer": instance.slave.getInteger, "boolean": instance.slave.getBoolean}[q.kind]
+        found += read([instance.vr[q.name]])
+    return found
+
+
+def test_outputs_are_those_of_the_present_however_often_and_in_whatever_order_they_are_read(instance):
+    landing = Landing()
+    instance.start()
+    assert read_one_by_one(instance) == landing.values()
+    instance.steps(0, 150)
+    landing.advance_to(149e-3 + 1e-3)
+    state, before = instance.slave.getFMUState(), landing.values()
+    assert read_one_by_one(instance) == before == read_one_by_one(instance)
+    instance.set(REAL, 500.0)
+    landing.set_inputs({REAL: 500.0})
+    assert read_one_by_one(instance) == landing.values() != before
+    assert instance.set_rate(REAL, 100.0) == OK
+    instance.steps(150, 151)
+    landing.set_inputs({REAL: 500.0}, {REAL: 100.0})
+    landing.advance_to(150e-3 + ((151e-3) - 150e-3))
+    assert instance.get("body.vx") == pytest.approx(landing.get("body.vx"), rel=1e-12)
+    instance.slave.setFMUState(state)
+    assert read_one_by_one(instance) == before
+    mixed = [instance.vr[name] for name in ("body.y", REAL, "vehicle.mass", "body.x")]
+    body = dict(zip(OUTPUT_NAMES, before))
+    assert instance.slave.getReal(mixed) == [body["body.y"], 0.0, Landing().parameters["vehicle.mass"], body["body.x"]]
+    instance.slave.terminate()
+    instance.slave.reset()
+    assert instance.get("body.y") == Landing().get("body.y")
+
+
+def test_the_solver_tells_what_it_has_done_and_a_state_holds_it(instance):
+    names = [q.name for q in STATISTIC_QUANTITIES]
+    landing = Landing()
+    instance.start()
+    instance.steps(0, 200)
+    landing.advance_to(199e-3 + 1e-3)
+    told = instance.slave.getInteger([instance.vr[name] for name in names])
+    assert dict(zip(names, told)) == {f"solver.{name}": count for name, count in landing.statistics.items()}
+    assert told[0] > 0
+    state = instance.slave.getFMUState()
+    instance.steps(200, 250)
+    instance.slave.setFMUState(state)
+    assert instance.slave.getInteger([instance.vr[name] for name in names]) == told
+    assert instance.status("fmi2SetInteger", refs(instance.vr[names[0]]), 1, (c_int * 1)(0)) == ERROR
+    assert "solver.steps is no parameter or input" in instance.reason()
