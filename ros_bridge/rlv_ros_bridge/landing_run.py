@@ -22,7 +22,7 @@ from .log_metadata import log_metadata
 from .markers import Wireframe
 from .messages import SampleBytes
 from .node_settings import Settings
-from .pacer import Pacer
+from .pacer import Pacer, spread
 from .qos import LATCHED, Qos
 from .recorder import RecordedTopic, Recorder
 from .run_summary import RunSummary
@@ -194,6 +194,7 @@ class LandingRun:
             "phase": phase_name(values[PHASE]),
             "energy balance [J]": f"{values[BALANCE]:.6g}",
             "samples": str(k + 1),
+            **{name: str(count) for name, count in self.fmu.statistics().items()},
             **pace(self._pacer, k * self.settings.step_size),
             "messages not published": str(self.dropped),
             "messages recorded": str(recorder.count if recorder else 0),
@@ -215,15 +216,16 @@ class LandingRun:
     def summary(self, end: str, signal: int, acknowledged: bool) -> RunSummary:
         """How it went so far."""
         pacer, recorder = self._pacer, self.recorder
+        median, p99, largest = spread(pacer.lateness)
         return RunSummary(
             samples=self.samples,
             recorded=recorder.count if recorder else 0,
             simulated=self.time,
             wall=pacer.elapsed,
             late_steps=pacer.late_steps,
-            median_lateness=pacer.lateness_at(0.5),
-            p99_lateness=pacer.lateness_at(0.99),
-            largest_lateness=pacer.lateness_at(1.0),
+            median_lateness=median,
+            p99_lateness=p99,
+            largest_lateness=largest,
             lost=pacer.lost,
             dropped=self.dropped,
             folder=recorder.folder if recorder and self.samples else None,

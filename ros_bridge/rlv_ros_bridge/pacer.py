@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import time
 from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 # Beyond this the lost time is given up: to make it good would be a burst that no subscriber expects.
 STALL_SECONDS = 0.1
@@ -69,7 +70,9 @@ class Pacer:
         """The sample that was due at `due` is published now."""
         self.lateness.append(max(0.0, time.perf_counter() - due))
 
-    def lateness_at(self, part: float) -> float:
-        """The lateness that the `part` (0.5: median, 1: all) of the samples so far stayed below or at [s]; 0 where there are none."""
-        ordered = sorted(self.lateness)
-        return ordered[min(len(ordered) - 1, int(part * len(ordered)))] if ordered else 0.0
+
+def spread(lateness: Sequence[float]) -> tuple[float, float, float]:
+    """What half of the values, 99 % of them, and all of them stay at or below; 0 where there are none."""
+    ordered = sorted(lateness)
+    half, most, all_of_them = (ordered[math.ceil(part * len(ordered)) - 1] if ordered else 0.0 for part in (0.5, 0.99, 1.0))
+    return half, most, all_of_them

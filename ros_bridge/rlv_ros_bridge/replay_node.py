@@ -25,6 +25,7 @@ from .keyboard import Keyboard
 from .log_reader import LogReader
 from .message_types import message_class
 from .messages import set_stamp
+from .pacer import spread
 from .qos import CLOCK, parse_qos
 from .replay_clock import ReplayClock
 from .replay_selection import ReplayOptions, Selection
@@ -125,16 +126,16 @@ class ReplayNode(Node):
         finally:
             gc.enable()
             gc.unfreeze()
-        acknowledged = wait_for_acknowledgement(list(self._outlets.values()), interrupted=bool(stop)) or bool(stop)
-        late = sorted(self._lateness)
+        acknowledged = wait_for_acknowledgement(list(self._outlets.values()), interrupted=bool(stop))
+        median, p99, largest = spread(self._lateness)
         return ReplaySummary(
             messages=played,
             turns=turns,
             signal=stop.number,
             quit=self._quit,
-            median_lateness=late[len(late) // 2] if late else 0.0,
-            p99_lateness=late[math.ceil(0.99 * len(late)) - 1] if late else 0.0,
-            largest_lateness=late[-1] if late else 0.0,
+            median_lateness=median,
+            p99_lateness=p99,
+            largest_lateness=largest,
             lost=self._clock_of_log.lost,
             acknowledged=acknowledged,
             cut=selection.cut,

@@ -88,6 +88,23 @@ def test_mcap_ros2_support_reads_the_landing_bit_for_bit(log: Path, mode: str) -
     assert len(read["/diagnostics"]) == 11
 
 
+def test_the_diagnostics_tell_phase_balance_pace_and_what_the_integrator_has_done(log: Path, mode: str) -> None:
+    (file,) = log.glob("*.mcap")
+    with file.open("rb") as f:
+        decoded = make_reader(f, decoder_factories=[DecoderFactory()]).iter_decoded_messages(["/diagnostics"])
+        told = [(message.log_time, {v.key: v.value for v in array.status[0].values}) for _, _, message, array in decoded]
+    assert [time for time, _ in told] == [k * 10**8 for k in range(11)]
+    landing = Landing(load_preset("yue2022-figures"), mode)
+    for k in range(1001):
+        landing.advance_to(k * 1e-3)
+        if k % 100 == 0:
+            _, values = told[k // 100]
+            assert {name: values[f"solver.{name}"] for name in landing.statistics} == {n: str(c) for n, c in landing.statistics.items()}
+            assert values["energy balance [J]"] == f"{landing.get('energy.balance'):.6g}"
+            assert values["phase"] == ("falling", "contact", "settled", "toppled")[int(landing.get("status.phase"))]
+            assert {"real-time factor", "steps late", "time lost to stalls [s]"} <= values.keys()
+
+
 def test_our_reader_gives_the_landing_back_with_its_parameters(log: Path, mode: str) -> None:
     expected = expected_history(mode)
     history = LogReader(log).history()
