@@ -12,7 +12,7 @@ from .core import DormandPrince, Exponential, Model, Solver, layout, output_size
 from .errors import LandingError, unknown
 from .parameters import PARAMETER_QUANTITIES, Parameters, azimuth, check_value
 from .quantities import INPUT_NAMES, INPUT_QUANTITIES, LEG_QUANTITIES, MODES, OUTPUT_NAMES, SHARED_QUANTITIES, Z_TURNS
-from .touchdown import before_contact, clearance, footpad_at_rest
+from .touchdown import FreeFlight
 
 if TYPE_CHECKING:
     from numpy import float64
@@ -31,8 +31,6 @@ HEADER = 10
 SLICE = 250
 # where a ground motion's rate is an input of its own
 RATE_INPUTS = {layout.HEAVE: layout.HEAVE_RATE, layout.TILT: layout.TILT_RATE}
-# parts of the free flight, before the first contact, at which the footpads must be above the ground
-FLIGHT_CHECKS = tuple(i / 64.0 for i in range(65))
 
 
 def build_model(parameters: Parameters, kind: type[Model] = Model) -> Model:
@@ -157,16 +155,17 @@ class Landing:
         """
         p, drop = self.parameters, self.parameters.drop
         groups = len(MODES[drop.mode])
-        clearances = [clearance(p, *before_contact(p, part * drop.contact_time)[:3]) for part in FLIGHT_CHECKS]
-        if min(clearances) < -1e-6:
+        flight = FreeFlight(p)
+        lowest = flight.lowest(drop.contact_time)
+        if lowest < -1e-6:
             raise LandingError(
-                f"drop.contact_time = {drop.contact_time:g} s of free flight would pass {-min(clearances):.3g} m below the ground; "
+                f"drop.contact_time = {drop.contact_time:g} s of free flight would pass {-lowest:.3g} m below the ground; "
                 "shorten it, or touch down with less pitch rate or a faster descent"
             )
         y = array("d", bytes(8 * state_size(groups)))
-        for i, value in enumerate(before_contact(p, drop.contact_time)):
+        for i, value in enumerate(flight.before_contact(drop.contact_time)):
             y[i] = value
-        radius, height = footpad_at_rest(p)
+        radius, height = flight.footpad
         for i in range(groups):
             k = layout.BODY + layout.LEG * i
             y[k + layout.R], y[k + layout.H] = radius, height

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
+from functools import cache
 from math import cos, radians, sin
 from typing import Annotated, Any, get_args, get_type_hints
 
@@ -126,6 +127,8 @@ def _table() -> dict[str, Quantity]:
 
 
 PARAMETER_QUANTITIES: dict[str, Quantity] = _table()
+# name -> its group, its field there
+_PLACES: dict[str, tuple[str, str]] = {name: (name.split(".")[0], name.split(".")[1]) for name in PARAMETER_QUANTITIES}
 
 
 def check_value(q: Quantity, value: Any) -> float | str:
@@ -158,8 +161,9 @@ class Parameters:
     sources: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for name, value in self.items():
-            check_value(PARAMETER_QUANTITIES[name], value)
+        groups = {group: vars(getattr(self, group)) for group in GROUPS}
+        for name, (group, what) in _PLACES.items():
+            check_value(PARAMETER_QUANTITIES[name], groups[group][what])
         self._check_together()
 
     def items(self) -> Iterator[tuple[str, float | str]]:
@@ -168,9 +172,9 @@ class Parameters:
             yield name, self[name]
 
     def __getitem__(self, name: str) -> float | str:
-        if name not in PARAMETER_QUANTITIES:
+        if name not in _PLACES:
             raise unknown("parameter", name, PARAMETER_QUANTITIES)
-        group, what = name.split(".")
+        group, what = _PLACES[name]
         value: float | str = getattr(getattr(self, group), what)
         return value
 
@@ -206,9 +210,9 @@ class Parameters:
     def _replaced(self, values: Mapping[str, Any], sources: Mapping[str, str]) -> Parameters:
         grouped: dict[str, dict[str, float | str]] = {}
         for name, value in values.items():
-            if name not in PARAMETER_QUANTITIES:
+            if name not in _PLACES:
                 raise unknown("parameter", name, PARAMETER_QUANTITIES)
-            group, what = name.split(".")
+            group, what = _PLACES[name]
             grouped.setdefault(group, {})[what] = check_value(PARAMETER_QUANTITIES[name], value)
         parts: dict[str, Any] = {group: replace(getattr(self, group), **changed) for group, changed in grouped.items()}
         return replace(self, **parts, sources={**self.sources, **sources})
@@ -237,6 +241,7 @@ def _sources(names: Iterable[str], source: str | Mapping[str, str]) -> dict[str,
     return {name: source if isinstance(source, str) else source.get(name, "user") for name in names}
 
 
+@cache
 def azimuth(degrees: int) -> tuple[float, float]:
     """Sine and cosine of an azimuth, exactly 0 where they should be."""
     s, c = sin(radians(degrees)), cos(radians(degrees))

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from math import cos, inf, sin
+from math import cos, sin
 
 from .parameters import Parameters, azimuth
 from .quantities import MODES
+
+# parts of the free flight, before the first contact, at which the footpads must be above the ground
+FLIGHT_CHECKS = tuple(i / 64.0 for i in range(65))
 
 
 def footpad_at_rest(parameters: Parameters) -> tuple[float, float]:
@@ -25,32 +28,41 @@ def footpad_between(parameters: Parameters, main: float, auxiliary: float) -> tu
     return max((mid_x - off * dy / apart, mid_y + off * dx / apart), (mid_x + off * dy / apart, mid_y - off * dx / apart))
 
 
-def clearance(parameters: Parameters, x: float, y: float, pitch: float) -> float:
-    """Height [m] of the lowest footpad above the ground at rest, along its normal, with the CG at (`x`, `y`)."""
-    radius, height = footpad_at_rest(parameters)
-    slope = parameters.ground.slope
-    lowest = inf
-    for g in MODES[parameters.drop.mode]:
-        along = radius * azimuth(g.azimuth)[1]
-        foot_x = x + along * cos(pitch) + height * sin(pitch)
-        foot_y = y + height * cos(pitch) - along * sin(pitch)
-        lowest = min(lowest, foot_x * sin(slope) + foot_y * cos(slope))
-    return lowest
-
-
-def before_contact(parameters: Parameters, t: float) -> tuple[float, float, float, float, float, float]:
-    """Body state (x, y, pitch, vx, vy, pitch rate) `t` [s] before the first contact, in free flight. [derived]
+class FreeFlight:
+    """The flight of the vehicle with its legs fully extended, and where it ends: at the first contact. [derived]
 
     The whole vehicle's CG flies a parabola and the pitch rate is constant. At contact the body's CG is above the ground's origin.
     """
-    drop, g = parameters.drop, parameters.ground.gravity
-    feet = sum(len(group.legs) for group in MODES[drop.mode]) * parameters.vehicle.footpad_mass
-    arm = footpad_at_rest(parameters)[1] * feet / (feet + parameters.vehicle.mass)
-    rate, end = drop.pitch_rate, drop.tilt
-    pitch = end - rate * t
-    contact_y = -clearance(parameters, 0.0, 0.0, end) / cos(parameters.ground.slope)
-    vx = drop.horizontal_velocity + rate * arm * cos(end)
-    vy = drop.vertical_velocity - rate * arm * sin(end)
-    x = arm * sin(end) - vx * t - arm * sin(pitch)
-    y = contact_y + arm * cos(end) - vy * t - 0.5 * g * t * t - arm * cos(pitch)
-    return x, y, pitch, vx - rate * arm * cos(pitch), vy + g * t + rate * arm * sin(pitch), rate
+
+    def __init__(self, parameters: Parameters) -> None:
+        drop = parameters.drop
+        groups = MODES[drop.mode]
+        self.footpad = footpad_at_rest(parameters)
+        radius, self._height = self.footpad
+        self._along = [radius * azimuth(g.azimuth)[1] for g in groups]
+        self._normal = sin(parameters.ground.slope), cos(parameters.ground.slope)
+        feet = sum(len(g.legs) for g in groups) * parameters.vehicle.footpad_mass
+        self._arm = arm = self._height * feet / (feet + parameters.vehicle.mass)
+        self._end, self._rate, self._gravity = drop.tilt, drop.pitch_rate, parameters.ground.gravity
+        self._contact_y = -self.clearance(0.0, 0.0, self._end) / self._normal[1]
+        self._vx = drop.horizontal_velocity + self._rate * arm * cos(self._end)
+        self._vy = drop.vertical_velocity - self._rate * arm * sin(self._end)
+
+    def clearance(self, x: float, y: float, pitch: float) -> float:
+        """Height [m] of the lowest footpad above the ground at rest, along its normal, with the CG at (`x`, `y`)."""
+        s, c = sin(pitch), cos(pitch)
+        across, up = self._normal
+        height = self._height
+        return min([(x + along * c + height * s) * across + (y + height * c - along * s) * up for along in self._along])
+
+    def before_contact(self, t: float) -> tuple[float, float, float, float, float, float]:
+        """Body state (x, y, pitch, vx, vy, pitch rate) `t` [s] before the first contact."""
+        arm, rate, end, g, vx, vy = self._arm, self._rate, self._end, self._gravity, self._vx, self._vy
+        pitch = end - rate * t
+        x = arm * sin(end) - vx * t - arm * sin(pitch)
+        y = self._contact_y + arm * cos(end) - vy * t - 0.5 * g * t * t - arm * cos(pitch)
+        return x, y, pitch, vx - rate * arm * cos(pitch), vy + g * t + rate * arm * sin(pitch), rate
+
+    def lowest(self, duration: float) -> float:
+        """The smallest clearance [m] during the last `duration` [s] of the flight, at 65 times."""
+        return min([self.clearance(*self.before_contact(part * duration)[:3]) for part in FLIGHT_CHECKS])
