@@ -202,3 +202,20 @@ def test_a_history_without_parameters_is_refused(landings):
     h = landings["moving"]
     with pytest.raises(LandingError, match="does not know its parameters"):
         outcome(History(h.time, h.names, h.data))
+
+
+def test_what_comes_after_toppling_does_not_count(landings):
+    h = landings["toppled"]
+    over = int(np.flatnonzero(h.time == outcome(h).time)[0])
+    force = np.abs(h["leg[4].main_strut.force"])
+    assert force[over + 1 :].max() > force[: over + 1].max()
+    limits = {"main_strut.force": 1.001 * max(np.abs(h[f"leg[{leg}].main_strut.force"][: over + 1]).max() for leg in LEGS)}
+    assert outcome(h, limits).first_limit is None
+
+
+def test_a_landing_that_bottoms_out_and_topples_names_the_leg_all_the_same(landings):
+    h = landings["toppled"]
+    stroke = np.zeros(len(h))
+    stroke[100] = 0.06
+    assert outcome(altered(h, stroke=stroke)).leg == 1
+    assert outcome(h).leg is None

@@ -58,11 +58,13 @@ class Outcome:
 
     - toppled: at the end the CG is beyond the outermost footpad or the body has turned over (`status.phase` 3). A vehicle that was beyond
       its feet for a moment and came back has not toppled. `time` is when it went for good;
-    - bottomed out: a damper's stroke has passed `main_strut.stroke_max`, where it meets its stop. `time` and `leg` of the first one; of
-      legs that are mirror images the lower number stands for both;
+    - bottomed out: a damper's stroke has passed `main_strut.stroke_max`, where it meets its stop. `time` when the first did;
     - slid: a footpad is further than the threshold from where it first touched. `time` when it first was;
     - moving: neither at rest nor lost at the end, which is `time`: run it longer;
     - settled: at rest since `time`.
+
+    `leg` is the first that bottomed out, whatever the name, else None; of legs that are mirror images the lower number stands for both.
+    What comes after toppling is meaningless and counts in the stability margins only.
 
     `margins` [m]: `stability_min` and `stability_end`, the smallest and the last `status.stability_margin`; `stroke_left` to the stop;
     `slid`, the farthest that a footpad lies at the end from where it first touched (inertial axes; the legs' spreading is in it);
@@ -88,9 +90,13 @@ def outcome(history: History, limits: Mapping[str, float] | None = None, slide: 
     if not slide >= 0.0:
         raise LandingError(f"slide = {slide:g} m must be 0 m or more")
     p = history.parameters
-    time = history.time
     legs, joints = _legs(p.drop.mode)
-    margin = history["status.stability_margin"]
+    phase, margin = history["status.phase"], history["status.stability_margin"]
+    toppled = bool(phase[-1] == TOPPLED)
+    if toppled:
+        over = _lasting(phase, TOPPLED) + 1
+        history = History(history.time[:over], history.names, history.data[:over], p)
+    time = history.time
     strokes = [history[f"leg[{leg}].main_strut.stroke"] for leg in legs]
     deepest = [float(s.max()) for s in strokes]
     stop = p.main_strut.stroke_max
@@ -102,15 +108,12 @@ def outcome(history: History, limits: Mapping[str, float] | None = None, slide: 
         "slid": max((float(s[-1]) for s in slips if len(s)), default=0.0),
         "joint_clearance": _joint_clearance(history, joints),
     }
-    phase = history["status.phase"]
     name: Name
-    leg: int | None = None
-    if phase[-1] == TOPPLED:
-        name, when = "toppled", float(time[_lasting(phase, TOPPLED)])
-    elif max(deepest) > stop:
-        name = "bottomed out"
-        first, leg = min((int(np.argmax(s > stop)), leg) for s, leg, most in zip(strokes, legs, deepest) if most > stop)
-        when = float(time[first])
+    met = [(int(np.argmax(s > stop)), leg) for s, leg, most in zip(strokes, legs, deepest) if most > stop]
+    if toppled:
+        name, when = "toppled", float(time[-1])
+    elif met:
+        name, when = "bottomed out", float(time[min(met)[0]])
     elif any(len(s) and s.max() > slide for s in slips):
         name = "slid"
         when = min(float(time[len(time) - len(s) + int(np.argmax(s > slide))]) for s in slips if len(s) and s.max() > slide)
@@ -118,6 +121,7 @@ def outcome(history: History, limits: Mapping[str, float] | None = None, slide: 
         name, when = "settled", float(time[_lasting(phase, SETTLED)])
     else:
         name, when = "moving", float(time[-1])
+    leg = min(met)[1] if met else None
     return Outcome(name, when, leg, margins, _first_limit(history, legs, limits) if limits else None)
 
 
