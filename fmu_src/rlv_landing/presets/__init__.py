@@ -118,6 +118,14 @@ def parse_value(q: Quantity, value: Any) -> float | str:
     return check_value(q, value)
 
 
+def unit_scale(q: Quantity, unit: str) -> float:
+    """How much of the unit of `q` one `unit` is: value_SI = scale * value. No unit is SI. Raises LandingError: unknown unit, or one of
+    another dimension."""
+    if unit in ("", q.unit):
+        return 1.0
+    return _with_unit(q, f"1 {unit.replace('.', '*')}")
+
+
 def _with_unit(q: Quantity, text: str) -> float:
     import pint
 

@@ -1,0 +1,70 @@
+"""What a study's results come to: counts of outcomes and failures, and the spread of each response."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .extras import arrow
+from .responses import known_responses
+
+SHOWN_FAILURES = 5
+
+
+@dataclass(frozen=True)
+class Spread:
+    """A response over the landings that have it: how many, smallest, 5 %, median, 95 %, largest [SI]."""
+
+    name: str
+    unit: str
+    count: int
+    quantiles: tuple[float, float, float, float, float]
+
+
+@dataclass
+class Summary:
+    """A study's results: `outcomes` counts names, `failures` are the first few (index, reason) of `failed`."""
+
+    landings: int
+    failed: int = 0
+    failures: list[tuple[int, str]] = field(default_factory=list)
+    outcomes: dict[str, int] = field(default_factory=dict)
+    spreads: list[Spread] = field(default_factory=list)
+
+    def record(self) -> dict[str, Any]:
+        """The same for JSON."""
+        names = ("min", "p5", "median", "p95", "max")
+        spreads = {s.name: {"unit": s.unit, "count": s.count, **dict(zip(names, s.quantiles))} for s in self.spreads}
+        failures = [{"index": index, "error": reason} for index, reason in self.failures]
+        return {"landings": self.landings, "failed": self.failed, "failures": failures, "outcomes": self.outcomes, "responses": spreads}
+
+
+def summarise_results(path: Path) -> Summary:
+    """Reads a results file a column at a time."""
+    _, parquet = arrow()
+    file = parquet.ParquetFile(path)
+    summary = Summary(file.metadata.num_rows)
+
+    def values(name: str) -> list[Any]:
+        read: list[Any] = file.read(columns=[name])[name].to_pylist()
+        return read
+
+    for index, reason in enumerate(values("error")):
+        if reason is not None:
+            summary.failed += 1
+            if len(summary.failures) < SHOWN_FAILURES:
+                summary.failures.append((index, reason))
+    known = known_responses()
+    for name in file.schema_arrow.names:
+        if name == "outcome":
+            found = [v for v in values(name) if v is not None]
+            summary.outcomes = {v: found.count(v) for v in sorted(set(found))}
+        elif name in known and known[name].kind == "real":
+            numbers = np.array([v for v in values(name) if v is not None], dtype=float)
+            if len(numbers):
+                low, p5, median, p95, high = map(float, np.quantile(numbers, (0.0, 0.05, 0.5, 0.95, 1.0)))
+                summary.spreads.append(Spread(name, known[name].unit, len(numbers), (low, p5, median, p95, high)))
+    return summary

@@ -1,0 +1,86 @@
+"""Keys of a study's TOML file, each checked as it is read: LandingError names key, value, unit, limit and remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from ..errors import LandingError, unknown
+from ..parameters import check_value
+from ..presets import parse_value
+from ..quantities import Quantity
+
+
+def table(document: Mapping[str, Any], key: str) -> dict[str, Any]:
+    """The table [key], empty where it is missing."""
+    value = document.get(key, {})
+    if not isinstance(value, dict):
+        raise LandingError(f"{key} = {value!r} must be a table: write [{key}] and its values below")
+    return value
+
+
+def tables(document: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
+    """The tables [[key]], in order."""
+    value = document.get(key, [])
+    if not isinstance(value, list) or not all(isinstance(v, dict) for v in value):
+        raise LandingError(f"{key} must be written [[{key}]], once for each, its values below")
+    return value
+
+
+def only(told: Iterable[str], known: Iterable[str], what: str) -> None:
+    """Refuse a key that is not known, with the nearest."""
+    known = list(known)
+    for key in told:
+        if key not in known:
+            raise unknown(what, key, known)
+
+
+def flat(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Dotted names of a table: `drop.tilt = 1` and `[drop] tilt = 1` are the same."""
+    found: dict[str, Any] = {}
+    for key, value in nested.items():
+        if isinstance(value, dict):
+            found.update(flat(value, f"{prefix}{key}."))
+        else:
+            found[f"{prefix}{key}"] = value
+    return found
+
+
+def values(nested: Mapping[str, Any], known: Mapping[str, Quantity], what: str) -> dict[str, float | str]:
+    """Values in SI by name, each a number in SI or a text with a unit."""
+    told = flat(nested)
+    only(told, known, what)
+    return {name: parse_value(known[name], value) for name, value in told.items()}
+
+
+def text(told: Mapping[str, Any], key: str, default: str) -> str:
+    """A text, not empty."""
+    value = told.get(key, default)
+    if not isinstance(value, str) or not value:
+        raise LandingError(f"{key} = {value!r} must be a text")
+    return value
+
+
+def texts(told: Mapping[str, Any], key: str) -> list[str] | None:
+    """A list of texts, not empty, none of them twice; None where it is missing."""
+    value = told.get(key)
+    if value is None:
+        return None
+    if not isinstance(value, list) or not value or not all(isinstance(v, str) for v in value):
+        raise LandingError(f"{key} = {value!r} must be a list of texts, not empty")
+    if len(set(value)) < len(value):
+        raise LandingError(f"{key} = {value!r} names one twice")
+    return value
+
+
+def whole(told: Mapping[str, Any], key: str, default: int, lowest: int, highest: int) -> int:
+    """A whole number within bounds."""
+    value = told.get(key, default)
+    if isinstance(value, bool) or not isinstance(value, int) or not lowest <= value <= highest:
+        raise LandingError(f"{key} = {value!r} must be a whole number from {lowest} to {highest}")
+    return value
+
+
+def number(told: Mapping[str, Any], q: Quantity) -> float:
+    """The number of the quantity `q`, in SI or a text with a unit; its default where it is missing."""
+    return float(parse_value(q, told[q.name]) if q.name in told else check_value(q, q.default))
