@@ -14,6 +14,7 @@ from . import __version__
 from .commands.audit import audit
 from .commands.identify import identify
 from .commands.options import check_writable, parameter_options
+from .commands.sensitivity import sensitivity
 from .commands.sweep import sweep
 from .commands.validate import validate
 from .errors import LandingError, nearest
@@ -58,6 +59,7 @@ def cli() -> None:
     rlv-landing identify --work identification         estimate what the paper does not print, or your vehicle's own
     rlv-landing audit                                  energy, mass, momentum, rest, convergence
     rlv-landing sweep study.toml                       many landings: factors in, a row of responses each
+    rlv-landing sensitivity study.toml                 which factors the responses depend on: Sobol indices
     rlv-landing node --mode 2-2                        the ROS 2 node: steps the FMU, publishes, records
     rlv-landing log info logs/NAME                     what a log holds
     rlv-landing animate logs/NAME landing.mp4          a log, or a landing, as a moving picture
@@ -175,6 +177,7 @@ cli.add_command(validate)
 cli.add_command(audit)
 cli.add_command(identify)
 cli.add_command(sweep)
+cli.add_command(sensitivity)
 
 
 def main() -> None:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from .studies.row import Task
+from .studies.sensitivity import Indices
 from .studies.sweep_summary import Summary
 from .tables import new_table, render
 
@@ -31,6 +35,30 @@ def summary_table(name: str, summary: Summary) -> str:
         lines.append(f"{summary.failed} failed; column `error` says why, the first:")
         lines += [f"  landing {index}: {reason}" for index, reason in summary.failures]
     return (render(table) if summary.spreads else "") + "".join(f"{line}\n" for line in lines)
+
+
+def indices_table(found: Sequence[Indices], level: float) -> str:
+    """First-order and total indices of every response and factor, with their intervals."""
+    table = new_table(
+        f"Sobol indices, {100.0 * level:g} % intervals",
+        ("response", "mode", "factor"),
+        ("first order", "from", "to", "total", "from", "to"),
+    )
+    lines = []
+    for f in found:
+        if np.isnan(f.total).any():
+            lines.append(f"{f.response}, {f.mode}: no indices: " + ("it does not vary" if f.used == f.samples else _incomplete(f)))
+            continue
+        if f.used < f.samples:
+            lines.append(f"{f.response}, {f.mode}: {_incomplete(f)}; others took the place of the rest")
+        for factor, first, total in zip(f.factors, f.first, f.total):
+            table.add_row(f.response.replace("[", r"\["), f.mode, factor, *(f"{v:.3f}" for v in (*first, *total)))
+        table.add_section()
+    return render(table) + "".join(f"{line}\n" for line in lines)
+
+
+def _incomplete(found: Indices) -> str:
+    return f"{found.used} of {found.samples} samples have it"
 
 
 def _text(value: Any) -> str:

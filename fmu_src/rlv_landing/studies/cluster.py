@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -36,8 +37,14 @@ class Cluster:
         self._timeout = timeout
 
     def submit(self, rows: Sequence[dict[str, Any]]) -> Any:
-        """Have these landings made."""
-        return self._client.submit(run_rows, self._plan, list(rows), pure=False)
+        """Have these landings made. Raises LostError where the scheduler is gone."""
+        try:
+            return self._client.submit(run_rows, self._plan, list(rows), pure=False)
+        except Exception as e:
+            raise self._gave_up(e) from None
+
+    def _gave_up(self, error: BaseException) -> LostError:
+        return LostError(f"the cluster at {self._address} gave up: {type(error).__name__}: {' '.join(str(error).split())}")
 
     def result(self, task: Any) -> Rows:
         """Wait for a task's rows. Raises LostError where the scheduler is gone, or every worker for longer than the timeout."""
@@ -50,7 +57,7 @@ class Cluster:
             except (TimeoutError, distributed.TimeoutError):
                 if self._client.status != "running":
                     raise LostError(f"the scheduler at {self._address} is gone") from None
-                if self._client.scheduler_info()["workers"]:
+                if self._threads():
                     alone_since = None
                 elif alone_since is None:
                     alone_since = time.monotonic()
@@ -59,12 +66,16 @@ class Cluster:
             except KeyboardInterrupt:
                 raise
             except BaseException as e:
-                raise LostError(f"the cluster at {self._address} gave up: {type(e).__name__}: {e}") from None
+                raise self._gave_up(e) from None
 
     def room(self) -> int:
         """Enough that no worker runs dry, however many there are now."""
-        threads: int = sum(w["nthreads"] for w in self._client.scheduler_info()["workers"].values())
-        return 4 * threads + 8
+        return 4 * self._threads() + 8
+
+    def _threads(self) -> int:
+        """How many threads the workers have just now; none where the scheduler is gone."""
+        workers: dict[str, dict[str, Any]] = self._client.scheduler_info().get("workers", {})
+        return sum(int(worker["nthreads"]) for worker in workers.values())
 
     def stop(self, tasks: Sequence[Any]) -> list[Rows]:
         """What is there already; the rest is cancelled."""
@@ -85,6 +96,9 @@ def cluster(plan: Plan, address: str, timeout: float) -> Iterator[Engine]:
     version of it.
     """
     distributed = dask()
+    # what goes wrong is told by our own errors, in a line
+    for name in ("distributed", "distributed.client"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         client = distributed.Client(address, timeout=timeout, set_as_default=False)
     except (OSError, ValueError, TimeoutError, distributed.TimeoutError) as e:

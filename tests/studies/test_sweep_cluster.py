@@ -1,0 +1,115 @@
+"""Sweeps on a real Dask cluster: a scheduler and two worker processes on this machine."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from distributed import Client, Scheduler
+from study_tools import rows, run, start, wait_for, write_study
+
+
+class Cluster:
+    """A scheduler at `address`, and its workers' processes."""
+
+    def __init__(self, folder: Path) -> None:
+        self.file = folder / "scheduler.json"
+        self.processes = [self._start("scheduler", "--port", "0", "--host", "127.0.0.1")]
+        wait_for(self.processes[0], self._is_there)
+        self.address: str = json.loads(self.file.read_text())["address"]
+        self.workers: dict[str, subprocess.Popen[str]] = {}
+
+    def _is_there(self) -> bool:
+        return self.file.exists() and self.file.read_text().endswith("}")
+
+    def _start(self, what: str, *options: str) -> subprocess.Popen[str]:
+        command = [sys.executable, "-m", f"distributed.cli.dask_{what}", "--no-dashboard", "--scheduler-file", str(self.file), *options]
+        return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True)
+
+    def with_workers(self, *names: str) -> Cluster:
+        """Have these workers, each a process of one thread that nobody restarts."""
+        for name in names:
+            if name not in self.workers or self.workers[name].poll() is not None:
+                self.workers[name] = self._start("worker", "--no-nanny", "--nthreads", "1", "--name", name)
+                self.processes.append(self.workers[name])
+        with Client(self.address) as client:
+            client.wait_for_workers(len(names), timeout=60)
+        return self
+
+    def wait_until_working(self, count: int) -> None:
+        """Until this many workers have landings to make."""
+
+        async def working(dask_scheduler: Scheduler) -> None:
+            while sum(bool(w.processing) for w in dask_scheduler.workers.values()) < count:
+                await asyncio.sleep(0.01)
+
+        with Client(self.address) as client:
+            client.sync(asyncio.wait_for, client.run_on_scheduler(working, asynchronous=True), 120)
+
+    def stop(self) -> None:
+        for process in self.processes:
+            process.kill()
+            process.wait()
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    started = Cluster(tmp_path_factory.mktemp("cluster"))
+    try:
+        yield started
+    finally:
+        started.stop()
+
+
+def test_a_scheduler_without_workers_is_said_so(cluster, tmp_path):
+    done = run("sweep", write_study(tmp_path), "--scheduler", cluster.address, "--timeout", 1, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "has no worker after 1 s" in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_a_cluster_that_loses_a_worker_in_mid_run_gives_the_very_rows_of_threads(cluster, tmp_path):
+    cluster.with_workers("one", "two")
+    study = write_study(tmp_path, samples=60, until=0.2)
+    assert run("sweep", study, "--results", "threads", cwd=tmp_path).returncode == 0
+    process = start("sweep", study, "--results", "cluster", "--scheduler", cluster.address, cwd=tmp_path)
+    cluster.wait_until_working(2)
+    cluster.workers["one"].kill()
+    assert process.poll() is None
+    _, err = process.communicate(timeout=200)
+    assert process.returncode == 0, err
+    files = [tmp_path / folder / "results.parquet" for folder in ("threads", "cluster")]
+    assert rows(files[1]) == rows(files[0])
+    assert files[1].read_bytes() == files[0].read_bytes()
+
+
+def test_a_scheduler_that_dies_in_mid_run_ends_the_sweep_and_threads_go_on_with_it(cluster, tmp_path):
+    cluster.with_workers("two")
+    study = write_study(tmp_path, samples=60, until=0.2)
+    process = start("sweep", study, "--results", "r", "--scheduler", cluster.address, "--timeout", 1, cwd=tmp_path)
+    cluster.wait_until_working(1)
+    cluster.processes[0].kill()
+    _, err = process.communicate(timeout=200)
+    assert process.returncode == 1, err
+    assert "--resume goes on" in err
+    assert len(err.strip().splitlines()) == 1
+    done = run("sweep", study, "--results", "r", "--resume", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert [row["index"] for row in rows(tmp_path / "r" / "results.parquet")] == list(range(120))
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:{port}", "nonsense://x"])
+def test_an_unreachable_scheduler_is_one_clear_line_within_the_timeout(tmp_path, address):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+    done = run("sweep", write_study(tmp_path), "--scheduler", address.format(port=port), "--timeout", 1, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "no Dask scheduler answers at" in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert not (tmp_path / "study").exists()
