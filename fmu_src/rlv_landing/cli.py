@@ -12,6 +12,7 @@ import click
 
 from . import __version__
 from .commands.audit import audit
+from .commands.envelope import envelope
 from .commands.identify import identify
 from .commands.options import check_writable, parameter_options
 from .commands.sensitivity import sensitivity
@@ -57,6 +58,7 @@ def cli() -> None:
     rlv-landing parameters --toml > mine.toml          a parameter file to edit
     rlv-landing validate --html report.html            every printed number and figure beside ours
     rlv-landing identify --work identification         estimate what the paper does not print, or your vehicle's own
+    rlv-landing envelope examples/envelope.toml        where landings turn from stable to lost, and what is critical there
     rlv-landing audit                                  energy, mass, momentum, rest, convergence
     rlv-landing sweep study.toml                       many landings: factors in, a row of responses each
     rlv-landing sensitivity study.toml                 which factors the responses depend on: Sobol indices
@@ -178,6 +180,7 @@ cli.add_command(audit)
 cli.add_command(identify)
 cli.add_command(sweep)
 cli.add_command(sensitivity)
+cli.add_command(envelope)
 
 
 def main() -> None:

@@ -1,0 +1,32 @@
+"""A landing until it is decided: at rest, toppled, or out of time."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..history import History
+from ..landing import Landing
+from .outcome import SETTLED, TOPPLED
+
+SLICE = 0.25
+
+
+def whole_landing(landing: Landing, until: float, every: float = 1e-3) -> History:
+    """Land from now until the vehicle is at rest, has toppled, or `until` [s]; outputs every `every` [s].
+
+    It is looked at every 0.25 s: at rest where `status.phase` is settled then; toppled where it was toppled at every sample of the last
+    0.25 s, for one that is beyond its feet for a moment may still come back. Raises LandingError as `Landing.run`.
+    """
+    per_slice = max(1, round(SLICE / every))
+    start, slices = landing.time, 0
+    parts: list[History] = []
+    while not parts or landing.time + 0.5 * every < until:
+        slices += 1
+        part = landing.run(min(start + slices * per_slice * every, until), every)
+        parts.append(part)
+        phase = part["status.phase"]
+        if phase[-1] == SETTLED or np.all(phase == TOPPLED):
+            break
+    time = np.concatenate([parts[0].time, *(p.time[1:] for p in parts[1:])])
+    data = np.concatenate([parts[0].data, *(p.data[1:] for p in parts[1:])])
+    return History(time, parts[0].names, data, landing.parameters)
