@@ -14,7 +14,7 @@ help:
 	@echo "make run [MODE=2-2|1-2-1]  land the prototype: FMU, ROS 2 node, MCAP log, table and picture"
 	@echo "make test                  the whole suite"
 	@echo "make torture               the long tests: thousands of damaged logs, a thousand turns of the node's lifecycle"
-	@echo "make bench                 time of a landing: compiled core, pure core, FMU; what the FMU costs FMPy; a full 3-D model"
+	@echo "make bench                 time of a landing: compiled core, pure core, FMU; what the FMU costs FMPy; node and replay; a full 3-D model"
 	@echo "make coverage              coverage, measured on the pure core"
 	@echo "make docs                  the pictures of the README and of the example, made anew"
 	@echo "make clean                 remove .venv and build (logs stay)"
@@ -58,6 +58,7 @@ torture: $(FMU)
 bench: $(FMU)
 	$(BIN)/python benchmarks/bench_landing.py
 	$(BIN)/python benchmarks/bench_fmu.py
+	$(BIN)/python benchmarks/bench_bridge.py
 	$(BIN)/python benchmarks/bench_quasi3d.py
 
 coverage: $(FMU)

@@ -1,0 +1,230 @@
+"""The ROS 2 node and the replay: how fast they are, what a sample costs, and how punctual they are beside a loop that only waits.
+
+- As fast as possible: a landing of 10 s in 1 ms steps, nobody listening, with all recorded and with nothing; the best of REPEATS. The
+  processor time of the landing's thread and of the whole process a sample, from the first sample to the last.
+- What of that is the FMU, the messages, the log: each by itself, over the same 10 s, in processor time.
+- Real time: the node lands at 1 kHz, records, and a subscriber in another process takes every sample; a replay plays the log's `struts`
+  to it. They take turns with a loop that waits for the same times and does nothing else (by `time.sleep` as the node, awake for the
+  last 0.3 ms as the replay): its lateness is the machine's own.
+
+Each run has a process of its own. Prints tables, and appends a row a case to `results.jsonl`.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from bench_landing import FMU, append_rows
+from rich.console import Console
+from rich.table import Table
+
+from rlv_ros_bridge.fmu_runner import FmuRunner
+from rlv_ros_bridge.messages import SampleBytes
+from rlv_ros_bridge.pacer import spread
+from rlv_ros_bridge.qos import TELEMETRY
+from rlv_ros_bridge.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.topics import SAMPLED
+
+STEP = 1e-3
+FAST_SECONDS, REPEATS = 10.0, 5
+ROUND_SECONDS, ROUNDS = 2.5, 4
+SPIN_SECONDS = 300e-6
+
+LAND = """
+import json, sys, time
+from rlv_ros_bridge.land import land
+from rlv_ros_bridge.landing_run import LandingRun
+from rlv_ros_bridge.ros_setup import StopFlag
+
+found, go_on = {}, LandingRun.go_on
+
+def measured(run, interrupted):
+    start = run._pacer.start
+    def begin(*arguments):
+        found.update(thread=time.thread_time(), process=time.process_time())
+        start(*arguments)
+    run._pacer.start = begin
+    go_on(run, interrupted)
+    found["thread"] = (time.thread_time() - found["thread"]) / run.samples
+    found["process"] = (time.process_time() - found["process"]) / run.samples
+    found["lateness"] = list(run._pacer.lateness)
+
+LandingRun.go_on = measured
+with StopFlag() as stop:
+    summary = land(json.loads(sys.argv[1]), [], stop)
+print(json.dumps({**found, "samples": summary.samples, "factor": summary.realtime_factor, "late_steps": summary.late_steps}))
+"""
+REPLAY = """
+import json, sys
+from rlv_ros_bridge.replay_node import ReplayNode, ReplayOptions, replay
+from rlv_ros_bridge.ros_setup import StopFlag
+
+found, play = {}, ReplayNode.play
+
+def measured(node):
+    summary = play(node)
+    found["lateness"] = list(node._lateness)
+    return summary
+
+ReplayNode.play = measured
+with StopFlag() as stop:
+    replay(ReplayOptions(**json.loads(sys.argv[1])), [], stop)
+print(json.dumps(found))
+"""
+LISTEN = """
+import sys
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import JointState
+
+heard = []
+with rclpy.init():
+    node = Node("bench_listener")
+    node.create_subscription(JointState, "/landing/struts", heard.append, QoSProfile(depth=10000), raw=True)
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    while len(heard) < int(sys.argv[1]):
+        executor.spin_once(timeout_sec=0.1)
+print(len(heard))
+"""
+
+
+def worker(code: str, *arguments: Any) -> list[str]:
+    """The command that runs `code`."""
+    return [sys.executable, "-c", code, *(a if isinstance(a, str) else json.dumps(a) for a in arguments)]
+
+
+def environment() -> dict[str, str]:
+    """A ROS domain that is this process's own."""
+    return {**os.environ, "ROS_DOMAIN_ID": str(1 + os.getpid() % 100)}
+
+
+def run(code: str, options: dict[str, Any], listen: int = 0) -> dict[str, Any]:
+    """What the worker found, with a subscriber that waits for `listen` samples in a process of its own."""
+    listener = subprocess.Popen(worker(LISTEN, listen), env=environment(), stdout=subprocess.PIPE) if listen else None
+    try:
+        done = subprocess.run(worker(code, options), env=environment(), stdout=subprocess.PIPE, text=True, check=True)
+        if listener is not None:
+            listener.wait(30.0)
+    finally:
+        if listener is not None:
+            listener.kill()
+            listener.communicate()
+    found: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+    return found
+
+
+def plain_loop(seconds: float, spin: float) -> list[float]:
+    """The lateness [s] of a loop that waits for every millisecond, the last `spin` [s] awake, and does nothing else."""
+    lateness = []
+    start = time.perf_counter()
+    for k in range(round(seconds / STEP) + 1):
+        due = start + k * STEP
+        while (left := due - time.perf_counter()) > 0.0:
+            if left > spin:
+                time.sleep(left - spin)
+        lateness.append(-left)
+    return lateness
+
+
+def cost(work: Callable[[], Any]) -> float:
+    """Processor time of `work` a sample [s]."""
+    start = time.thread_time()
+    work()
+    return (time.thread_time() - start) / (FAST_SECONDS / STEP)
+
+
+def parts(folder: Path) -> dict[str, float]:
+    """Processor time a sample [s] of the FMU's steps, its values, the messages, and the log."""
+    count = round(FAST_SECONDS / STEP)
+    samples: list[list[float]] = []
+    with FmuRunner(FMU, {}) as fmu:
+        steps = cost(lambda: [fmu.step(k, STEP) for k in range(count)])
+    with FmuRunner(FMU, {}) as fmu:
+        both = cost(lambda: [(fmu.step(k, STEP), samples.append(fmu.values())) for k in range(count)])
+    plain = SampleBytes()
+    recorder = Recorder(folder, [RecordedTopic(t.name, t.type_name, TELEMETRY) for t in SAMPLED])
+    sizes = {t.name: place.stop - place.start for t, place in zip(plain.topics, plain.places) if t in SAMPLED}
+    packer = SampleBytes(dict(zip(plain.topics[1:], recorder.begin_samples(sizes))))
+    records = slice(packer.places[0].stop, None)
+    packed: list[bytes] = []
+    pack = cost(lambda: [packed.append(packer.pack(k * 1_000_000, values, k)) for k, values in enumerate(samples)])
+
+    def record() -> None:
+        for k, data in enumerate(packed):
+            recorder.write_sample(k * 1_000_000, data[records])
+            recorder.flush()
+
+    log = cost(record)
+    recorder.close()
+    return {"FMU: step": steps, "FMU: all outputs": max(0.0, both - steps), "messages": pack, "log": log}
+
+
+def fast(folder: Path) -> list[dict[str, Any]]:
+    """The landing as fast as possible, and its parts; the best of REPEATS each."""
+    best: dict[str, dict[str, float]] = {}
+    for i in range(REPEATS):
+        for case, record in (("recorded", str(folder / f"fast-{i}")), ("not recorded", "")):
+            options = {"fmu": str(FMU), "realtime_factor": 0.0, "step_size": STEP, "stop_time": FAST_SECONDS, "record": record}
+            found = run(LAND, options)
+            better = best.setdefault(case, {"factor": 0.0, "thread": 1.0, "process": 1.0})
+            better["factor"] = max(better["factor"], found["factor"])
+            for key in ("thread", "process"):
+                better[key] = min(better[key], found[key])
+        for part, seconds in parts(folder / f"parts-{i}").items():
+            better = best.setdefault(part, {"thread": 1.0})
+            better["thread"] = min(better["thread"], seconds)
+    return [{"case": f"bridge fast: {case}", **figures} for case, figures in best.items()]
+
+
+def punctual(folder: Path) -> list[dict[str, Any]]:
+    """Lateness in real time, of all rounds together."""
+    lateness: dict[str, list[float]] = {"node": [], "plain loop, sleeping": [], "replay": [], "plain loop, awake": []}
+    samples = round(ROUND_SECONDS / STEP) + 1
+    for i in range(ROUNDS):
+        log = str(folder / f"log-{i}")
+        options = {"fmu": str(FMU), "step_size": STEP, "stop_time": ROUND_SECONDS, "wait_for_subscribers": 1}
+        lateness["node"] += run(LAND, {**options, "record": log}, listen=samples)["lateness"]
+        lateness["plain loop, sleeping"] += plain_loop(ROUND_SECONDS, 0.0)
+        options = {"path": log, "topics": ["struts"], "wait_for_subscribers": 1}
+        lateness["replay"] += run(REPLAY, options, listen=samples)["lateness"]
+        lateness["plain loop, awake"] += plain_loop(ROUND_SECONDS, SPIN_SECONDS)
+    names = ("median", "p99", "largest")
+    return [{"case": f"bridge lateness: {case}", "samples": len(v), **dict(zip(names, spread(v)))} for case, v in lateness.items()]
+
+
+def main() -> None:
+    load = os.getloadavg()[0]
+    with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
+        speeds, figures = fast(Path(name)), punctual(Path(name))
+    table = Table(title=f"As fast as possible: best of {REPEATS}, load {load:.1f} on {os.cpu_count()} cores", title_justify="left")
+    for heading in ("case", "times real time", "thread [us]", "process [us]"):
+        table.add_column(heading, justify="left" if heading == "case" else "right")
+    for row in speeds:
+        factor = f"{row['factor']:.1f}" if "factor" in row else ""
+        process = f"{1e6 * row['process']:.1f}" if "process" in row else ""
+        table.add_row(row["case"].split(": ", 1)[1], factor, f"{1e6 * row['thread']:.1f}", process)
+    table.caption = "processor time a sample"
+    Console(width=110).print(table)
+    table = Table(title=f"Lateness at 1 kHz, {ROUNDS} rounds of {ROUND_SECONDS:g} s in turn", title_justify="left")
+    for heading in ("case", "samples", "median [us]", "99 % [us]", "largest [ms]"):
+        table.add_column(heading, justify="left" if heading == "case" else "right")
+    for row in figures:
+        times = f"{1e6 * row['median']:.0f}", f"{1e6 * row['p99']:.0f}", f"{1e3 * row['largest']:.2f}"
+        table.add_row(row["case"].split(": ", 1)[1], str(row["samples"]), *times)
+    Console(width=110).print(table)
+    append_rows([{**row, "load": load} for row in (*speeds, *figures)])
+
+
+if __name__ == "__main__":
+    main()
