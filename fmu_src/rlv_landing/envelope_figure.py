@@ -66,7 +66,7 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
     figure.legend(named.values(), named.keys(), loc="outside lower center", frameon=False, fontsize="small", ncols=2)
     told = f"lost: {envelope.study.criterion}; {envelope.landings} landings (a uniform grid: {envelope.uniform})"
     figure.suptitle(told, fontsize="medium", x=0.01, ha="left")
-    with mpl.rc_context({"svg.hashsalt": "envelope"}):
+    with mpl.rc_context({"svg.hashsalt": "envelope", "svg.fonttype": "none"}):
         figure.savefig(path, dpi=110, metadata={"Date": None} if Path(path).suffix == ".svg" else None)
 
 
