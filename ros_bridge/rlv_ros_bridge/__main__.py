@@ -1,4 +1,4 @@
-"""`python -m rlv_ros_bridge node|replay|log|animate`: the bridge's commands without the `rlv-landing` front."""
+"""`python -m rlv_ros_bridge node|replay|log|animate|view`: the bridge's commands without the `rlv-landing` front."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from .cli import replay
 from .log_cli import log
 from .node_command import node
 from .picture_cli import animate
+from .view_cli import view
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -23,6 +24,7 @@ main.add_command(node)
 main.add_command(replay)
 main.add_command(log)
 main.add_command(animate)
+main.add_command(view)
 
 
 def run() -> int:

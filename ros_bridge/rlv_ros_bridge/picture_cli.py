@@ -11,6 +11,7 @@ import click
 from rlv_landing.commands.options import check_writable, parameter_options
 from rlv_landing.errors import LandingError
 
+from .interruption import ends_tidily
 from .log_cli import EXIT_CUT, WIDE, require_log_readers
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ def animate(
       rlv-landing animate logs/20260131T120000Z-2-2 landing.mp4
       rlv-landing animate --mode 1-2-1 landing.gif --slow-motion 10 --end 0.5 --view 3d
 
-    Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged, 130 interrupted: no file is left.
+    Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged, 130 or 143 ended by SIGINT or SIGTERM: no file is left.
     """
     from tqdm import tqdm
 
@@ -59,12 +60,12 @@ def animate(
     given = (preset, file, mode, pairs)
     cut = False
     if len(files) == 2:
-        history, parameters, cut = _from_log(files[0], given)
+        history, parameters, cut = landing_of_log(files[0], given)
         title = files[0].name
     else:
         history, parameters = _landed(given, film["end"])
         title = f"{parameters.drop.mode} landing"
-    with tqdm(unit="frame", desc="drawing", disable=not sys.stderr.isatty()) as bar:
+    with ends_tidily(), tqdm(unit="frame", desc="drawing", disable=not sys.stderr.isatty()) as bar:
 
         def tell(done: int, frames: int) -> None:
             bar.total = frames
@@ -73,8 +74,13 @@ def animate(
         made = save_animation(history, parameters, output, title, Film(**film), tell)
     click.echo(f"{output}: {made.frames} frames at {made.fps:.4g} a second, {film['slow_motion']:g} times slower than it was")
     if cut:
-        click.echo(f"warning: {files[0]} is cut or damaged; what is whole was drawn, `rlv-landing log recover` saves it", err=True)
+        tell_drawn(files[0])
         sys.exit(EXIT_CUT)
+
+
+def tell_drawn(log: Path) -> None:
+    """Warns that not all of the log is there."""
+    click.echo(f"warning: {log} is cut or damaged; what is whole was drawn, `rlv-landing log recover` saves it", err=True)
 
 
 def _landed(given: tuple[Any, ...], end: float | None) -> tuple[History, Parameters]:
@@ -87,7 +93,11 @@ def _landed(given: tuple[Any, ...], end: float | None) -> tuple[History, Paramet
     return Landing(parameters).run(until, 1e-3), parameters
 
 
-def _from_log(path: Path, given: tuple[Any, ...]) -> tuple[History, Parameters, bool]:
+def landing_of_log(path: Path, given: tuple[Any, ...]) -> tuple[History, Parameters, bool]:
+    """The landing in the log at `path`, its vehicle, and whether the log is cut or damaged; `given`: options that name a vehicle.
+
+    Raises LandingError: no such log, no landing in it, or a vehicle that is named both ways or not at all.
+    """
     require_log_readers()
     from .bag_reader import open_log
     from .log_history import read_history

@@ -1,0 +1,71 @@
+"""Fixtures of the viewer's tests: those of the bridge's, a browser, and what a viewer shows in it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "ros"))
+
+from bridge_tools import log, new_domain, one_log, processes, start  # noqa: F401
+from sight import HEIGHT, WIDTH, Outside, Started, free_port
+
+CHROMIUM = Path(os.environ.get("RLV_CHROMIUM", Path(__file__).resolve().parent.parent.parent / "build" / "chromium"))
+# No graphics card, no sandbox of its own (CI is root), and nothing that Chromium does by itself in the background.
+SWITCHES = (
+    "--no-sandbox", "--no-zygote", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def outside() -> Iterator[Outside]:
+    """All the world but this machine: what the browser wants of it."""
+    with Outside() as world:
+        yield world
+
+
+@pytest.fixture(scope="module")
+def browser(outside: Outside, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    """Chromium, from build/chromium, which `make test` fetches."""
+    assert (CHROMIUM / "chromium").is_file(), f"{CHROMIUM} has no Chromium: make build/chromium/.packages"
+    home = tmp_path_factory.mktemp("home")
+    environment = {"LD_LIBRARY_PATH": str(CHROMIUM / "lib"), "FONTCONFIG_PATH": str(CHROMIUM), "HOME": str(home), "TMPDIR": str(home)}
+    with sync_playwright() as playwright:
+        found = playwright.chromium.launch(
+            executable_path=CHROMIUM / "chromium",
+            args=[*SWITCHES],
+            env=environment,
+            proxy={"server": outside.address, "bypass": "127.0.0.1"},
+        )
+        yield found
+        found.close()
+
+
+@pytest.fixture(scope="module")
+def page(browser: Browser) -> Page:
+    """A page in the browser."""
+    return browser.new_page(viewport={"width": WIDTH, "height": HEIGHT})
+
+
+@pytest.fixture
+def viewing(processes: list[subprocess.Popen[str]]) -> Callable[..., Started]:  # noqa: F811
+    """`viewing(*arguments)`: the command `view`, started; its process, the address that it told, and its port."""
+
+    def begin(*arguments: Any, domain: int | None = None) -> Started:
+        port = free_port()
+        view = start("view", *arguments, "--no-browser", "--port", port, domain=domain or new_domain())
+        processes.append(view)
+        assert view.stdout is not None
+        address = view.stdout.readline().strip()
+        assert address.startswith(f"http://127.0.0.1:{port}/"), address + (view.stderr.read() if view.stderr else "")
+        return view, address, port
+
+    return begin
