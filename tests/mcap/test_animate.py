@@ -169,7 +169,8 @@ def test_without_ffmpeg_the_error_says_what_to_install(
     assert not list(tmp_path.iterdir())
 
 
-def test_ctrl_c_leaves_no_half_film(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_leaves_no_half_film(tmp_path: Path, number: signal.Signals, code: int) -> None:
     program = [sys.executable, "-c", "from rlv_landing.cli import main; main()", "animate", "--mode", "2-2", str(tmp_path / "l.mp4")]
     options = ["--slow-motion", "100", "--width", "320"]
     process = subprocess.Popen([*program, *options], env=environment(), stderr=subprocess.PIPE, text=True, start_new_session=True)
@@ -178,9 +179,11 @@ def test_ctrl_c_leaves_no_half_film(tmp_path: Path) -> None:
         assert process.poll() is None
         assert time.monotonic() < deadline
         time.sleep(0.01)
-    os.killpg(process.pid, signal.SIGINT)
+    os.killpg(process.pid, number)
     _, told = process.communicate(timeout=TIMEOUT)
-    assert (process.returncode, told.splitlines()[-1]) == (130, "interrupted")
+    assert process.returncode == code
+    assert [line for line in told.splitlines() if "Traceback" in line or "error" in line] == []
+    assert number is signal.SIGTERM or told.splitlines()[-1] == "interrupted"
     assert not list(tmp_path.iterdir())
 
 
