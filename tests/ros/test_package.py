@@ -29,7 +29,14 @@ def test_colcon_builds_the_package_and_its_node_lands(fmu: Path, tmp_path: Path)
     assert done.returncode == 0, done.stdout + done.stderr
     installed = tmp_path / "install" / "rlv_ros_bridge"
     share = installed / "share" / "rlv_ros_bridge"
-    for file in ("package.xml", "launch/landing.launch.py", "config/landing.yaml", "config/landing.rviz", "config/foreign_dds.xml"):
+    for file in (
+        "package.xml",
+        "launch/landing.launch.py",
+        "config/landing.yaml",
+        "config/landing.rviz",
+        "config/foxglove.json",
+        "config/foreign_dds.xml",
+    ):
         assert (share / file).is_file(), file
     assert (installed / "share" / "ament_index" / "resource_index" / "packages" / "rlv_ros_bridge").is_file()
     (site,) = (installed / "lib").glob("python*/site-packages")
