@@ -17,7 +17,7 @@ help:
 	@echo "make torture               the long tests: thousands of damaged logs, a thousand turns of the node's lifecycle"
 	@echo "make bench                 time of a landing: compiled core, pure core, FMU; what the FMU costs FMPy; node and replay; a full 3-D model"
 	@echo "make coverage              coverage, measured on the pure core"
-	@echo "make docs                  the pictures of the README and of the example, made anew"
+	@echo "make docs                  the pictures of the README, of docs and of the example, made anew (some minutes)"
 	@echo "make clean                 remove .venv and build (logs stay)"
 
 $(VENV)/.packages: pyproject.toml
@@ -73,6 +73,8 @@ coverage: $(FMU)
 docs: $(FMU)
 	$(BIN)/rlv-landing simulate --mode 2-2 --plot docs/landing-2-2.png --force
 	$(BIN)/rlv-landing animate --mode 2-2 docs/landing-2-2.gif --fps 20 --end 0.6 --width 880 --force
+	rm -rf build/envelope
+	$(BIN)/rlv-landing envelope examples/envelope.toml --work build/envelope --plot docs/envelope.png --force
 	$(BIN)/python examples/ship_deck/run.py --picture examples/ship_deck/ship_deck.png
 
 clean:

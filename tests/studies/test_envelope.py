@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
+import sys
 from math import radians
+from pathlib import Path
 
 import pytest
 from pytest import approx
@@ -15,6 +18,12 @@ from rlv_landing.studies.envelope_study import CRITERIA, Axis, EnvelopeStudy, st
 from rlv_landing.studies.landed import FAILED, Landed, land
 from rlv_landing.studies.outcome import SEVERITY, outcome
 
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+ROOT = Path(__file__).resolve().parent.parent.parent
 V, TILT = "drop.horizontal_velocity", "drop.tilt"
 GRIPPING = load_preset("yue2022-figures").with_values({"ground.friction": 0.7, "drop.pitch_rate": 0.0, "drop.contact_time": 0.0})
 LIMITS = {"main_strut.force": 9e3, "contact.force": 2e4}
@@ -134,6 +143,13 @@ def test_inputs_are_axes_too():
     (family,) = envelope(study).families
     assert verdict(family, "toppled") == "boundary found"
     assert all(landed.towards == "+x" for x, _, landed in family.landings if x == 4000.0)
+
+
+@pytest.mark.parametrize("source", ["docs/envelope.md", "examples/envelope.toml"])
+def test_the_studies_that_are_shown_can_be_read(source):
+    text = (ROOT / source).read_text(encoding="utf-8")
+    study = study_from(tomllib.loads(re.findall(r"```toml\n(.*?)```", text, re.S)[0] if source.endswith(".md") else text))
+    assert (len(study.families), study.lattice.uniform) == (6, 193 * 97)
 
 
 AXES = {"x": {"name": V, "low": -6, "high": 6, "tolerance": 0.5}, "y": {"name": TILT, "low": "-12 deg", "high": "12 deg"}}
