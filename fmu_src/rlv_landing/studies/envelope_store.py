@@ -33,15 +33,15 @@ class Store:
         self._file = path.open("a+", encoding="ascii", newline="\n")
         self._file.seek(0)
         lines = self._file.read().splitlines(keepends=True)
-        # a line that was being written when the last run was killed
-        if lines and not lines[-1].endswith("\n"):
-            self._file.truncate(sum(map(len, lines[:-1])))
-            del lines[-1]
         if not lines:
             self._file.write(header + "\n")
-        elif lines[0].rstrip() != header:
+        elif lines[0] != header + "\n":
             self._file.close()
             raise LandingError(f"{path} holds landings of another study or version; name another folder")
+        elif not lines[-1].endswith("\n"):
+            # it was being written when the last run was killed
+            self._file.truncate(sum(map(len, lines[:-1])))
+            del lines[-1]
         for line in lines[1:]:
             record = json.loads(line)
             self.found[record["family"], (record["i"], record["j"])] = Landed.from_record(record["landed"])
