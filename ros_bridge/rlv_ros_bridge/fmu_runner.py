@@ -149,7 +149,7 @@ class FmuRunner:
 
     def _let_go(self) -> Any:
         slave, self._slave = self._slave, None
-        self._component, self._reads = None, []
+        self._component, self._reads, self._reals = None, [], None
         return slave
 
     def _reason(self, otherwise: str) -> str:

@@ -16,7 +16,7 @@ from std_msgs.msg import String
 
 from rlv_landing import Landing, load_preset
 from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.quantities import INPUT_NAMES, OUTPUT_NAMES
+from rlv_landing.quantities import INPUT_NAMES, OUTPUT_NAMES, STATISTIC_QUANTITIES
 from rlv_ros_bridge.log_reader import LogReader
 from rlv_ros_bridge.node_settings import SETTINGS
 
@@ -62,7 +62,7 @@ def test_transitions_load_land_pause_and_free(managed: tuple[subprocess.Popen[st
     assert remote.change(CONFIGURE)
     assert remote.state() == "inactive"
     listed = json.loads(remote.first(String, "/landing/variables").data)
-    assert [v["name"] for v in listed] == [*PARAMETER_QUANTITIES, *INPUT_NAMES, *OUTPUT_NAMES]
+    assert [v["name"] for v in listed] == [*PARAMETER_QUANTITIES, *INPUT_NAMES, *OUTPUT_NAMES, *(q.name for q in STATISTIC_QUANTITIES)]
     assert list((tmp_path / "tmp").glob("rlv-landing-fmu-*"))
     assert remote.set(realtime_factor=0.5)[0].successful
     assert remote.change(ACTIVATE)
