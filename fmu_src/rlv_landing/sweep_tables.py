@@ -28,9 +28,12 @@ def plan_table(task: Task) -> str:
 def summary_table(name: str, summary: Summary) -> str:
     """Outcomes, failures, and the spread of each response."""
     table = new_table(f"{name}: {summary.landings} landings", ("response", "unit"), ("landings", "min", "5 %", "median", "95 %", "max"))
-    for s in summary.spreads:
+    shown = [s for s in summary.spreads if not s.name.startswith("leg[")] or summary.spreads
+    for s in shown:
         table.add_row(s.name.replace("[", r"\["), s.unit, str(s.count), *map(_text, s.quantiles))
     lines = [", ".join(f"{count} {outcome}" for outcome, count in summary.outcomes.items())] if summary.outcomes else []
+    if len(shown) < len(summary.spreads):
+        lines.append(f"{len(summary.spreads) - len(shown)} more, of single legs, are in the results and in --json")
     if summary.failed:
         lines.append(f"{summary.failed} failed; column `error` says why, the first:")
         lines += [f"  landing {index}: {reason}" for index, reason in summary.failures]

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -69,8 +69,9 @@ def start(*arguments: object, cwd: Path) -> subprocess.Popen[str]:
 def wait_for(process: subprocess.Popen[str], condition: Callable[[], bool]) -> None:
     """Until the condition holds; fails if the process ends before."""
     while not condition():
-        assert process.poll() is None, process.communicate()[1]
-        os.sched_yield()
+        with suppress(subprocess.TimeoutExpired):
+            process.wait(0.02)
+            raise AssertionError(process.communicate()[1])
 
 
 def rows(path: Path) -> list[dict[str, Any]]:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from distributed import Client, Scheduler
-from study_tools import rows, run, start, wait_for, write_study
+from study_tools import rows, start, wait_for, write_study
 
 
 class Cluster:
@@ -67,17 +67,17 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
         started.stop()
 
 
-def test_a_scheduler_without_workers_is_said_so(cluster, tmp_path):
-    done = run("sweep", write_study(tmp_path), "--scheduler", cluster.address, "--timeout", 1, cwd=tmp_path)
-    assert done.returncode == 2
-    assert "has no worker after 1 s" in done.stderr
-    assert len(done.stderr.strip().splitlines()) == 1
+def test_a_scheduler_without_workers_is_said_so(cluster, tmp_path, command):
+    done = command("sweep", str(write_study(tmp_path)), "--scheduler", cluster.address, "--timeout", "1")
+    assert done.code == 2
+    assert "has no worker after 1 s" in done.err
+    assert len(done.err.strip().splitlines()) == 1
 
 
-def test_a_cluster_that_loses_a_worker_in_mid_run_gives_the_very_rows_of_threads(cluster, tmp_path):
+def test_a_cluster_that_loses_a_worker_in_mid_run_gives_the_very_rows_of_threads(cluster, tmp_path, command):
     cluster.with_workers("one", "two")
     study = write_study(tmp_path, samples=60, until=0.2)
-    assert run("sweep", study, "--results", "threads", cwd=tmp_path).returncode == 0
+    assert command("sweep", str(study), "--results", str(tmp_path / "threads")).code == 0
     process = start("sweep", study, "--results", "cluster", "--scheduler", cluster.address, cwd=tmp_path)
     cluster.wait_until_working(2)
     cluster.workers["one"].kill()
@@ -89,7 +89,7 @@ def test_a_cluster_that_loses_a_worker_in_mid_run_gives_the_very_rows_of_threads
     assert files[1].read_bytes() == files[0].read_bytes()
 
 
-def test_a_scheduler_that_dies_in_mid_run_ends_the_sweep_and_threads_go_on_with_it(cluster, tmp_path):
+def test_a_scheduler_that_dies_in_mid_run_ends_the_sweep_and_threads_go_on_with_it(cluster, tmp_path, command):
     cluster.with_workers("two")
     study = write_study(tmp_path, samples=60, until=0.2)
     process = start("sweep", study, "--results", "r", "--scheduler", cluster.address, "--timeout", 1, cwd=tmp_path)
@@ -99,17 +99,19 @@ def test_a_scheduler_that_dies_in_mid_run_ends_the_sweep_and_threads_go_on_with_
     assert process.returncode == 1, err
     assert "--resume goes on" in err
     assert len(err.strip().splitlines()) == 1
-    done = run("sweep", study, "--results", "r", "--resume", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
+    done = command("sweep", str(study), "--results", str(tmp_path / "r"), "--resume")
+    assert done.code == 0, done.err
     assert [row["index"] for row in rows(tmp_path / "r" / "results.parquet")] == list(range(120))
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:{port}", "nonsense://x"])
-def test_an_unreachable_scheduler_is_one_clear_line_within_the_timeout(tmp_path, address):
+def test_an_unreachable_scheduler_is_one_clear_line_within_the_timeout(tmp_path, command, address):
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = taken.getsockname()[1]
-    done = run("sweep", write_study(tmp_path), "--scheduler", address.format(port=port), "--timeout", 1, cwd=tmp_path)
-    assert done.returncode == 2
-    assert "no Dask scheduler answers at" in done.stderr
-    assert len(done.stderr.strip().splitlines()) == 1
-    assert not (tmp_path / "study").exists()
+    results = tmp_path / "r"
+    study = str(write_study(tmp_path))
+    done = command("sweep", study, "--results", str(results), "--scheduler", address.format(port=port), "--timeout", "0.5")
+    assert done.code == 2
+    assert "no Dask scheduler answers at" in done.err
+    assert len(done.err.strip().splitlines()) == 1
+    assert not results.exists()

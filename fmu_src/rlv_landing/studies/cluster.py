@@ -100,6 +100,7 @@ def cluster(plan: Plan, address: str, timeout: float) -> Iterator[Engine]:
     for name in ("distributed", "distributed.client"):
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
+        distributed.comm.registry.get_backend(distributed.comm.parse_address(address)[0])
         client = distributed.Client(address, timeout=timeout, set_as_default=False)
     except (OSError, ValueError, TimeoutError, distributed.TimeoutError) as e:
         raise LandingError(

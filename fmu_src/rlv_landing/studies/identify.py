@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import LandingError
+from .files import replace_file
 from .objective import Objective
 
 STEP = 1e-3
@@ -113,9 +114,9 @@ class Search:
     def save(self) -> None:
         """Write best point and search state, each to a temporary name first."""
         told = {**asdict(self.best), "labels": self.labels, "targets": self.objective.labels, "start_loss": self.start_loss}
-        _write(self.folder / "best.json", json.dumps(told, indent=1).encode())
+        replace_file(self.folder / "best.json", json.dumps(told, indent=1).encode())
         if self._strategy is not None:
-            _write(self.folder / "search.pickle", pickle.dumps(self._strategy))
+            replace_file(self.folder / "search.pickle", pickle.dumps(self._strategy))
 
     def explore(self, evaluations: int, progress: Callable[[int, float], object], sigma: float = 0.1, population: int = 32) -> None:
         """Global search by CMA-ES until `evaluations` landings of both modes have been tried in all, or it has converged.
@@ -170,9 +171,3 @@ def folded(z: Sequence[float]) -> NDArray[np.float64]:
     turned = np.abs(np.asarray(z, dtype=float)) % 2.0
     inside: NDArray[np.float64] = np.where(turned > 1.0, 2.0 - turned, turned)
     return inside
-
-
-def _write(path: Path, data: bytes) -> None:
-    temporary = path.with_name(path.name + ".part")
-    temporary.write_bytes(data)
-    temporary.replace(path)

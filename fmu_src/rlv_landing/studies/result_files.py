@@ -35,7 +35,7 @@ LEADING = (
     Quantity("", "the study's seed", name="seed", kind="integer"),
 )
 PART_ROWS = 1000
-PART_SECONDS = 5.0
+PART_SECONDS = 1.0
 GROUP_ROWS = 10_000
 
 

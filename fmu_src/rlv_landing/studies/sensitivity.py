@@ -62,7 +62,8 @@ def sobol_design(study: Study) -> Design:
         raise LandingError("Sobol indices share variance out between factors; the study needs two [[factor]] or more")
     n = study.samples
     if n < 2 or n & (n - 1):
-        raise LandingError(f"Sobol indices need samples = a power of 2, for example 256 or 1024; the study's is {n or 'not given'}")
+        told = f"this {study.method} has samples = {n}" if n else f"a {study.method} has none"
+        raise LandingError(f'Sobol indices need samples = a power of 2, for example 256 or 1024, with method = "sobol" or "lhs"; {told}')
     places = unit_points("sobol", n, 2 * len(study.factors), study.seed)
     a, b = ([f.at(half[:, i]) for i, f in enumerate(study.factors)] for half in np.hsplit(places, 2))
     blocks = len(study.factors) + 2

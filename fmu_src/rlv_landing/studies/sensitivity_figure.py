@@ -26,7 +26,7 @@ def save_bars(found: Sequence[Indices], path: Path, title: str) -> None:
     axes = figure.subplots(down, across, squeeze=False, sharex=True).ravel()
     for axis, indices in zip(axes, shown):
         for offset, values, label, color in ((-0.2, indices.first, "alone", "tab:blue"), (0.2, indices.total, "in all", "tab:orange")):
-            reach = np.abs(values[:, 1:] - values[:, :1]).T
+            reach = np.maximum(0.0, [values[:, 0] - values[:, 1], values[:, 2] - values[:, 0]])
             axis.barh(np.arange(len(factors)) + offset, values[:, 0], 0.38, xerr=reach, label=label, color=color, ecolor="0.3", capsize=2)
         axis.set_yticks(np.arange(len(factors)), factors, fontsize=8)
         axis.invert_yaxis()

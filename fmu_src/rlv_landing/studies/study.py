@@ -126,6 +126,9 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
     table = _states(told, method, path, given)
     if table is None and not factors:
         raise LandingError('the study varies nothing; add a [[factor]], or method = "table" with table = "FILE.csv"')
+    samples = _samples(told, method)
+    if method == "grid":
+        grid(factors)
     parameters = _parameters(told, path, fixed)
     numbers = {name: toml_keys.number(told, q) for name, q in NUMBERS.items()}
     if numbers["every"] > numbers["until"]:
@@ -137,7 +140,7 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
     return Study(
         name=name,
         method=method,
-        samples=_samples(told, method),
+        samples=samples,
         seed=toml_keys.whole(told, "seed", 1, 0, 2**31 - 1),
         parameters=parameters,
         modes=_modes(told, parameters, {*given, *(table.columns if table is not None else ())}),
