@@ -35,6 +35,8 @@ class Cluster:
         self._client = client
         self._address = address
         self._timeout = timeout
+        self._looked = -LOOK
+        self._found = 0
 
     def submit(self, rows: Sequence[dict[str, Any]]) -> Any:
         """Have these landings made. Raises LostError where the scheduler is gone."""
@@ -73,9 +75,12 @@ class Cluster:
         return 4 * self._threads() + 8
 
     def _threads(self) -> int:
-        """How many threads the workers have just now; none where the scheduler is gone."""
-        workers: dict[str, dict[str, Any]] = self._client.scheduler_info().get("workers", {})
-        return sum(int(worker["nthreads"]) for worker in workers.values())
+        """How many threads the workers have, as of a second ago at most: asking the scheduler costs as much as a task."""
+        if time.monotonic() - self._looked >= LOOK:
+            workers: dict[str, dict[str, Any]] = self._client.scheduler_info().get("workers", {})
+            self._found = sum(int(worker["nthreads"]) for worker in workers.values())
+            self._looked = time.monotonic()
+        return self._found
 
     def stop(self, tasks: Sequence[Any]) -> list[Rows]:
         """What is there already; the rest is cancelled."""
