@@ -19,6 +19,15 @@ PRIMITIVES = frozenset(("bool", "byte", "char", "float32", "float64", "string", 
 FIELD = re.compile(r"^\s*([A-Za-z][A-Za-z0-9_/]*)(?:<=\d+)?(?:\[[^\]]*\])?\s+[A-Za-z]\w*")
 
 
+# Types of which there is no wheel: their text and their hash.
+WITHOUT_WHEEL = {
+    "tf2_msgs/msg/TFMessage": (
+        "geometry_msgs/TransformStamped[] transforms\n",
+        "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087",
+    )
+}
+
+
 @dataclass(frozen=True)
 class Definition:
     """A message type `pkg/msg/Type`: its text in the form of MCAP's `ros2msg` schema, and its hash (`RIHS01_...`)."""
@@ -36,7 +45,7 @@ def definition(name: str) -> Definition:
     while queue:
         current = queue.pop(0)
         if current not in done:
-            done[current] = _folder(current).joinpath(current.rsplit("/", 1)[1] + ".msg").read_text(encoding="utf-8")
+            done[current] = _text(current)
             queue += dependencies(current, done[current])
     parts = [done.pop(name)]
     for dependency, text in done.items():
@@ -58,7 +67,15 @@ def dependencies(name: str, text: str) -> list[str]:
     return list(dict.fromkeys(found))
 
 
+def _text(name: str) -> str:
+    if name in WITHOUT_WHEEL:
+        return WITHOUT_WHEEL[name][0]
+    return _folder(name).joinpath(name.rsplit("/", 1)[1] + ".msg").read_text(encoding="utf-8")
+
+
 def _type_hash(name: str) -> str:
+    if name in WITHOUT_WHEEL:
+        return WITHOUT_WHEEL[name][1]
     file = _folder(name) / (name.rsplit("/", 1)[1] + ".json")
     try:
         hashes = json.loads(file.read_text(encoding="utf-8"))["type_hashes"]

@@ -23,7 +23,7 @@ from .input_queue import InputQueue
 from .landing_run import LandingRun
 from .landing_services import offer_services
 from .live import LivePublisher, Outlet
-from .message_types import message_class
+from .message_types import is_installed, message_class
 from .node_parameters import NodeParameters
 from .node_settings import unused
 from .qos import CLOCK, LATCHED, PROFILES, TELEMETRY, Qos
@@ -75,7 +75,8 @@ class LandingNode(LifecycleNode):
 
     def _add_outlet(self, topic: Topic, qos: Qos) -> None:
         name = self._names[topic] = resolve(self.get_namespace(), topic.name)
-        self._outlets[topic] = self._live.add(Outlet(self.create_publisher(message_class(topic.type_name), name, qos.profile())))
+        if topic is not topics.TF or is_installed(topic.type_name):
+            self._outlets[topic] = self._live.add(Outlet(self.create_publisher(message_class(topic.type_name), name, qos.profile())))
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Loads the FMU, tells what it has, and describes the vehicle. Fails, with the reason in the node's log, where that cannot be."""

@@ -28,6 +28,7 @@ from .qos import LATCHED, Qos
 from .recorder import RecordedTopic, Recorder
 from .run_summary import RunSummary
 from .topics import Topic
+from .transforms import Transforms
 from .wire import padded
 
 PHASE = OUTPUT_NAMES.index("status.phase")
@@ -74,8 +75,10 @@ class LandingRun:
         self._inputs, self._namespace, self._tell = inputs, namespace, tell
         self._take_packer(SampleBytes())
         self._wireframe = Wireframe(settings.parameters)
+        self._transforms = Transforms(settings.parameters)
         self._health = Health(node_name, settings.mode)
-        self._markers_every, self._diagnostics_every = settings.every[topics.MARKERS], settings.every[topics.DIAGNOSTICS]
+        occasional = (topics.MARKERS, topics.TF, topics.DIAGNOSTICS)
+        self._markers_every, self._tf_every, self._diagnostics_every = (settings.every[t] for t in occasional)
         self._pacer = Pacer(0.0)
         self._work = 0.0
         self._told = False
@@ -182,13 +185,16 @@ class LandingRun:
         stamp = k * self.settings.step_ns
         if k % self._markers_every == 0 or self.end:
             self._say(topics.MARKERS, stamp, padded(self._wireframe.pack(stamp, values)))
+        if k % self._tf_every == 0 or self.end:
+            self._say(topics.TF, stamp, self._transforms.pack(stamp, values))
         if k % self._diagnostics_every == 0 or self.end:
             self._say(topics.DIAGNOSTICS, stamp, padded(serialize_message(self._report(k, values))))
 
     def _say(self, topic: Topic, stamp: int, data: bytes) -> None:
         if self.recorder is not None:
             self.recorder.write(self._names[topic], stamp, data)
-        self._live.offer(self._outlets[topic], data)
+        if topic in self._outlets:
+            self._live.offer(self._outlets[topic], data)
 
     def _note_published(self, due: float) -> None:
         if self._pacer.period:

@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import importlib
+import importlib.util
 from functools import cache
 from typing import Any
 
 from rlv_landing.errors import LandingError
+
+
+def is_installed(name: str) -> bool:
+    """Whether the package of the type `pkg/msg/Type` is installed."""
+    return importlib.util.find_spec(name.split("/")[0]) is not None
 
 
 @cache

@@ -11,8 +11,9 @@ from pathlib import Path
 from rlv_landing.errors import LandingError
 
 from .log_reader import LogMessage, LogReader
+from .message_types import is_installed
 from .replay_clock import FASTEST, SLOWEST
-from .topics import resolve
+from .topics import TF, resolve
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ class Selection:
         messages = list(reader.messages())
         if not messages:
             raise LandingError(f"{reader.path} holds no message that can be read; there is nothing to play")
-        chosen = set(reader.select(options.topics))
+        chosen = {t for t in reader.select(options.topics) if options.topics or playable(reader.channels[t].type_name)}
         self.first = min(m.log_time for m in messages) + round(options.start * 1e9)
         last = self.first + round(options.duration * 1e9) if math.isfinite(options.duration) else math.inf
         self.messages: list[LogMessage] = [m for m in messages if m.topic in chosen and self.first <= m.log_time <= last]
@@ -74,6 +75,11 @@ class Selection:
         """The smallest time between two instants [ns]; a millisecond where there is only one."""
         times = sorted({m.log_time for m in self.messages})
         return min((b - a for a, b in pairwise(times)), default=1_000_000)
+
+
+def playable(type_name: str) -> bool:
+    """Whether messages of that type can be published here; of all that a log holds only those of `/tf` may be left out."""
+    return type_name != TF.type_name or is_installed(type_name)
 
 
 def renamed(reader: LogReader, topics: Sequence[str], remap: Sequence[str]) -> dict[str, str]:

@@ -11,18 +11,19 @@ from .message_types import message_class
 from .messages import NANOSECONDS, set_stamp
 
 HEADER = "std_msgs/Header"
-MARKER_ARRAY = "visualization_msgs/msg/MarkerArray"
+# Types that are lists of what carries a header: the list's name.
+LISTS = {"visualization_msgs/msg/MarkerArray": "markers", "tf2_msgs/msg/TFMessage": "transforms"}
 # CDR: four bytes of encapsulation, the second of which tells the byte order; then the header's stamp, a message's first field.
 AT = 4
 
 
 class Restamper:
-    """Adds `shift` [ns] to the stamps of messages whose first field is a header, and to those of markers. `types` is type by topic."""
+    """Adds `shift` [ns] to the stamps of messages whose first field is a header, of markers and of transforms. `types` is type by topic."""
 
     def __init__(self, types: Mapping[str, str], shift: int) -> None:
         self._shift = shift
         self._stamped = {topic for topic, name in types.items() if next(iter(_fields(name).values()), "") == HEADER}
-        self._markers = {topic for topic, name in types.items() if name == MARKER_ARRAY}
+        self._lists = {topic: name for topic, name in types.items() if name in LISTS}
 
     def __call__(self, topic: str, data: bytes) -> bytes:
         """The message `data` of `topic`, moved on; unchanged where it carries no stamp that we know of."""
@@ -32,10 +33,11 @@ class Restamper:
             moved = bytearray(data)
             struct.pack_into(form, moved, AT, *divmod(seconds * NANOSECONDS + nanoseconds + self._shift, NANOSECONDS))
             return bytes(moved)
-        if topic in self._markers:
-            message = deserialize_message(data, message_class(MARKER_ARRAY))
-            for marker in message.markers:
-                stamp = marker.header.stamp
+        if topic in self._lists:
+            name = self._lists[topic]
+            message = deserialize_message(data, message_class(name))
+            for element in getattr(message, LISTS[name]):
+                stamp = element.header.stamp
                 set_stamp(stamp, stamp.sec * NANOSECONDS + stamp.nanosec + self._shift)
             moved_message: bytes = serialize_message(message)
             return moved_message

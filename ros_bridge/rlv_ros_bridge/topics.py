@@ -37,6 +37,8 @@ TOP_ACCEL = Topic("top/accel", "geometry_msgs/msg/AccelStamped")
 CONTACTS = tuple(Topic(f"leg_{leg}/contact", "geometry_msgs/msg/WrenchStamped") for leg in LEGS)
 ODOM = Topic("odom", "nav_msgs/msg/Odometry")
 MARKERS = Topic("markers", "visualization_msgs/msg/MarkerArray", 0.033)
+# Made by ourselves: there is no wheel of tf2_msgs, so it is published only where ROS 2 has it.
+TF = Topic("/tf", "tf2_msgs/msg/TFMessage", 0.01)
 DIAGNOSTICS = Topic("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", 0.1)
 CLOCK = Topic("/clock", "rosgraph_msgs/msg/Clock")
 
@@ -48,7 +50,7 @@ VARIABLES = Topic("variables", "std_msgs/msg/String")
 
 # What goes out at every step, and what is made now and then.
 SAMPLED: tuple[Topic, ...] = (STRUTS, POSE, RPY, TWIST, ACCEL, TOP_ACCEL, *CONTACTS, ODOM)
-OCCASIONAL: tuple[Topic, ...] = (MARKERS, DIAGNOSTICS)
+OCCASIONAL: tuple[Topic, ...] = (MARKERS, TF, DIAGNOSTICS)
 APPLIED: tuple[Topic, ...] = (APPLIED_WRENCH, APPLIED_GROUND)
 # Said once, and kept for those who come later.
 LATCHED: tuple[Topic, ...] = (ROBOT_DESCRIPTION, VARIABLES)

@@ -18,10 +18,10 @@ from std_msgs.msg import String
 
 from rlv_ros_bridge.log_reader import LogReader
 from rlv_ros_bridge.qos import parse_qos
-from rlv_ros_bridge.topics import CLOCK, LATCHED, RECORDED, STRUTS, resolve
+from rlv_ros_bridge.topics import CLOCK, LATCHED, RECORDED, STRUTS, TF, resolve
 
 # `struts` last: a node that waits for a match on it finds the others matched. What is latched came before.
-TOPICS = {resolve("landing", t.name): t.type_name for t in (*(t for t in RECORDED[1:] if t not in LATCHED), STRUTS)}
+TOPICS = {resolve("landing", t.name): t.type_name for t in (*(t for t in RECORDED[1:] if t not in (*LATCHED, TF)), STRUTS)}
 SAMPLES = 1001
 
 

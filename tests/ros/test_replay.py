@@ -14,14 +14,15 @@ from bridge_tools import TIMEOUT, Heard, Listener, by_topic, run, start
 from rlv_ros_bridge.log_reader import LogMessage, LogReader
 from rlv_ros_bridge.qos import TELEMETRY
 from rlv_ros_bridge.recorder import RecordedTopic, Recorder
-from rlv_ros_bridge.topics import CLOCK
+from rlv_ros_bridge.topics import CLOCK, TF
 
 
 def contents(log: Path) -> tuple[list[LogMessage], dict[str, str]]:
-    """The messages of a log, and its topics' types, `struts` last."""
+    """The messages of a log that can be published here, all but `/tf`, and their topics' types, `struts` last."""
     reader = LogReader(log)
-    messages = list(reader.messages())
-    types = {c.topic: c.type_name for c in sorted(reader.channels.values(), key=lambda c: c.topic.endswith("/struts"))}
+    messages = [message for message in reader.messages() if message.topic != TF.name]
+    channels = sorted(reader.channels.values(), key=lambda c: c.topic.endswith("/struts"))
+    types = {c.topic: c.type_name for c in channels if c.topic != TF.name}
     return messages, types
 
 

@@ -1,0 +1,88 @@
+"""The frames of the vehicle for `/tf`: the body in the map, and what hangs on it, as the URDF has it. Needs no ROS 2."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import cos, sin
+from xml.etree import ElementTree
+
+from rlv_landing.parameters import Parameters
+from rlv_landing.quantities import OUTPUT_NAMES
+
+from .axes import IN_PLANE, pitch_quaternion, to_ros
+from .robot_description import robot_description
+from .topics import BODY_FRAME, JOINTS, WORLD_FRAME
+from .wire import NANOSECONDS, PROBE_STAMP, WireFrame, padded, probe_numbers
+
+# CDR, little-endian.
+HEAD = b"\x00\x01\x00\x00"
+
+
+@dataclass(frozen=True)
+class Transform:
+    """Where the frame `child` is in `parent`: translation x, y, z [m] and rotation x, y, z, w."""
+
+    parent: str
+    child: str
+    translation: tuple[float, float, float]
+    rotation: tuple[float, float, float, float]
+
+
+class Transforms:
+    """Makes the messages of `/tf`: `map` to `base_link`, and every joint of the URDF, moved by its strut's stroke."""
+
+    def __init__(self, parameters: Parameters) -> None:
+        joints = list(ElementTree.fromstring(robot_description(parameters)).iter("joint"))
+        index = {name: i for i, name in enumerate(OUTPUT_NAMES)}
+        self._body = [index[f"body.{name}"] for name in ("x", "y", "pitch")]
+        self._strokes = [index[f"leg[{name[4]}].{name[6:]}.stroke"] for name in JOINTS]
+        self._lengths = [_vector(j, "xyz")[2] for name in JOINTS for j in joints if j.get("name") == name]
+        probe = probe_numbers(4 + len(JOINTS))
+        x, z, qy, qw = probe[:4]
+        moved = dict(zip(JOINTS, probe[4:]))
+        frames = [Transform(WORLD_FRAME, BODY_FRAME, (x, 0.0, z), (0.0, qy, 0.0, qw)), *(_transform(joint, moved) for joint in joints)]
+        self._frame = WireFrame([serialised(frames, PROBE_STAMP)], probe)
+
+    def pack(self, nanoseconds: int, values: Sequence[float]) -> bytes:
+        """The message of the sample `values` (in the order of `OUTPUT_NAMES`) at the simulation time `nanoseconds`, serialised."""
+        x, y, pitch = (values[i] for i in self._body)
+        forward, _, up = to_ros(x, y, IN_PLANE)
+        _, qy, _, qw = pitch_quaternion(pitch)
+        struts = [length - values[i] for length, i in zip(self._lengths, self._strokes)]
+        (data,) = self._frame.pack(nanoseconds, [forward, up, qy, qw, *struts])
+        return data
+
+
+def serialised(transforms: Sequence[Transform], nanoseconds: int) -> bytes:
+    """A `tf2_msgs/msg/TFMessage` of `transforms`, all at the stamp `nanoseconds`, in CDR."""
+    data = bytearray(struct.pack("<I", len(transforms)))
+    for t in transforms:
+        data += bytes(-len(data) % 4) + struct.pack("<iI", *divmod(nanoseconds, NANOSECONDS))
+        for text in (t.parent.encode(), t.child.encode()):
+            data += bytes(-len(data) % 4) + struct.pack("<I", len(text) + 1) + text + b"\0"
+        data += bytes(-len(data) % 8) + struct.pack("<7d", *t.translation, *t.rotation)
+    return padded(HEAD + bytes(data))
+
+
+def _transform(joint: ElementTree.Element, moved: dict[str, float]) -> Transform:
+    parent, child = (joint.find(end) for end in ("parent", "child"))
+    assert parent is not None
+    assert child is not None
+    x, y, z = _vector(joint, "xyz")
+    place = (x, y, moved.get(joint.attrib["name"], z))
+    return Transform(parent.attrib["link"], child.attrib["link"], place, _turned(*_vector(joint, "rpy")))
+
+
+def _vector(joint: ElementTree.Element, name: str) -> tuple[float, float, float]:
+    origin = joint.find("origin")
+    assert origin is not None
+    x, y, z = map(float, origin.attrib[name].split())
+    return x, y, z
+
+
+def _turned(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
+    """The rotation (x, y, z, w) by URDF's angles: about the parent's x, then its y, then its z."""
+    (sr, cr), (sp, cp), (sy, cy) = ((sin(0.5 * angle), cos(0.5 * angle)) for angle in (roll, pitch, yaw))
+    return sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy
