@@ -1,0 +1,136 @@
+"""The landing by hand in C (`yardstick.c`), compiled here by gcc: how fast the machine does what the compiled core does."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tempfile
+from array import array
+from collections.abc import Mapping
+from ctypes import CDLL, POINTER, c_double, c_int, c_void_p
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rlv_landing import Landing
+from rlv_landing.core import layout
+from rlv_landing.quantities import INPUT_NAMES
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE.parent / "fmu_src"))
+from core_source import COMPILE_ARGS  # noqa: E402
+
+# of `rlv_landing.core.model.Model`, in the order of the C struct that is made from them
+PARAMETERS = (
+    "m_u", "I_u", "m_d", "at_joint", "La", "Lb", "Lm0", "A1", "A2", "V10", "V20", "Pa", "rho0", "x_air", "n_air", "B0", "kB",
+    "CdAo_c", "CdAo_r", "dP_lam", "Fc", "kp", "Fs", "v_str", "v_sm", "s_max", "K_stop", "c_stop", "Lc", "Ld", "Ls0", "Ka", "ek", "Ca",
+    "alpha", "Kg", "en", "Cgmax", "d_ramp", "mu", "s_r0", "ar", "b_strib", "Cr", "v_dir", "tau_sr", "g",
+)  # fmt: skip
+# the core's own options, and what the machine could do with the digits' equality given up
+EXACT: tuple[str, ...] = tuple(COMPILE_ARGS)
+FAST: tuple[str, ...] = ("-O3", "-march=native", "-ffast-math")
+
+
+@cache
+def library(options: tuple[str, ...]) -> CDLL:
+    """`yardstick.c` compiled with `options`."""
+    with tempfile.TemporaryDirectory(prefix="rlv_landing_") as folder:
+        target = Path(folder) / "yardstick.so"
+        names = f"-DPARAMETERS={','.join(PARAMETERS)}"
+        command = ["gcc", "-std=gnu11", "-Wall", "-Wextra", "-Werror", *options, names, "-shared", "-fPIC", "-o", str(target)]
+        subprocess.run([*command, str(HERE / "yardstick.c"), "-lm"], check=True)
+        loaded = CDLL(str(target))
+    doubles = POINTER(c_double)
+    for name, result, arguments in (
+        ("landing", c_void_p, (doubles, c_int, *(doubles,) * 4, c_double, doubles, doubles)),
+        ("advance", c_int, (c_void_p, c_double)),
+        ("interpolate", None, (c_void_p, c_double, doubles)),
+        ("counts", None, (c_void_p, doubles)),
+        ("release", None, (c_void_p,)),
+    ):
+        function = getattr(loaded, name)
+        function.restype, function.argtypes = result, arguments
+    return loaded
+
+
+def doubles(values: Any) -> Any:
+    """A C array of doubles."""
+    return (c_double * len(values))(*values)
+
+
+class Yardstick:
+    """One landing in C, from the start of the same `Landing`; `inputs` by name go on at the rates `rates` [unit/s].
+
+    Raises MemoryError without memory, ArithmeticError where the step size has collapsed.
+    """
+
+    def __init__(
+        self,
+        landing: Landing,
+        rtol: float,
+        options: tuple[str, ...] = EXACT,
+        inputs: Mapping[str, float] | None = None,
+        rates: Mapping[str, float] | None = None,
+    ) -> None:
+        solver, model = landing._solver, landing._model
+        groups = [x for i in range(model.n_groups) for x in (model.sin_g[i], model.cos_g[i], model.count[i], model.share_x[i])]
+        self.n = solver.n
+        self._library = library(options)
+        self._landing = self._library.landing(
+            doubles([getattr(model, name) for name in PARAMETERS]),
+            model.n_groups,
+            *(doubles(a) for a in (groups, list(solver.y), solver.scale, solver.relative)),
+            rtol,
+            *(doubles([(values or {}).get(name, 0.0) for name in INPUT_NAMES]) for values in (inputs, rates)),
+        )
+        if not self._landing:
+            raise MemoryError("no memory for a landing in C")
+
+    def __del__(self) -> None:
+        if getattr(self, "_landing", None):
+            self._library.release(self._landing)
+
+    def advance(self, t_end: float) -> None:
+        """Step until `t_end` [s] is reached."""
+        if not self._library.advance(self._landing, t_end):
+            raise ArithmeticError("the step size of the landing in C has collapsed")
+
+    def states(self, times: Any) -> np.ndarray:
+        """The states at `times` [s], one a row."""
+        rows, one = np.empty((len(times), self.n)), (c_double * self.n)()
+        for row, t in zip(rows, times):
+            self.advance(t)
+            self._library.interpolate(self._landing, t, one)
+            row[:] = one
+        return rows
+
+    def statistics(self) -> dict[str, int]:
+        """As `Landing.statistics`."""
+        three = (c_double * 3)()
+        self._library.counts(self._landing, three)
+        return dict(zip(("steps", "rejected", "rhs_calls"), map(int, three)))
+
+
+def core_states(landing: Landing, times: Any) -> np.ndarray:
+    """The states of the core at `times` [s], one a row."""
+    solver, one = landing._solver, array("d", bytes(8 * landing._solver.n))
+    rows = np.empty((len(times), solver.n))
+    for row, t in zip(rows, times):
+        landing.advance_to(t)
+        solver.interpolate(t, one)
+        row[:] = one
+    return rows
+
+
+def disagreement(landing: Landing, yardstick: Yardstick, until: float) -> float:
+    """Largest difference of any state, less the energy integrals, every millisecond up to `until` [s], relative to that state's largest
+    value; infinite where the two have not taken the same numbers of steps, rejected steps and right-hand sides."""
+    times = 1e-3 * np.arange(round(until / 1e-3) + 1)
+    n = yardstick.n - layout.INTEGRALS
+    core, c = (states[:, :n] for states in (core_states(landing, times), yardstick.states(times)))
+    if landing.statistics != yardstick.statistics():
+        return np.inf
+    largest = np.abs(core).max(axis=0)
+    return float((np.abs(core - c).max(axis=0) / np.where(largest > 0.0, largest, 1.0)).max())

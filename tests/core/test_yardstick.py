@@ -1,0 +1,39 @@
+"""The benchmarks' landing in C is the core's: without that, its time would say nothing of the core."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from rlv_landing import Landing, load_preset
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "benchmarks"))
+from yardstick import Yardstick, disagreement
+
+# a load and a deck, all of them changing
+INPUTS = {"external.force_x": 300.0, "external.force_y": -200.0, "external.moment": 40.0, "ground.heave_rate": 0.05, "ground.tilt_rate": 0.02}
+RATES = {"external.force_y": 500.0, "ground.heave_rate": -0.3, "ground.tilt_rate": 0.1}
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-5])
+def test_the_landing_in_c_takes_the_cores_steps_to_the_same_states(mode, rtol):
+    landing, start = (Landing(load_preset("yue2022-figures"), mode, rtol) for _ in range(2))
+    assert disagreement(landing, Yardstick(start, rtol), 0.5) < 1e-9
+
+
+def test_the_landing_in_c_has_the_cores_inputs_slope_and_stops(mode):
+    """With the transverse load at the footpads, on a slope, so fast that a strut reaches both ends."""
+    values = {"vehicle.transverse_load_at": "footpad", "ground.slope": 0.03, "drop.vertical_velocity": -4.0, "main_strut.stroke_max": 0.03}
+    landing, start, watched = (Landing(load_preset("yue2022-figures").with_values(values), mode, 1e-4) for _ in range(3))
+    landing.set_inputs(INPUTS, RATES)
+    landing._solver.rhs_calls = 1.0  # the C landing starts with the inputs, so it has no restart
+    assert disagreement(landing, Yardstick(start, 1e-4, inputs=INPUTS, rates=RATES), 0.3) < 1e-9
+    watched.set_inputs(INPUTS, RATES)
+    stroke = watched.run(0.3)["leg[1].main_strut.stroke"]
+    assert stroke.min() < 0.0
+    assert stroke.max() > 0.03
+
+
+def test_a_landing_in_c_of_another_vehicle_is_told_from_the_cores(mode):
+    heavier = load_preset("yue2022-figures").with_values({"vehicle.inertia": 250.0})
+    assert disagreement(Landing(load_preset("yue2022-figures"), mode), Yardstick(Landing(heavier, mode), 1e-5), 0.2) > 1e-3
