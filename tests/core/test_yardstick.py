@@ -11,7 +11,13 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "benchmar
 from yardstick import Yardstick, disagreement
 
 # a load and a deck, all of them changing
-INPUTS = {"external.force_x": 300.0, "external.force_y": -200.0, "external.moment": 40.0, "ground.heave_rate": 0.05, "ground.tilt_rate": 0.02}
+INPUTS = {
+    "external.force_x": 300.0,
+    "external.force_y": -200.0,
+    "external.moment": 40.0,
+    "ground.heave_rate": 0.05,
+    "ground.tilt_rate": 0.02,
+}
 RATES = {"external.force_y": 500.0, "ground.heave_rate": -0.3, "ground.tilt_rate": 0.1}
 
 
