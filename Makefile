@@ -10,12 +10,13 @@ CORE := $(wildcard fmu_src/rlv_landing/core/*.py fmu_src/rlv_landing/core/*.pxd)
 SLAVE := fmu_src/landing_fmu.py fmu_src/build_fmu.py $(wildcard fmu_src/fmu_*.py fmu_src/fmu_*.j2 fmu_src/fmu_front/*) CHANGELOG.md LICENSE \
   $(addprefix fmu_src/rlv_landing/,__init__.py errors.py quantities.py parameters.py touchdown.py landing.py plots.py)
 
-.PHONY: help run test lint torture bench coverage docs clean
+.PHONY: help run test lint torture bench annotate coverage docs clean
 help:
 	@echo "make run [MODE=2-2|1-2-1]  land the prototype: FMU, ROS 2 node, MCAP log, table and picture"
 	@echo "make test                  the whole suite"
 	@echo "make torture               the long tests: thousands of damaged logs, a thousand turns of the node's lifecycle"
-	@echo "make bench                 time of a landing: compiled core, pure core, FMU; what the FMU costs FMPy; node and replay; a full 3-D model"
+	@echo "make bench                 time of a landing at equal error: our core, C, other solvers, MuJoCo; the FMU; node and replay; a 3-D model"
+	@echo "make annotate              the compiled core with a mark on every line that calls Python, in build/annotate"
 	@echo "make coverage              coverage, measured on the pure core"
 	@echo "make docs                  the pictures of the README, of docs and of the example, made anew (some minutes)"
 	@echo "make clean                 remove .venv and build (logs stay)"
@@ -66,6 +67,9 @@ bench: $(FMU)
 	$(BIN)/python benchmarks/bench_fmu.py
 	$(BIN)/python benchmarks/bench_bridge.py
 	$(BIN)/python benchmarks/bench_quasi3d.py
+
+annotate: $(VENV)/.core
+	@$(BIN)/python benchmarks/annotate.py
 
 coverage: $(FMU)
 	RLV_LANDING_PURE=1 $(BIN)/python -m pytest --cov --cov-report=term tests/core tests/model

@@ -24,10 +24,10 @@ from pathlib import Path
 from typing import Any
 
 import fmpy
-from bench_landing import FMU, append_rows
 from fmpy.fmi2 import FMU2Slave
 from rich.console import Console
 from rich.table import Table
+from rows import FMU, append_rows
 
 HERE = Path(__file__).parent
 HEADERS = Path(fmpy.__file__).parent / "c-code"

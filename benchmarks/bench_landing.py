@@ -1,114 +1,128 @@
-"""Time of a 1 s landing, sampled at 1 kHz with all outputs: compiled core, pure core, and through the FMU by FMPy.
+"""What a 1 s landing costs at equal error: our integrator and model beside other solvers, C, MuJoCo and the FMU, in one run.
 
-All three take the same steps, so their error is the same: the largest difference of any main strut stroke from a landing at tolerance
-1e-11. Prints a table with ratios to the compiled core, and appends a row a case to `results.jsonl`.
+See `docs/performance.md`, whose table and picture this writes. Prints the table as well, and appends a row a run to `results.jsonl`.
 """
 
 from __future__ import annotations
 
-import json
 import os
-import platform
-import subprocess
-import sys
-import time
-from pathlib import Path
+from itertools import chain
 from typing import Any
 
+# one thread: what is timed is the thread's processor time
+os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
+
 import fmpy
+import mujoco
 import numpy as np
+import scipy
+import sksundae
+from foreign import FOREIGN
+from peers import OURS
+from problem import Problem
 from rich.console import Console
 from rich.table import Table
+from rows import HERE, append_rows, load, provenance
+from work_precision import Run, cost, draw, measure
+from yardstick import EXACT, Yardstick, disagreement
 
-from rlv_landing import Landing, load_preset
-from rlv_landing.history import History
-from rlv_landing.quantities import OUTPUT_NAMES
+from rlv_landing.core import COMPILED
+from rlv_landing.quantities import MODES
 
-HERE = Path(__file__).parent
-FMU = HERE.parent / "build" / "RlvLanding.fmu"
-STROKES = [f"leg[{leg}].main_strut.stroke" for leg in (1, 2, 3, 4)]
-REPEATS = 5
-PURE = """
-import json, sys, time
-from rlv_landing import Landing, load_preset
-landing = Landing(load_preset("yue2022-figures"), sys.argv[1])
-start = time.perf_counter()
-history = landing.run(1.0)
-seconds = time.perf_counter() - start
-print(json.dumps({"seconds": seconds, "strokes": [history[n].tolist() for n in json.loads(sys.argv[2])]}))
-"""
+DOCS = HERE.parent / "docs"
+MARKS = ("<!-- measured by make bench -->\n", "<!-- end of what is measured -->\n")
+TARGETS = (1e-3, 1e-2)
+HEADINGS = (
+    "solver", "ms at 0.1 %", "to core's", "stroke error [um]", "right-hand sides", "to core's", "us each", "model", "ms at 1 %", "to core's"
+)  # fmt: skip
 
 
-def compiled(mode: str) -> tuple[float, History, int]:
-    """Best of REPEATS."""
-    best = float("inf")
-    for _ in range(REPEATS):
-        landing = Landing(load_preset("yue2022-figures"), mode)
-        start = time.perf_counter()
-        history = landing.run(1.0)
-        best = min(best, time.perf_counter() - start)
-    return best, history, landing.statistics["rhs_calls"]
+def check_yardstick(problem: Problem) -> None:
+    """Ends the program where the landing in C is not the core's."""
+    found = disagreement(problem.landing(), Yardstick(problem.landing(), 1e-5), 1.0)
+    if not found <= 1e-9:
+        raise SystemExit(
+            f"error: the landing in C differs from the core's by {found:.1e} in mode {problem.mode}; bring yardstick.c up to date"
+        )
 
 
-def pure(mode: str) -> tuple[float, np.ndarray]:
-    """Once, in a process that uses the plain Python core."""
-    command = [sys.executable, "-c", PURE, mode, json.dumps(STROKES)]
-    done = subprocess.run(command, capture_output=True, text=True, check=True, env={**os.environ, "RLV_LANDING_PURE": "1"})
-    result = json.loads(done.stdout)
-    return result["seconds"], np.array(result["strokes"])
+def digits(value: float, bound: str = "") -> str:
+    """Three digits, and what bounds them."""
+    return f"{bound} {value:.3g}".strip() if value < 1000.0 else f"{bound} {value:.0f}".strip()
 
 
-def through_fmu(mode: str) -> tuple[float, Any]:
-    """Best of REPEATS; unpacking and loading included, as an importer sees it."""
-    values = {n: v for n, v in load_preset("yue2022-figures", mode).items() if n.startswith("drop.")}
-    best = float("inf")
-    for _ in range(REPEATS):
-        start = time.perf_counter()
-        result = fmpy.simulate_fmu(str(FMU), stop_time=1.0, output_interval=1e-3, start_values=values, output=list(OUTPUT_NAMES))
-        best = min(best, time.perf_counter() - start)
-    return best, result
+def line_of(runs: list[Run], core: list[Run], call: float) -> list[str]:
+    """One line of the table: the `runs` of one peer beside those of the core, one of whose right-hand sides takes `call` [s]."""
+    (at, loose), (base, base_loose) = ([cost(own, target) for target in TARGETS] for own in (runs, core))
+    peer = runs[0].peer
+    failed = [f"{r.tolerance:g}" for r in runs if r.failure]
+    line = [peer.name + f" (no end at {', '.join(failed)})" * bool(failed)]
+    line += [digits(1e3 * at.seconds, at.bound), digits(at.seconds / base.seconds, at.bound), digits(1e6 * at.stroke)]
+    if peer.kind == "simulator":
+        line += [f"{at.calls:.0f} steps", "", "", ""]
+    else:
+        share = f"{100.0 * call * at.calls / at.seconds:.0f} %" if peer.kind == "foreign" else ""
+        line += [f"{at.calls:.0f}", digits(at.calls / base.calls, at.bound), f"{1e6 * at.seconds / at.calls:.2f}", share]
+    return [*line, digits(1e3 * loose.seconds, loose.bound), digits(loose.seconds / base_loose.seconds, loose.bound)]
 
 
-def provenance() -> dict[str, str]:
-    """Commit and processor."""
-    commit = subprocess.run(["git", "describe", "--always", "--dirty"], capture_output=True, text=True, cwd=HERE).stdout.strip()
-    names = [line.split(":")[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")]
-    return {"commit": commit, "cpu": names[0] if names else platform.processor(), "python": platform.python_version()}
+def row_of(mode: str, runs: list[Run], loads: list[float]) -> dict[str, Any]:
+    """What `results.jsonl` keeps of a peer: its cost at the first target, and of every run tolerance, seconds, calls and errors."""
+    at = cost(runs, TARGETS[0])
+    curve = [[r.tolerance, r.seconds, r.calls, r.error.peaks, r.error.stroke] for r in runs if r.error and not r.failure]
+    return {
+        "case": f"{mode} {runs[0].peer.name}",
+        "error": TARGETS[0],
+        "bound": at.bound,
+        "seconds": at.seconds,
+        "rhs_calls": round(at.calls),
+        "stroke_error": at.stroke,
+        "curve": curve,
+        "failures": {f"{r.tolerance:g}": r.failure for r in runs if r.failure},
+        "load": loads,
+    }
 
 
-def append_rows(rows: list[dict[str, Any]]) -> None:
-    """Append the rows, stamped with their provenance, to `results.jsonl`."""
-    stamp = provenance()
-    with (HERE / "results.jsonl").open("a", encoding="utf-8") as f:
-        for row in rows:
-            f.write(json.dumps({**stamp, **row}) + "\n")
+def report(console: Console, lines: dict[str, list[list[str]]], note: str) -> None:
+    """Print the tables, and put them where `docs/performance.md` has them."""
+    text = f"Measured on {note}.\n"
+    for mode, table_lines in lines.items():
+        table = Table(title=f"1 s landing in mode {mode} at equal error of the peaks", title_justify="left")
+        for heading in HEADINGS:
+            table.add_column(heading, justify="left" if heading == HEADINGS[0] else "right")
+        for line in table_lines:
+            table.add_row(*line)
+        console.print(table)
+        text += f"\nMode {mode}:\n\n| {' | '.join(HEADINGS)} |\n|---|{'---:|' * (len(HEADINGS) - 1)}\n"
+        text += "".join(f"| {' | '.join(line)} |\n" for line in table_lines)
+    console.print(note)
+    page = DOCS / "performance.md"
+    before, _, rest = page.read_text(encoding="utf-8").partition(MARKS[0])
+    page.write_text(before + MARKS[0] + text + MARKS[1] + rest.partition(MARKS[1])[2], encoding="utf-8")
 
 
 def main() -> None:
-    rows: list[dict[str, Any]] = []
-    for mode in ("2-2", "1-2-1"):
-        reference = Landing(load_preset("yue2022-figures"), mode, rtol=1e-11).run(1.0)
-        exact = np.array([reference[n] for n in STROKES])
-        seconds, history, calls = compiled(mode)
-        rows.append(
-            {"case": f"{mode} compiled core", "seconds": seconds, "strokes": np.array([history[n] for n in STROKES]), "rhs_calls": calls}
-        )
-        seconds, strokes = pure(mode)
-        rows.append({"case": f"{mode} pure core", "seconds": seconds, "strokes": strokes, "rhs_calls": calls})
-        seconds, result = through_fmu(mode)
-        rows.append(
-            {"case": f"{mode} FMU by FMPy", "seconds": seconds, "strokes": np.array([result[n] for n in STROKES]), "rhs_calls": calls}
-        )
-        for row in rows[-3:]:
-            row["error"] = float(np.abs(row.pop("strokes") - exact).max())
-            row["ratio"] = row["seconds"] / rows[-3]["seconds"]
-    table = Table(title="1 s landing, 1001 samples of all outputs", title_justify="left")
-    for name in ("case", "seconds", "ratio to compiled", "rhs calls", "worst stroke error [mm]"):
-        table.add_column(name, justify="left" if name == "case" else "right")
-    for row in rows:
-        table.add_row(row["case"], f"{row['seconds']:.4f}", f"{row['ratio']:.1f}", str(row["rhs_calls"]), f"{1e3 * row['error']:.2e}")
-    Console(width=110).print(table)
-    append_rows(rows)
+    if not COMPILED:
+        raise SystemExit("error: the core is not compiled here; run make")
+    console, loads = Console(width=160), [load()]
+    runs: dict[str, list[list[Run]]] = {}
+    for mode in MODES:
+        problem = Problem(mode)
+        check_yardstick(problem)
+        with console.status(f"{mode}: reference") as status:
+            found = measure((*OURS, *FOREIGN), problem, status.update)
+        runs[mode] = [[r for r in found if r.peer is peer] for peer in (*OURS, *FOREIGN)]
+    loads.append(load())
+    lines = {}
+    for mode, own in runs.items():
+        fixed = cost(own[1], TARGETS[0])
+        lines[mode] = [line_of(peer, own[0], fixed.seconds / fixed.calls) for peer in own]
+    append_rows([row_of(mode, peer, loads) for mode, own in runs.items() for peer in own])
+    stamp, modules = provenance(), (np, scipy, sksundae, mujoco, fmpy)
+    versions = ", ".join(f"{module.__name__} {module.__version__}" for module in modules)
+    machine = f"{stamp['cpu']}, load {loads[0]:.1f} before and {loads[1]:.1f} after on {os.cpu_count()} cores"
+    report(console, lines, f"{machine}; commit {stamp['commit']}, Python {stamp['python']}, {versions}; `gcc {' '.join(EXACT)}`")
+    draw({mode: [*chain(*own)] for mode, own in runs.items()}, DOCS / "work-precision.png", f"commit {stamp['commit']}, {machine}")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """What the quasi-3D formulation saves: the core against a full three-dimensional Newton-Euler model of the same vehicle, at equal error.
 
 The 3-D model is that of `tests/independent/vehicle_3d.py`: numpy over four legs, no symmetry used, 45 states, 18 linear equations a
-call, integrated by scipy's RK45, which is the core's method (Dormand-Prince 5(4)) with the core's scales of error. The error of either
+call, integrated by scipy's RK45, which is the core's method `dormand-prince` with the core's scales of error. The error of either
 is the largest difference of any main strut stroke from its own landing at a far tighter tolerance. Both are run at several tolerances;
 calls of the right-hand side at equal error are read off by interpolation between them, and seconds are calls times seconds a call.
 
@@ -24,9 +24,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from bench_landing import STROKES, append_rows
 from rich.console import Console
 from rich.table import Table
+from rows import append_rows
 from scipy.integrate import solve_ivp
 
 from rlv_landing import Landing, load_preset
@@ -40,7 +40,9 @@ sys.path.insert(0, str(HERE.parent / "tests" / "independent"))
 from vehicle_3d import LEGS, SCALE, Vehicle3D  # noqa: E402
 
 PRESET = "yue2022-figures"
+STROKES = [f"leg[{leg}].main_strut.stroke" for leg in (1, 2, 3, 4)]
 BODY = ("x", "y", "pitch", "vx", "vy", "pitch_rate")
+METHOD = "dormand-prince"
 UNTIL = 0.5
 TIMES = np.arange(501) * 1e-3
 MOMENT = 0.3  # s, at which the work is counted: all footpads have landed
@@ -50,7 +52,7 @@ REPEATS = 5
 PURE = """
 import json, sys, time
 from rlv_landing import Landing, load_preset
-landing = Landing(load_preset("yue2022-figures"), sys.argv[1])
+landing = Landing(load_preset("yue2022-figures"), sys.argv[1], method="dormand-prince")
 start = time.perf_counter()
 landing.advance_to(float(sys.argv[2]))
 print((time.perf_counter() - start) / landing.statistics["rhs_calls"])
@@ -157,12 +159,12 @@ def core(mode: str, rtol: float) -> tuple[np.ndarray, int, float]:
     """Strokes, calls, and best seconds a call of the compiled core."""
     best = math.inf
     for _ in range(REPEATS):
-        landing = Landing(load_preset(PRESET), mode, rtol)
+        landing = Landing(load_preset(PRESET), mode, rtol, METHOD)
         start = time.perf_counter()
         landing.advance_to(UNTIL)
         best = min(best, time.perf_counter() - start)
     calls = landing.statistics["rhs_calls"]
-    history = Landing(load_preset(PRESET), mode, rtol).run(UNTIL, 1e-3)
+    history = Landing(load_preset(PRESET), mode, rtol, METHOD).run(UNTIL, 1e-3)
     return np.array([history[n] for n in STROKES]), calls, best / calls
 
 

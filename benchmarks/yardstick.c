@@ -459,6 +459,20 @@ void interpolate(const Landing *s, double t, double *y) {
     for (int i = 0; i < s->n; i++) y[i] = s->dense[0][i] + a * (s->dense[1][i] + b * (s->dense[2][i] + a * s->dense[3][i]));
 }
 
+/* What CVODE takes for a right-hand side of vectors without the energy integrals; `array` is its N_VGetArrayPointer. */
+typedef struct {
+    Landing *landing;
+    double *(*array)(void *vector);
+} Bridge;
+
+int slope_for_cvode(double t, void *y, void *dy, void *bridge) {
+    Bridge *b = bridge;
+    double all[MAX_STATES];
+    slope(b->landing, t, b->array(y), all);
+    memcpy(b->array(dy), all, (size_t)(b->landing->n - INTEGRALS) * sizeof *all);
+    return 0;
+}
+
 /* Steps, rejected steps, right-hand sides. */
 void counts(const Landing *s, double *three) {
     three[0] = s->steps;
