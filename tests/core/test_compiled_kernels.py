@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "benchmarks"))
+from annotate import ROOT, annotate, lines
+
 CORE = ROOT / "fmu_src" / "rlv_landing" / "core"
-sys.path.insert(0, str(ROOT / "benchmarks"))
-from annotate import annotate, lines
 
 # called from Python once a step of the caller's, or once at all; what they call is compiled
 ENTRIES = {"inputs_at", "derivatives", "restart", "refresh", "advance", "interpolate", "outputs_at"}
