@@ -184,7 +184,7 @@ class LandingRun:
     def _occasional(self, k: int, values: Sequence[float]) -> None:
         stamp = k * self.settings.step_ns
         if k % self._markers_every == 0 or self.end:
-            self._say(topics.MARKERS, stamp, padded(self._wireframe.pack(stamp, values)))
+            self._say(topics.MARKERS, stamp, self._wireframe.pack(stamp, values))
         if k % self._tf_every == 0 or self.end:
             self._say(topics.TF, stamp, self._transforms.pack(stamp, values))
         if k % self._diagnostics_every == 0 or self.end:

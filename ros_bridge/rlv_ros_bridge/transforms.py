@@ -51,8 +51,7 @@ class Transforms:
         forward, _, up = to_ros(x, y, IN_PLANE)
         _, qy, _, qw = pitch_quaternion(pitch)
         struts = [length - values[i] for length, i in zip(self._lengths, self._strokes)]
-        (data,) = self._frame.pack(nanoseconds, [forward, up, qy, qw, *struts])
-        return data
+        return self._frame.pack(nanoseconds, [forward, up, qy, qw, *struts])
 
 
 def serialised(transforms: Sequence[Transform], nanoseconds: int) -> bytes:
