@@ -47,7 +47,7 @@ UNTIL = 0.5
 TIMES = np.arange(501) * 1e-3
 MOMENT = 0.3  # s, at which the work is counted: all footpads have landed
 TARGETS = (1e-6, 1e-8)  # m
-TOLERANCES = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
+TOLERANCES = (1e-5, 1e-6, 1e-7, 1e-8, 3e-9)
 REPEATS = 5
 PURE = """
 import json, sys, time
