@@ -9,7 +9,7 @@ from .plots import COLOURS
 from .quantities import DISPLAY_UNITS, Quantity
 from .studies.envelope import Envelope, Family
 from .studies.envelope_results import runs
-from .studies.envelope_study import VARIABLES
+from .studies.factors import VARIABLES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from rlv_landing import __version__
+from rlv_landing.durable import write_durably
 from rlv_landing.errors import LandingError
 
 from .log_reader import FINISHED, UNFINISHED
@@ -164,26 +165,6 @@ class BagWriter:
             # Somebody else may have put something into a parent meanwhile: that stays.
             with suppress(OSError):
                 folder.rmdir()
-
-
-def write_durably(path: Path, data: bytes) -> None:
-    """Writes the file `path` whole or not at all, by a temporary name, and its folder's entry for it, onto the disk. Raises OSError."""
-    temporary = path.with_name(path.name + ".tmp")
-    try:
-        with temporary.open("wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
-    except BaseException:
-        with suppress(OSError):
-            temporary.unlink()
-        raise
-    folder = os.open(path.parent, os.O_RDONLY)
-    try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)
 
 
 def make_folder(folder: Path) -> list[Path]:

@@ -64,13 +64,14 @@ def envelope(
 
     from ..envelope_figure import save_envelope
     from ..envelope_tables import envelope_tables
+    from ..studies import toml_keys
     from ..studies.envelope import envelope as run
     from ..studies.envelope_results import record, write_csv, write_json
     from ..studies.envelope_store import Store
-    from ..studies.envelope_study import read_document, study_from
+    from ..studies.envelope_study import study_from
 
     check_writable(plot, ".svg" if plot is not None and plot.suffix == ".svg" else ".png", force)
-    document = read_document(study)
+    document = toml_keys.read(study)[0] if study is not None else {}
     top = {"preset": preset, "parameters": None if file is None else str(Path(file).resolve()), "mode": mode}
     top |= {key: options[key] for key in ("criterion", "cells", "levels", "until")}
     _override(document, top, (*pairs, *inputs), **{key: options[key] for key in ("x_axis", "y_axis", "tolerances", "families", "limits")})

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
@@ -14,18 +13,12 @@ from ..choices import choose_parameters
 from ..errors import LandingError, unknown
 from ..parameters import PARAMETER_QUANTITIES, Parameters, check_value
 from ..presets import parse_value, to_toml
-from ..quantities import INPUT_QUANTITIES, Quantity
+from ..quantities import Quantity
 from . import toml_keys
 from .boundary import Lattice
+from .factors import VARIABLES, variable
 from .outcome import DEFAULT_SLIDE, LIMITS
 
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
-
-# what may be varied or set: every parameter, and every input as a constant
-VARIABLES: dict[str, Quantity] = {**PARAMETER_QUANTITIES, **{q.name: q for q in INPUT_QUANTITIES}}
 # what is lost, by criterion: each counts what is severer, too
 CRITERIA = {
     "toppled": "the vehicle topples",
@@ -62,9 +55,7 @@ class Axis:
     tolerance: float
 
     def __post_init__(self) -> None:
-        q = VARIABLES.get(self.name)
-        if q is None:
-            raise unknown("quantity for an axis", self.name, VARIABLES)
+        q = variable(self.name, "quantity for an axis")
         if q.choices:
             raise LandingError(f"{q.name} is one of {', '.join(q.choices)} and cannot be an axis; make it a family")
         for value in (self.low, self.high):
@@ -152,20 +143,6 @@ class EnvelopeStudy:
         }  # fmt: skip
 
 
-def read_document(path: Path | None) -> dict[str, Any]:
-    """The TOML file of a study as it stands, or an empty one. Raises LandingError: missing file, TOML syntax."""
-    if path is None:
-        return {}
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise LandingError(f"there is no study {path}") from None
-    except (OSError, UnicodeDecodeError) as e:
-        raise LandingError(f"study {path} cannot be read: {e}") from None
-    except tomllib.TOMLDecodeError as e:
-        raise LandingError(f"{path}: TOML syntax: {e}") from None
-
-
 def study_from(document: Mapping[str, Any], folder: Path = Path()) -> EnvelopeStudy:
     """A study from its TOML document; `docs/envelope.md` has every key. A parameter file that it names lies in `folder`.
 
@@ -218,13 +195,10 @@ def _axis(document: Mapping[str, Any], key: str) -> Axis:
             raise LandingError(
                 f'[{key}] has no {needed}; an axis is name = "drop.tilt", low = "-10 deg", high = "10 deg", tolerance = "0.5 deg"'
             )
-    name = toml_keys.text(told, "name", "")
-    if name not in VARIABLES:
-        raise unknown("quantity for an axis", name, VARIABLES)
-    q = VARIABLES[name]
+    q = variable(toml_keys.text(told, "name", ""), "quantity for an axis")
     low, high = (_number(q, told[bound]) for bound in ("low", "high"))
     default = (high - low) / 128.0
-    return Axis(name, low, high, _number(replace(q, lo=0.0, hi=float("inf")), told["tolerance"]) if "tolerance" in told else default)
+    return Axis(q.name, low, high, _number(replace(q, lo=0.0, hi=float("inf")), told["tolerance"]) if "tolerance" in told else default)
 
 
 def _number(q: Quantity, value: Any) -> float:

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..durable import write_durably
 from ..errors import LandingError
-from .files import replace_file
 from .objective import Objective
 
 STEP = 1e-3
@@ -114,9 +114,9 @@ class Search:
     def save(self) -> None:
         """Write best point and search state, each to a temporary name first."""
         told = {**asdict(self.best), "labels": self.labels, "targets": self.objective.labels, "start_loss": self.start_loss}
-        replace_file(self.folder / "best.json", json.dumps(told, indent=1).encode())
+        write_durably(self.folder / "best.json", json.dumps(told, indent=1).encode())
         if self._strategy is not None:
-            replace_file(self.folder / "search.pickle", pickle.dumps(self._strategy))
+            write_durably(self.folder / "search.pickle", pickle.dumps(self._strategy))
 
     def explore(self, evaluations: int, progress: Callable[[int, float], object], sigma: float = 0.1, population: int = 32) -> None:
         """Global search by CMA-ES until `evaluations` landings of both modes have been tried in all, or it has converged.

@@ -23,10 +23,10 @@ import numpy
 import scipy
 
 from .. import __version__
+from ..durable import write_durably
 from ..errors import LandingError
 from ..quantities import Quantity
 from .extras import arrow
-from .files import replace_file
 
 STUDY, COPY, PARTS, RESULTS = "study.json", "study.toml", "parts", "results.parquet"
 LEADING = (
@@ -107,8 +107,8 @@ class Results:
             return [(0, self.count)]
         try:
             if not (self.folder / STUDY).exists():
-                replace_file(self.folder / COPY, self._text.encode())
-                replace_file(self.folder / STUDY, json.dumps(self._about, indent=1).encode())
+                write_durably(self.folder / COPY, self._text.encode())
+                write_durably(self.folder / STUDY, json.dumps(self._about, indent=1).encode())
         except OSError as e:
             raise LandingError(f"{self.folder} cannot be written: {e.strerror or e}; make room, or name another folder") from None
         ranges: list[tuple[int, int]] = []
@@ -154,7 +154,7 @@ class Results:
         if self._rows:
             buffer = io.BytesIO()
             self._parquet.write_table(self._table(self._rows), buffer)
-            replace_file(self.folder / PARTS / f"{self._rows[0][0]:012d}.parquet", buffer.getvalue())
+            write_durably(self.folder / PARTS / f"{self._rows[0][0]:012d}.parquet", buffer.getvalue())
             self.done = sorted({*self.done, (self._rows[0][0], self._rows[-1][0] + 1)})
             self._rows = []
         self._since = time.monotonic()

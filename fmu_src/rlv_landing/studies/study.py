@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -20,11 +19,6 @@ from .factors import VARIABLES, Factor, read_factor
 from .outcome import DEFAULT_SLIDE, LIMITS
 from .responses import expand
 from .states_table import read_states
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 METHODS = ("grid", "lhs", "sobol", "table")
 TABLES = ("study", "set", "limits", "factor")
@@ -97,15 +91,9 @@ def read_study(path: Path) -> Study:
 
     Raises LandingError: missing file, TOML syntax, unknown keys or names, values out of bounds, an empty range, a bad table.
     """
+    document, text = toml_keys.read(path)
     try:
-        text = path.read_text(encoding="utf-8")
-        return _study(tomllib.loads(text), path, text)
-    except FileNotFoundError:
-        raise LandingError(f"there is no study {path}") from None
-    except (OSError, UnicodeDecodeError) as e:
-        raise LandingError(f"study {path} cannot be read: {e}") from None
-    except tomllib.TOMLDecodeError as e:
-        raise LandingError(f"{path}: TOML syntax: {e}") from None
+        return _study(document, path, text)
     except LandingError as e:
         raise LandingError(f"{path}: {e}") from None
 

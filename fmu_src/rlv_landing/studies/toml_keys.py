@@ -2,13 +2,33 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import Any
 
 from ..errors import LandingError, unknown
 from ..parameters import check_value
 from ..presets import parse_value
 from ..quantities import Quantity
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+
+def read(path: Path) -> tuple[dict[str, Any], str]:
+    """A study's document, and its text. Raises LandingError: missing file, TOML syntax."""
+    try:
+        text = path.read_text(encoding="utf-8")
+        return tomllib.loads(text), text
+    except FileNotFoundError:
+        raise LandingError(f"there is no study {path}") from None
+    except (OSError, UnicodeDecodeError) as e:
+        raise LandingError(f"study {path} cannot be read: {e}") from None
+    except tomllib.TOMLDecodeError as e:
+        raise LandingError(f"{path}: TOML syntax: {e}") from None
 
 
 def table(document: Mapping[str, Any], key: str) -> dict[str, Any]:
