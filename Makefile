@@ -15,7 +15,7 @@ help:
 	@echo "make run [MODE=2-2|1-2-1]  land the prototype: FMU, ROS 2 node, MCAP log, table and picture"
 	@echo "make test                  the whole suite"
 	@echo "make torture               the long tests: thousands of damaged logs, a thousand turns of the node's lifecycle"
-	@echo "make bench                 time of a landing at equal error: our core, C, other solvers, MuJoCo; the FMU; node and replay; a 3-D model"
+	@echo "make bench                 time of a landing at equal error: our core, C, other solvers, MuJoCo; the FMU; node and replay; a 3-D model; sweeps"
 	@echo "make annotate              the compiled core with a mark on every line that calls Python, in build/annotate"
 	@echo "make coverage              coverage, measured on the pure core"
 	@echo "make docs                  the pictures of the README, of docs and of the example, made anew (some minutes)"
@@ -67,6 +67,7 @@ bench: $(FMU)
 	$(BIN)/python benchmarks/bench_fmu.py
 	$(BIN)/python benchmarks/bench_bridge.py
 	$(BIN)/python benchmarks/bench_quasi3d.py
+	$(BIN)/python benchmarks/bench_sweep.py 100 1000
 
 annotate: $(VENV)/.core
 	@$(BIN)/python benchmarks/annotate.py

@@ -19,6 +19,9 @@ from rlv_landing.studies.responses import DEFAULT, Measure, expand, known_respon
 from rlv_landing.studies.study import read_study
 
 FIGURES = "yue2022-figures"
+ROOT = Path(__file__).resolve().parent.parent.parent
+EXAMPLES = ROOT / "examples" / "touchdown_study"
+DOCUMENTATION = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
 STATES = {"drop.tilt [deg]": 2.0, "drop.pitch_rate [deg/s]": -3.0, "drop.horizontal_velocity": 0.2, "drop.vertical_velocity [m/s]": -1.2}
 
 
@@ -227,3 +230,19 @@ def test_a_dry_run_tells_number_first_rows_and_time_and_makes_nothing(tmp_path, 
     assert "40 landings" in text
     assert "drop.vertical_velocity [m/s]" in text
     assert [p.name for p in tmp_path.iterdir()] == ["study.toml"]
+
+
+@pytest.mark.parametrize("study", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_the_examples_are_studies_whose_first_landing_works(command, study):
+    name = "sensitivity" if study.stem == "sensitivity" else "sweep"
+    told = json.loads(command(name, str(study), "--dry-run", "--json").out)
+    assert told["error"] is None
+    assert told["landings"] == {"dispersion": 1000, "states": 24, "sensitivity": 1024}[study.stem]
+
+
+def test_the_study_that_the_documentation_shows_is_one(tmp_path):
+    shown = DOCUMENTATION.split("```toml\n")[1].split("```")[0]
+    (tmp_path / "shown.toml").write_text(shown)
+    read = read_study(tmp_path / "shown.toml")
+    assert len(read.design) == 500
+    assert (read.fixed["external.force_x"], read.limits["main_strut.force"]) == (100.0, 8000.0)
