@@ -341,7 +341,7 @@ static void attempt(Landing *s, double h) {
     for (int i = 0; i < n; i++) z[i] = y[i] + half * k1[i];
     for (int g = 0, j = BODY; g < groups; g++, j += LEG) {
         const Stiff *c = &s->stiff[g];
-        settle(c, z + j, h * c->a21 * c->driven[0], half * (k1[j + P2] - k1[j + P1]));
+        settle(c, z + j, h * (c->a21 * c->driven[0]), half * (k1[j + P2] - k1[j + P1]));
     }
     stage(s, t + half, 1, z, k2);
     for (int i = 0; i < n; i++) z[i] = y[i] + half * k2[i];

@@ -13,9 +13,9 @@ from annotate import ROOT, annotate, lines
 CORE = ROOT / "fmu_src" / "rlv_landing" / "core"
 
 # called from Python once a step of the caller's, or once at all; what they call is compiled
-ENTRIES = {"inputs_at", "derivatives", "restart", "refresh", "advance", "interpolate", "outputs_at"}
+ENTRIES = {"inputs_at", "derivatives", "restart", "refresh", "advance", "interpolate", "outputs_at", "record"}
 SETTING_UP = {"__init__", "state_size", "output_size"}
-KERNELS = [path for path in sorted(CORE.glob("*.py")) if path.stem not in ("__init__", "layout")]
+KERNELS = [path for path in sorted(CORE.glob("*.py")) if path.stem not in ("__init__", "layout", "pointer")]
 
 
 def functions(path: Path) -> list[ast.FunctionDef]:
@@ -42,8 +42,8 @@ def test_no_line_of_a_kernel_calls_python(tmp_path):
         for number in range(function.lineno, function.end_lineno + 1):
             where[number] = (function.name, number == function.lineno)
     inside = [line for line in lines(html) if line.number in where and where[line.number][0] not in SETTING_UP]
-    # it holds the model while it hands it on: one reference taken and one given back
-    allowed = {"outputs_at": 2}
+    # once a call: one holds the model while it hands it on, one lets other threads run
+    allowed = {"outputs_at": 2, "record": 14}
     assert len(inside) > 400
     for line in inside:
         name, is_head = where[line.number]
