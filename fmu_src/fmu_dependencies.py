@@ -28,7 +28,7 @@ VOLUMES = frozenset(f"main_strut.{what}" for what in ("volume_upper", "volume_lo
 LIQUID = VOLUMES | {f"main_strut.{what}" for what in ("air_fraction", "air_exponent", "bulk_modulus", "bulk_modulus_slope")}
 # the pushes of all legs' struts are equal at the start, so that they do not turn the body
 TURN = CONTACT | {"vehicle.inertia", "vehicle.transverse_load_at"}
-MARGIN = PITCH | LEG | {"drop.mode"}
+MARGIN = PITCH | LEG | {"vehicle.mass", "vehicle.footpad_mass", "drop.mode"}
 
 INPUTS: dict[str, frozenset[str]] = {
     "body.ax": LOADS | GROUND,

@@ -126,7 +126,7 @@ ENERGY_QUANTITIES: tuple[Quantity, ...] = (
 
 STATUS_QUANTITIES: tuple[Quantity, ...] = (
     Quantity("", "0 falling, 1 contact, 2 settled, 3 toppled (beyond its feet, or over)", 0, 3, name="status.phase", kind="integer"),
-    Quantity("m", "horizontal distance from the CG to the nearer outermost footpad, negative beyond it", name="status.stability_margin"),
+    Quantity("m", "from the whole vehicle's CG along x to the nearer outermost footpad, negative beyond", name="status.stability_margin"),
 )  # fmt: skip
 
 LEG_QUANTITIES: tuple[Quantity, ...] = (

@@ -52,8 +52,21 @@ REST_SPEED = 2e-3
 REST_ACCELERATION = 0.05
 
 
-def stability_margin(x, p, w):
-    """Horizontal distance [m] from the CG to the nearer of the outermost footpads in the symmetric plane; negative beyond it."""
+def vehicle_x(y, p, w):
+    """Coordinate x [m] of the whole vehicle's centre of gravity: body and footpads."""
+    mass = p.m_u
+    moment = p.m_u * y[X]
+    for i in range(p.n_groups):
+        footpads = p.count[i] * p.m_d
+        mass += footpads
+        moment += footpads * w[LOADS * i + L_FOOT_X]
+    return moment / mass
+
+
+def stability_margin(y, p, w):
+    """Horizontal distance [m] from the whole vehicle's centre of gravity to the nearer of the outermost footpads in the symmetric plane;
+    negative beyond it."""
+    x = vehicle_x(y, p, w)
     low = w[L_FOOT_X]
     high = low
     for i in range(1, p.n_groups):
@@ -66,7 +79,7 @@ def stability_margin(x, p, w):
 
 
 def phase(y, dy, p, w, margin):
-    """0 falling, 1 contact, 2 settled, 3 toppled (the CG is beyond the outermost footpad, or the body has turned over).
+    """0 falling, 1 contact, 2 settled, 3 toppled (the vehicle's CG is beyond the outermost footpad, or the body has turned over).
 
     Settled: a footpad touches, the kinetic energy is that of 2 mm/s at most, and the body's acceleration is below 0.05 m/s2.
     """
@@ -154,7 +167,7 @@ def outputs(y, u, p, dy, w, E0, out, o):
     out[o + 16] = held + dissipated - supplied - E0
 
     o += ENERGY_OUTPUTS
-    margin = stability_margin(y[X], p, w)
+    margin = stability_margin(y, p, w)
     out[o] = phase(y, dy, p, w, margin)
     out[o + 1] = margin
     o += STATUS_OUTPUTS
