@@ -65,4 +65,5 @@ class FreeFlight:
 
     def lowest(self, duration: float) -> float:
         """The smallest clearance [m] during the last `duration` [s] of the flight, at 65 times."""
-        return min([self.clearance(*self.before_contact(part * duration)[:3]) for part in FLIGHT_CHECKS])
+        parts = FLIGHT_CHECKS if duration > 0.0 else FLIGHT_CHECKS[:1]
+        return min([self.clearance(*self.before_contact(part * duration)[:3]) for part in parts])

@@ -76,7 +76,7 @@ def test_a_scheduler_without_workers_is_said_so(cluster, tmp_path, command):
 
 def test_a_cluster_that_loses_a_worker_in_mid_run_gives_the_very_rows_of_threads(cluster, tmp_path, command):
     cluster.with_workers("one", "two")
-    study = write_study(tmp_path, samples=60, until=0.2)
+    study = write_study(tmp_path, samples=100, until=0.3)
     assert command("sweep", str(study), "--results", str(tmp_path / "threads")).code == 0
     process = start("sweep", study, "--results", "cluster", "--scheduler", cluster.address, cwd=tmp_path)
     cluster.wait_until_working(2)
@@ -91,7 +91,7 @@ def test_a_cluster_that_loses_a_worker_in_mid_run_gives_the_very_rows_of_threads
 
 def test_a_scheduler_that_dies_in_mid_run_ends_the_sweep_and_threads_go_on_with_it(cluster, tmp_path, command):
     cluster.with_workers("two")
-    study = write_study(tmp_path, samples=60, until=0.2)
+    study = write_study(tmp_path, samples=100, until=0.3)
     process = start("sweep", study, "--results", "r", "--scheduler", cluster.address, "--timeout", 1, cwd=tmp_path)
     cluster.wait_until_working(1)
     cluster.processes[0].kill()
@@ -101,7 +101,7 @@ def test_a_scheduler_that_dies_in_mid_run_ends_the_sweep_and_threads_go_on_with_
     assert len(err.strip().splitlines()) == 1
     done = command("sweep", str(study), "--results", str(tmp_path / "r"), "--resume")
     assert done.code == 0, done.err
-    assert [row["index"] for row in rows(tmp_path / "r" / "results.parquet")] == list(range(120))
+    assert [row["index"] for row in rows(tmp_path / "r" / "results.parquet")] == list(range(200))
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:{port}", "nonsense://x"])

@@ -51,7 +51,7 @@ def sensitivity(
         show_plan(task, workers, as_json)
         return
     folder = results if results is not None else Path(f"{read.name}-sensitivity")
-    path = run_task(task, folder, Where(results, resume, workers, scheduler, timeout, strict))
+    path = run_task(task, folder, Where(resume, workers, scheduler, timeout, strict))
     found = indices_of(path, read, wanted, level, resamples)
     picture = plot if plot is not None else folder / "sensitivity.png"
     save_bars(found, picture, f"{read.name}: Sobol indices")

@@ -24,9 +24,8 @@ FAILED, INTERRUPTED = 1, 130
 
 @dataclass(frozen=True)
 class Where:
-    """Where results go and landings run, as the options say."""
+    """How and where landings run, as the options say."""
 
-    results: Path | None
     resume: bool
     workers: int | None
     scheduler: str | None

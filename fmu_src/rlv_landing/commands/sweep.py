@@ -60,7 +60,7 @@ def sweep(
         show_plan(task, workers, as_json)
         return
     folder = results if results is not None else Path(read.name)
-    path = run_task(task, folder, Where(results, resume, workers, scheduler, timeout, strict))
+    path = run_task(task, folder, Where(resume, workers, scheduler, timeout, strict))
     from ..studies.sweep_summary import summarise_results
     from ..sweep_tables import summary_table
 
