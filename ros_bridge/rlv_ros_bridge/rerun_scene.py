@@ -117,6 +117,7 @@ class Scene:
 
     def blueprint(self, live: bool) -> Any:
         """The vehicle on the left, curves on the right; a `live` landing is followed, another played five times slower, in a loop."""
+        # The first plot's legend tells the colours of all that show legs; the last has lines of its own.
         plots = [
             rrb.TimeSeriesView(origin=f"/{c.entity}", name=c.title, plot_legend=rrb.PlotLegend("RightBottom", visible=i in (0, 4)))
             for i, c in enumerate(self._curves)

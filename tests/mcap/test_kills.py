@@ -20,7 +20,7 @@ from rlv_ros_bridge.log_reader import LogReader
 
 STRUTS = {"/landing/struts": "sensor_msgs/msg/JointState"}
 # The landing that is cut short: longer than any moment that is tried [s].
-STOP_TIME = 30
+STOP_TIME = 10
 # What may be lost of what was published before the signal [s].
 LOSS = 0.5
 
