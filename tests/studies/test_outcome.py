@@ -58,7 +58,9 @@ def test_moving_lasts_to_the_end(landings):
 def test_toppled_since_the_cg_is_beyond_the_outermost_footpad_or_the_body_over(landings):
     h, found = landings["toppled"], outcome(landings["toppled"])
     feet = np.array([h[f"leg[{leg}].footpad.x"] for leg in LEGS])
-    beyond = (h["body.x"] > feet.max(axis=0)) | (h["body.x"] < feet.min(axis=0))
+    body, foot = h.parameters.vehicle.mass, h.parameters.vehicle.footpad_mass
+    cg = (body * h["body.x"] + foot * feet.sum(axis=0)) / (body + foot * len(LEGS))
+    beyond = (cg > feet.max(axis=0)) | (cg < feet.min(axis=0))
     over = np.abs(h["body.pitch"]) > np.pi / 2
     assert found.time == h.time[np.flatnonzero(~(beyond | over))[-1] + 1]
     assert found.margins["stability_end"] < 0.0

@@ -56,8 +56,8 @@ class Outcome:
 
     `name` is the severest that holds, in this order:
 
-    - toppled: at the end the vehicle's CG is beyond the outermost footpad or the body has turned over (`status.phase` 3). A vehicle that was beyond
-      its feet for a moment and came back has not toppled. `time` is when it went for good;
+    - toppled: at the end the vehicle's CG is beyond the outermost footpad or the body has turned over (`status.phase` 3). A vehicle that
+      was beyond its feet for a moment and came back has not toppled. `time` is when it went for good;
     - bottomed out: a damper's stroke has passed `main_strut.stroke_max`, where it meets its stop. `time` when the first did;
     - slid: a footpad is further than the threshold from where it first touched. `time` when it first was;
     - moving: neither at rest nor lost at the end, which is `time`: run it longer;
