@@ -58,12 +58,13 @@ def cli() -> None:
     rlv-landing parameters --toml > mine.toml          a parameter file to edit
     rlv-landing validate --html report.html            every printed number and figure beside ours
     rlv-landing identify --work identification         estimate what the paper does not print, or your vehicle's own
-    rlv-landing envelope examples/envelope.toml        where landings turn from stable to lost, and what is critical there
     rlv-landing audit                                  energy, mass, momentum, rest, convergence
     rlv-landing sweep study.toml                       many landings: factors in, a row of responses each
     rlv-landing sensitivity study.toml                 which factors the responses depend on: Sobol indices
+    rlv-landing envelope examples/envelope.toml        where landings turn from stable to lost, and what is critical there
     rlv-landing node --mode 2-2                        the ROS 2 node: steps the FMU, publishes, records
     rlv-landing log info logs/NAME                     what a log holds
+    rlv-landing view logs/NAME                         a log, or the live topics, in a browser
     rlv-landing animate logs/NAME landing.mp4          a log, or a landing, as a moving picture
     rlv-landing replay logs/NAME                       publish it again
 
