@@ -14,6 +14,7 @@ from rlv_landing.durable import write_durably
 from rlv_landing.errors import LandingError
 
 from .log_reader import FINISHED, UNFINISHED
+from .mcap_stream import LIBRARY
 
 # A killed writer loses at most the open chunk and what was not yet flushed.
 CHUNK_BYTES = 60 * 1024
@@ -108,7 +109,7 @@ class BagWriter:
             self._file = self.part.open("xb")
             # With the data's own checksum, any byte that is changed later is noticed.
             self.mcap: Any = Writer(self._file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD, enable_data_crcs=True)
-            self.mcap.start(profile="ros2", library=f"rlv-landing {__version__}")
+            self.mcap.start(profile="ros2", library=f"{LIBRARY} {__version__}")
             self.mcap.add_metadata("rosbag2", {"ROS_DISTRO": distro()})
         except BaseException:
             self.discard()

@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import IO, Any
 
 MAGIC = b"\x89MCAP0\r\n"
+# What the header of our logs calls their writer. It gives every checksum, and has all messages in compressed chunks.
+LIBRARY = "rlv-landing"
 HEAD = struct.Struct("<BQ")
 FOOTER_CRC_FROM = 16
 MESSAGE_HEAD = 22
@@ -55,10 +57,11 @@ class RecordStream:
         self.lost = 0
         self.summary_is_right = False
         self._with_summary = summary
-        self._in_summary = False
-        self._summary = 0
+        self._in_summary, self._summary = False, 0
         self._crc = self._crc_before = 0
         self._messages = 0
+        self._ours = False
+        self._checked: bool | None = None
 
     def __iter__(self) -> Iterator[Any]:
         with self.path.open("rb") as file:
@@ -72,14 +75,14 @@ class RecordStream:
                     opcode, body = frame(file, position, size)
                     self._crc_before, self._crc = self._crc, zlib.crc32(body, zlib.crc32(HEAD.pack(opcode, len(body)), self._crc))
                     following = position + HEAD.size + len(body)
-                    records = self._open(opcode, body, file, position) if opcode in READ else []
+                    records = self._open(opcode, body, file, position, size) if opcode in READ else []
                 except DamageError as e:
                     # The length may be what is damaged: a whole chunk before the next record, as told by it, counts for more.
-                    found = search_chunk(file, position + 1, size if following is None else following)
+                    found = search_chunk(file, position + 1, size if following is None else following, self._is_checked(file, size))
                     following = found if found is not None else following
                     if following is None:
                         # Nothing can be told from here on: the file is cut.
-                        yield from self._count(rest_of_chunk(file, position, size))
+                        yield from self._count([] if self._ours else rest_of_chunk(file, position, size))
                         self.lost += size - position
                         return
                     self.damage.append(f"byte {position}: {e}")
@@ -91,17 +94,22 @@ class RecordStream:
                     self._end(file, position, size)
                     return
 
-    def _open(self, opcode: int, body: bytes, file: IO[bytes], position: int) -> list[Any]:
+    def _open(self, opcode: int, body: bytes, file: IO[bytes], position: int, size: int) -> list[Any]:
         """The records that a record comes to: itself, or what is in the chunk. Raises DamageError."""
-        if opcode == ATTACHMENT and body[-4:] not in (bytes(4), zlib.crc32(body[:-4]).to_bytes(4, "little")):
+        checked = opcode in (ATTACHMENT, MESSAGE, CHUNK) and self._is_checked(file, size)
+        if opcode == ATTACHMENT and is_wrong(int.from_bytes(body[-4:], "little"), zlib.crc32(body[:-4]), checked):
             raise DamageError("an attachment's checksum is wrong")
+        if opcode == MESSAGE and checked:
+            raise DamageError("a message lies outside the chunks, without a checksum")
         record = decode(opcode, body)
-        if opcode == DATA_END:
+        if opcode == HEADER and record.library.startswith(LIBRARY):
+            self._ours = self._checked = True
+        elif opcode == DATA_END:
             self._in_summary = True
             self._summary = position + HEAD.size + len(body)
-            if record.data_section_crc not in (0, self._crc_before) and not self.damage:
+            if is_wrong(record.data_section_crc, self._crc_before, self._ours) and not self.damage:
                 self.damage.append("its checksum is wrong: bytes were changed")
-        elif opcode == FOOTER and record.summary_crc:
+        elif opcode == FOOTER and (record.summary_crc or self._ours):
             # Bytes that were put in or lost before have moved the summary: it begins where the data end, whatever the footer says.
             file.seek(self._summary)
             self.summary_is_right = zlib.crc32(file.read(position + HEAD.size + FOOTER_CRC_FROM - self._summary)) == record.summary_crc
@@ -110,8 +118,14 @@ class RecordStream:
         elif opcode == STATISTICS and record.message_count != self._messages and not self.damage:
             self.damage.append(f"{self._messages} of {record.message_count} messages are there")
         if opcode == CHUNK:
-            return open_chunk(record)
+            return open_chunk(record, checked)
         return [] if self._in_summary and not self._with_summary else [record]
+
+    def _is_checked(self, file: IO[bytes], size: int) -> bool:
+        """Whether the file's writer gave checksums: it is ours, or at least one chunk's checksum is there and right."""
+        if self._checked is None:
+            self._checked = search_chunk(file, len(MAGIC), size, checked=True, unless=0) is not None
+        return self._checked
 
     def _count(self, records: list[Any]) -> Iterator[Any]:
         from mcap.records import Message
@@ -142,6 +156,11 @@ def frame(file: IO[bytes], position: int, size: int) -> tuple[int, bytes]:
     return opcode, body
 
 
+def is_wrong(checksum: int, found: int, checked: bool) -> bool:
+    """Whether a stored `checksum` tells of damage. 0 is none in MCAP; where all have been `checked`, it is that of one chunk in 2**32."""
+    return checksum != found and (checksum != 0 or checked)
+
+
 def decode(opcode: int, body: bytes) -> Any:
     """The record that `body` holds, as one of `mcap.records`. Raises DamageError, also where it does not fill `body`."""
     from mcap.data_stream import RecordBuilder
@@ -159,8 +178,8 @@ def decode(opcode: int, body: bytes) -> Any:
     return record
 
 
-def open_chunk(chunk: Any) -> list[Any]:
-    """The schemas, channels and messages of a chunk. Raises DamageError: checksum, sizes, or anything in it is wrong."""
+def open_chunk(chunk: Any, checked: bool) -> list[Any]:
+    """The schemas, channels and messages of a chunk; `checked` as in `is_wrong`. Raises DamageError: anything in it is wrong."""
     import zstandard
     from mcap.records import Chunk
     from mcap.stream_reader import breakup_chunk, get_chunk_data_stream
@@ -169,8 +188,10 @@ def open_chunk(chunk: Any) -> list[Any]:
         promised = zstandard.frame_content_size(chunk.data) if chunk.compression == "zstd" else chunk.uncompressed_size
         if not 0 <= chunk.uncompressed_size <= LARGEST_CHUNK or promised not in (-1, chunk.uncompressed_size):
             raise DamageError("a chunk's size is wrong")
-        stream, length = get_chunk_data_stream(chunk, validate_crc=True)
+        stream, length = get_chunk_data_stream(chunk)
         data = stream.read(length)
+        if is_wrong(chunk.uncompressed_crc, zlib.crc32(data), checked):
+            raise DamageError("a chunk's checksum is wrong")
         whole = data[: sum(len(part) for part in frames(data))]
         if len(whole) != len(data) or len(data) != chunk.uncompressed_size:
             raise DamageError("a chunk's sizes contradict each other")
@@ -206,22 +227,22 @@ def rest_of_chunk(file: IO[bytes], position: int, size: int) -> list[Any]:
     return found
 
 
-def search_chunk(file: IO[bytes], position: int, size: int) -> int | None:
-    """Where the next whole, right chunk begins at or after `position`; None where none lies before `size`."""
+def search_chunk(file: IO[bytes], position: int, size: int, checked: bool, unless: int | None = None) -> int | None:
+    """Where the next whole, right chunk begins from `position` on, its checksum not `unless`; None where none lies before `size`."""
     while position < size:
         file.seek(position)
         window = file.read(WINDOW + HEAD.size + CHUNK_FIELDS.size + 8)
         for match in CHUNK_START.finditer(window):
             at = position + match.start()
             (length,) = struct.unpack_from("<Q", window, match.start() + 1)
-            *_, named = CHUNK_FIELDS.unpack_from(window, match.start() + HEAD.size)
+            *_, checksum, named = CHUNK_FIELDS.unpack_from(window, match.start() + HEAD.size)
             file.seek(at + HEAD.size + CHUNK_FIELDS.size + named)
             (inner,) = struct.unpack("<Q", file.read(8).ljust(8, b"\xff"))
-            if length != CHUNK_FIELDS.size + named + 8 + inner or at + HEAD.size + length > size:
+            if checksum == unless or length != CHUNK_FIELDS.size + named + 8 + inner or at + HEAD.size + length > size:
                 continue
             try:
                 opcode, body = frame(file, at, size)
-                open_chunk(decode(opcode, body))
+                open_chunk(decode(opcode, body), checked)
             except DamageError:
                 continue
             return at

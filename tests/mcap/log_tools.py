@@ -7,8 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from mcap.data_stream import RecordBuilder
 from mcap.reader import make_reader
-from mcap.records import Attachment, Channel, Message, Metadata, Schema
+from mcap.records import Attachment, Channel, Chunk, DataEnd, Footer, Header, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader
 from mcap.writer import Writer
 
@@ -48,10 +49,11 @@ def rewrite(source: Path, folder: Path, change: Change = lambda record: record) 
     channels: dict[int, int] = {}
     topics: dict[int, str] = {}
     with source.open("rb") as f, target.open("wb") as out:
-        writer = Writer(out, chunk_size=50_000)
-        writer.start("ros2")
+        writer = Writer(out, chunk_size=50_000, enable_data_crcs=True)
         for record in StreamReader(f).records:
-            if isinstance(record, Schema) and record.id not in schemas:
+            if isinstance(record, Header):
+                writer.start(record.profile, record.library)
+            elif isinstance(record, Schema) and record.id not in schemas:
                 schemas[record.id] = writer.register_schema(record.name, record.encoding, record.data)
             elif isinstance(record, Channel) and record.id not in channels:
                 topics[record.id] = record.topic
@@ -73,6 +75,14 @@ def rewrite(source: Path, folder: Path, change: Change = lambda record: record) 
                     writer.add_metadata(m.name, m.metadata)
         writer.finish()
     return target
+
+
+def write_with_chunk(file: Path, chunk: Chunk, library: str = "") -> None:
+    """A file whose only chunk is `chunk`, with an end, as if `library` had written it."""
+    builder = RecordBuilder()
+    for record in (Header("ros2", library), chunk, DataEnd(0), Footer(0, 0, 0)):
+        record.write(builder)
+    file.write_bytes(b"\x89MCAP0\r\n" + builder.end() + b"\x89MCAP0\r\n")
 
 
 def in_message(topic: str, nanoseconds: int, change: Callable[[bytes], bytes | None]) -> Change:

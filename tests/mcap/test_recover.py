@@ -12,12 +12,11 @@ import zlib
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 import zstandard
 from bridge_tools import TIMEOUT, command, environment, one_error_line, run
-from log_tools import CDR, messages_of, rewrite, small_log
+from log_tools import CDR, messages_of, rewrite, small_log, write_with_chunk
 from mcap.reader import make_reader
 from mcap.records import Chunk, Message
 from mcap.stream_reader import StreamReader
@@ -249,17 +248,6 @@ def test_a_chunk_that_claims_gigabytes_does_not_fill_the_memory(tmp_path: Path) 
         [sys.executable, "-c", code, *files], env=environment(), capture_output=True, text=True, timeout=TIMEOUT, check=True
     )
     assert int(done.stdout) * 1024 < LARGEST_CHUNK
-
-
-def write_with_chunk(file: Path, chunk: Any) -> None:
-    """A file whose only chunk is `chunk`, with an end."""
-    from mcap.data_stream import RecordBuilder
-    from mcap.records import DataEnd, Footer, Header
-
-    builder = RecordBuilder()
-    for record in (Header("ros2", ""), chunk, DataEnd(0), Footer(0, 0, 0)):
-        record.write(builder)
-    file.write_bytes(b"\x89MCAP0\r\n" + builder.end() + b"\x89MCAP0\r\n")
 
 
 def test_a_chunk_whose_checksum_is_right_is_read(tmp_path: Path) -> None:
