@@ -22,9 +22,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from bench_landing import FMU, append_rows
 from rich.console import Console
 from rich.table import Table
+from rows import FMU, append_rows
 
 from rlv_ros_bridge.fmu_runner import FmuRunner
 from rlv_ros_bridge.messages import SampleBytes

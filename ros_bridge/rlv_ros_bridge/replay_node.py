@@ -17,6 +17,7 @@ from rclpy.node import Node
 from rclpy.serialization import serialize_message
 from rclpy.validate_full_topic_name import validate_full_topic_name
 from std_srvs.srv import Trigger
+from tqdm import tqdm
 
 from rlv_landing.errors import LandingError
 
@@ -110,6 +111,8 @@ class ReplayNode(Node):
         played = turns = 0
         # One step of the log lies between the last message of a turn and the first of the next.
         period = selection.length + selection.step
+        # The progress bars' lock is made here, for that takes milliseconds.
+        tqdm.get_lock()
         gc.collect()
         gc.freeze()
         gc.disable()
@@ -147,8 +150,6 @@ class ReplayNode(Node):
 
     def _turn(self, epoch: int) -> int:
         """One turn; `epoch` [ns] is added to the stamps. How many messages were played."""
-        from tqdm import tqdm
-
         selection, clock = self._selection, self._clock_of_log
         restamp = Restamper(self._types, epoch) if epoch else None
         next_tick = epoch / 1e9 if self._clock_publisher is not None else math.inf
