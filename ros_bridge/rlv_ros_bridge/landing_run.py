@@ -132,9 +132,12 @@ class LandingRun:
                 self._work += MEMORY * (time.perf_counter() - started - self._work)
                 pacer.hold(k, interrupted)
                 live.offer_sample(self._places, messages, k, pacer.due(k))
-                self._occasional(k, values)
                 self.samples = k + 1
-                live.publish(pacer.due(k + 1) - 1.5 * self._work)
+                latest = pacer.due(k + 1) - 1.5 * self._work
+                # The sample goes out before what is made now and then.
+                live.publish(latest)
+                if self._occasional(k, values):
+                    live.publish(latest)
         finally:
             pacer.stop()
             sys.setswitchinterval(switch_before)
@@ -181,14 +184,19 @@ class LandingRun:
                 self._tell(f"{recorder.error}; the landing goes on unrecorded")
         return values, messages
 
-    def _occasional(self, k: int, values: Sequence[float]) -> None:
-        stamp = k * self.settings.step_ns
+    def _occasional(self, k: int, values: Sequence[float]) -> bool:
+        """What is not said at each sample; whether anything was."""
+        stamp, said = k * self.settings.step_ns, False
         if k % self._markers_every == 0 or self.end:
             self._say(topics.MARKERS, stamp, self._wireframe.pack(stamp, values))
+            said = True
         if k % self._tf_every == 0 or self.end:
             self._say(topics.TF, stamp, self._transforms.pack(stamp, values))
+            said = True
         if k % self._diagnostics_every == 0 or self.end:
             self._say(topics.DIAGNOSTICS, stamp, padded(serialize_message(self._report(k, values))))
+            said = True
+        return said
 
     def _say(self, topic: Topic, stamp: int, data: bytes) -> None:
         if self.recorder is not None:

@@ -112,7 +112,7 @@ class ReplayNode(Node):
         # One step of the log lies between the last message of a turn and the first of the next.
         period = selection.length + selection.step
         # The progress bars' lock is made here, for that takes milliseconds.
-        tqdm.get_lock()
+        tqdm.get_lock()  # type: ignore[no-untyped-call]
         gc.collect()
         gc.freeze()
         gc.disable()
