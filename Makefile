@@ -30,7 +30,7 @@ $(VENV)/.packages: pyproject.toml
 	@touch $@
 
 $(VENV)/.core: $(VENV)/.packages setup.py fmu_src/core_source.py $(CORE)
-	$(BIN)/python setup.py -q build_ext --inplace
+	$(BIN)/python setup.py -q build_ext --inplace --force
 	@touch $@
 
 $(FMU): $(VENV)/.core $(SLAVE) build_fmu.sh
