@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import shutil
+import signal
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from subprocess import CalledProcessError
@@ -140,10 +141,25 @@ def _ffmpeg(ending: str) -> Iterator[Any]:
         yield FFMpegWriter
 
 
+@contextmanager
+def _signals_held() -> Iterator[None]:
+    """Signals that end the program wait meanwhile, and never reach the programs that are started here: ffmpeg ends with its input."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def _write(writer: Any, figure: MovingFigure, path: Path, dpi: float, tell: Callable[[int, int], None] | None) -> None:
     stopped: BaseException | None = None
     try:
-        with writer.saving(figure.figure, str(path), dpi):
+        with ExitStack() as saving:
+            with _signals_held():
+                saving.enter_context(writer.saving(figure.figure, str(path), dpi))
             try:
                 for i in range(figure.frames):
                     figure.show(i)
@@ -153,7 +169,7 @@ def _write(writer: Any, figure: MovingFigure, path: Path, dpi: float, tell: Call
             except BaseException as e:
                 stopped = e
     except Exception:
-        # Ctrl-C reaches ffmpeg as well, which may end with an error of its own; a GIF without a frame cannot be ended.
+        # A GIF without a frame cannot be ended.
         if stopped is None:
             raise
     if stopped is not None:
