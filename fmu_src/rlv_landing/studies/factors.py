@@ -14,6 +14,7 @@ from ..errors import LandingError, unknown
 from ..parameters import PARAMETER_QUANTITIES, check_value
 from ..presets import parse_value, unit_scale
 from ..quantities import INPUT_QUANTITIES, Quantity
+from . import toml_keys
 
 Array = NDArray[np.float64]
 # what a study may vary or set: every parameter, and every input as a constant from the start on
@@ -99,9 +100,7 @@ def read_factor(entry: Mapping[str, Any]) -> Factor:
         raise LandingError('a [[factor]] has no name; write for example name = "drop.tilt"')
     q = variable(entry["name"], "factor")
     where = f"factor {q.name}"
-    for key in entry:
-        if key not in ALL_KEYS:
-            raise unknown(f"key of {where}", key, ALL_KEYS)
+    toml_keys.only(entry, ALL_KEYS, f"key of {where}")
     unit = entry.get("unit", q.unit)
     if not isinstance(unit, str):
         raise LandingError(f'{where}: unit = {unit!r} must be a text, for example unit = "{q.display_unit or q.unit}"')
