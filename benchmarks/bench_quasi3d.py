@@ -19,6 +19,7 @@ import os
 import subprocess
 import sys
 import time
+from array import array
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -29,17 +30,21 @@ from rich.table import Table
 from rows import append_rows
 from scipy.integrate import solve_ivp
 
-from rlv_landing import Landing, load_preset
-from rlv_landing.core import layout
-from rlv_landing.core.model import Model
-from rlv_landing.core.vehicle import right_hand_side
-from rlv_landing.landing import build_model
+from rlv_landing import Landing, Parameters, load_preset
+from rlv_landing.assembly import build_system, new_solver
+from rlv_landing.core.bodies.planar import Planar
+from rlv_landing.landing import DEFAULT_RTOL
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent / "tests" / "independent"))
 from vehicle_3d import LEGS, SCALE, Vehicle3D  # noqa: E402
 
 PRESET = "yue2022-figures"
+# the files of the core that do arithmetic in a right-hand side
+PARTS = (
+    "bodies.planar_legs", "bodies.planar_motion", "leg", "struts.liquid_spring", "struts.end_stops", "struts.fluid", "struts.elastic",
+    "ground.normal", "ground.paper_friction",
+)  # fmt: skip
 STROKES = [f"leg[{leg}].main_strut.stroke" for leg in (1, 2, 3, 4)]
 BODY = ("x", "y", "pitch", "vx", "vy", "pitch_rate")
 METHOD = "dormand-prince"
@@ -130,26 +135,24 @@ def count(work: Any) -> tuple[int, int]:
     return Count.operations, Count.functions
 
 
-def work_of_core(landing: Landing) -> tuple[int, int]:
-    """Work of one right-hand side of the plain core at the landing's present state."""
+def work_of_core(parameters: Parameters, time: float) -> tuple[int, int]:
+    """Work of one right-hand side of the plain core at `time` [s] of a landing."""
     replaced = []
-    for part in ("vehicle", "leg", "damper", "fluid", "contact", "auxiliary_strut"):
+    for part in PARTS:
         module = import_module(f"rlv_landing.core.{part}")
         for name in ("sin", "cos", "sqrt", "exp", "tanh", "fabs", "pow"):
             if hasattr(module, name):
                 replaced.append((module, name, getattr(module, name)))
                 special = {"fabs": abs, "pow": lambda a, b: (a if isinstance(a, Count) else Count(a)) ** b}
                 setattr(module, name, special.get(name, lambda a, name=name: getattr(a if isinstance(a, Count) else Count(a), name)()))
-    built = build_model(landing.parameters)
-    model = Model(built.sin_g, built.cos_g, built.count, built.share_x)
-    for name in dir(built):
-        if not name.startswith("_") and isinstance(getattr(built, name), float):
-            setattr(model, name, getattr(built, name))
-    landing.values()
-    y: list[Any] = [Count(v) for v in landing._y]
-    u: list[Any] = [Count(0.0) for _ in range(layout.INPUTS)]
+    system, solver = build_system(parameters, Planar), new_solver(parameters, DEFAULT_RTOL)
+    state = array("d", bytes(8 * solver.n))
+    solver.advance(time)
+    solver.interpolate(time, state)
+    y: list[Any] = [Count(v) for v in state]
+    u: list[Any] = [Count(0.0) for _ in range(system.inputs)]
     try:
-        return count(lambda: right_hand_side(y, u, model, [0.0] * len(y), [0.0] * 200))
+        return count(lambda: system.rhs(y, u, [0.0] * len(y)))
     finally:
         for module, name, function in replaced:
             setattr(module, name, function)
@@ -205,10 +208,9 @@ def measure(mode: str) -> list[dict[str, Any]]:
     done = subprocess.run(command, capture_output=True, text=True, check=True, env={**os.environ, "RLV_LANDING_PURE": "1"})
     pure_seconds = float(done.stdout)
 
-    landing = Landing(load_preset(PRESET), mode)
-    landing.advance_to(MOMENT)
-    core_work = work_of_core(landing)
-    counted = Counted3D(landing.parameters)
+    parameters = load_preset(PRESET, mode)
+    core_work = work_of_core(parameters, MOMENT)
+    counted = Counted3D(parameters)
     state = np.array([Count(v) for v in states[:, round(MOMENT * 1e3)]], dtype=object)
     space_work = count(lambda: counted(MOMENT, state))
 

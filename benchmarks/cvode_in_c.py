@@ -76,7 +76,7 @@ class CvodeInC:
         m = problem.m
         # kept, because SUNDIALS works in them
         self._y, self._atol = doubles(problem.state), doubles(rtol * problem.scale)
-        self._landing = Yardstick(problem.landing(), rtol)
+        self._landing = Yardstick(problem.landing().parameters, rtol)
         self._bridge = Bridge(self._landing._landing, cast(sundials("core").N_VGetArrayPointer, c_void_p))
         self._context = c_void_p()
         call("SUNContext_Create", 0, byref(self._context))

@@ -24,7 +24,7 @@ from scipy.integrate import odeint, solve_ivp
 from sksundae.cvode import CVODE
 
 from rlv_landing import load_preset
-from rlv_landing.core.integrator import LONGEST_STEP
+from rlv_landing.core.solvers.solver import LONGEST_STEP
 
 sys.path.insert(0, str(HERE.parent / "tests" / "independent"))
 import mujoco
@@ -67,7 +67,7 @@ class RightHandSide:
 
     def __init__(self, problem: Problem) -> None:
         self.problem = problem
-        self.solver = problem.landing()._solver
+        self.solver = problem.new_solver()
         self.start = self.solver.rhs_calls
         m = problem.m
         y, dy = np.zeros(problem.n), np.zeros(problem.n)

@@ -20,9 +20,9 @@ from rows import FMU
 from yardstick import EXACT, FAST, Yardstick, core_states
 
 from rlv_landing import load_preset
-from rlv_landing.core.exponential import Exponential as PureExponential
-from rlv_landing.core.model import Model as PureModel
-from rlv_landing.landing import build_model
+from rlv_landing.assembly import new_solver
+from rlv_landing.core.bodies.planar import Planar as PurePlanar
+from rlv_landing.core.solvers.exponential import Exponential as PureExponential
 from rlv_landing.quantities import MODES
 
 TOLERANCES = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6, 1e-7)
@@ -59,12 +59,12 @@ def core(name: str, method: str) -> Peer:
         landing = problem.landing(rtol, method)
         return Task(lambda: landing.advance_to(UNTIL), lambda: landing.statistics["rhs_calls"])
 
-    return Peer(name, "ours", TOLERANCES, task, lambda problem, rtol: problem.error(core_states(problem.landing(rtol, method), TIMES)))
+    return Peer(name, "ours", TOLERANCES, task, lambda problem, rtol: problem.error(core_states(problem.new_solver(rtol, method), TIMES)))
 
 
 def cores_error(problem: Problem, rtol: float) -> Error:
     """The error of the compiled core, for those that give its digits."""
-    return problem.error(core_states(problem.landing(rtol), TIMES))
+    return problem.error(core_states(problem.new_solver(rtol), TIMES))
 
 
 def sampled(problem: Problem, rtol: float) -> Task:
@@ -75,11 +75,7 @@ def sampled(problem: Problem, rtol: float) -> Task:
 
 def pure(problem: Problem, rtol: float) -> Task:
     """The core uncompiled."""
-    model = build_model(load_preset(PRESET).for_mode(problem.mode), PureModel)
-    solver = PureExponential(model, problem.solver.scale, problem.solver.relative, rtol)
-    for i, value in enumerate(problem.state):
-        solver.y[i] = float(value)
-    solver.restart(0.0)
+    solver = new_solver(load_preset(PRESET, problem.mode), rtol, PureExponential, PurePlanar)
     return Task(lambda: solver.advance(UNTIL), lambda: int(solver.rhs_calls))
 
 
@@ -87,11 +83,11 @@ def in_c(name: str, options: tuple[str, ...]) -> Peer:
     """The yardstick, compiled with `options`."""
 
     def task(problem: Problem, rtol: float) -> Task:
-        landing = Yardstick(problem.landing(), rtol, options)
+        landing = Yardstick(problem.landing().parameters, rtol, options)
         return Task(lambda: landing.advance(UNTIL), lambda: landing.statistics()["rhs_calls"])
 
     def deviation(problem: Problem, rtol: float) -> Error:
-        return problem.error(Yardstick(problem.landing(), rtol, options).states(TIMES))
+        return problem.error(Yardstick(problem.landing().parameters, rtol, options).states(TIMES))
 
     return Peer(name, "C", TOLERANCES, task, deviation)
 

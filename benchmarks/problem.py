@@ -16,7 +16,9 @@ import numpy as np
 from yardstick import core_states
 
 from rlv_landing import Landing, load_preset
-from rlv_landing.core import Solver, layout
+from rlv_landing.assembly import new_solver
+from rlv_landing.core import Solver
+from rlv_landing.landing import METHODS
 from rlv_landing.quantities import LEG_QUANTITIES, MODES, SHARED_QUANTITIES
 
 UNTIL = 1.0
@@ -53,17 +55,19 @@ class Problem:
     def __init__(self, mode: str) -> None:
         self.mode = mode
         self.groups = len(MODES[mode])
-        landing = self.landing()
-        self.solver: Solver = landing._solver
-        self.n = self.solver.n
-        self.m = self.n - layout.INTEGRALS
+        self.solver = self.new_solver()
+        self.n, self.m = self.solver.n, self.solver.system.controlled
         self.state = np.array(self.solver.y)[: self.m]
-        self.scale = np.array(self.solver.scale)[: self.m]
-        self.relative = np.array(self.solver.relative)[: self.m]
+        self.scale = np.array(self.solver.system.scale)[: self.m]
+        self.relative = np.array(self.solver.system.relative)[: self.m]
 
     def landing(self, rtol: float = 1e-5, method: str = "exponential") -> Landing:
         """A new landing."""
         return Landing(load_preset(PRESET), self.mode, rtol, method)
+
+    def new_solver(self, rtol: float = 1e-5, method: str = "exponential") -> Solver:
+        """The kernels of a new landing."""
+        return new_solver(load_preset(PRESET, self.mode), rtol, METHODS[method])
 
     def series(self, states: np.ndarray) -> np.ndarray:
         """[force, force, stroke; leg group; time] of the `states` at TIMES, one a row, with or without the energy integrals."""
@@ -79,7 +83,7 @@ class Problem:
     @cached_property
     def reference(self) -> np.ndarray:
         """The `series` at tolerance 1e-11."""
-        return self.series(core_states(self.landing(REFERENCE_RTOL), TIMES))
+        return self.series(core_states(self.new_solver(REFERENCE_RTOL), TIMES))
 
     def error(self, states: np.ndarray) -> Error:
         """Error of the `states` at TIMES."""

@@ -14,15 +14,16 @@ from typing import Any
 
 import numpy as np
 
-from rlv_landing import Landing
-from rlv_landing.core import layout
+from rlv_landing import Parameters
+from rlv_landing.assembly import body_model, leg_models, leg_places, new_solver
+from rlv_landing.core import Solver
 from rlv_landing.quantities import INPUT_NAMES
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent / "fmu_src"))
 from core_source import COMPILE_ARGS  # noqa: E402
 
-# of `rlv_landing.core.model.Model`, in the order of the C struct that is made from them
+# of the core's `BodyModel` and `LegModel`, which are the same for all legs here, in the order of the C struct that is made from them
 PARAMETERS = (
     "m_u", "I_u", "m_d", "at_joint", "La", "Lb", "Lm0", "A1", "A2", "V10", "V20", "Pa", "rho0", "x_air", "n_air", "B0", "kB",
     "CdAo_c", "CdAo_r", "dP_lam", "Fc", "kp", "Fs", "v_str", "v_sm", "s_max", "K_stop", "c_stop", "Lc", "Ld", "Ls0", "Ka", "ek", "Ca",
@@ -61,27 +62,28 @@ def doubles(values: Any) -> Any:
 
 
 class Yardstick:
-    """One landing in C, from the start of the same `Landing`; `inputs` by name go on at the rates `rates` [unit/s].
+    """One landing in C, from the start of a landing with the same parameters; `inputs` by name go on at the rates `rates` [unit/s].
 
     Raises MemoryError without memory, ArithmeticError where the step size has collapsed.
     """
 
     def __init__(
         self,
-        landing: Landing,
+        parameters: Parameters,
         rtol: float,
         options: tuple[str, ...] = EXACT,
         inputs: Mapping[str, float] | None = None,
         rates: Mapping[str, float] | None = None,
     ) -> None:
-        solver, model = landing._solver, landing._model
-        groups = [x for i in range(model.n_groups) for x in (model.sin_g[i], model.cos_g[i], model.count[i], model.share_x[i])]
-        self.n = solver.n
+        solver, body, legs, places = new_solver(parameters, rtol), body_model(parameters), leg_models(parameters), leg_places(parameters)
+        groups = [x for place, leg in zip(places, legs) for x in (*place, leg.share_1)]
+        numbers = {**legs[0]._asdict(), **body._asdict()}
+        self.n, self.controlled = solver.n, solver.system.controlled
         self._library = library(options)
         self._landing = self._library.landing(
-            doubles([getattr(model, name) for name in PARAMETERS]),
-            model.n_groups,
-            *(doubles(a) for a in (groups, list(solver.y), solver.scale, solver.relative)),
+            doubles([numbers[name] for name in PARAMETERS]),
+            len(legs),
+            *(doubles(a) for a in (groups, list(solver.y), list(solver.system.scale), list(solver.system.relative))),
             rtol,
             *(doubles([(values or {}).get(name, 0.0) for name in INPUT_NAMES]) for values in (inputs, rates)),
         )
@@ -107,30 +109,30 @@ class Yardstick:
         return rows
 
     def statistics(self) -> dict[str, int]:
-        """As `Landing.statistics`."""
+        """What the integrator has done so far: steps, rejected steps, calls of the right-hand side."""
         three = (c_double * 3)()
         self._library.counts(self._landing, three)
         return dict(zip(("steps", "rejected", "rhs_calls"), map(int, three)))
 
 
-def core_states(landing: Landing, times: Any) -> np.ndarray:
-    """The states of the core at `times` [s], one a row."""
-    solver, one = landing._solver, array("d", bytes(8 * landing._solver.n))
-    rows = np.empty((len(times), solver.n))
+def core_states(solver: Solver, times: Any) -> np.ndarray:
+    """The states of the core at `times` [s], one a row. Raises ArithmeticError where the step size has collapsed."""
+    rows, one = np.empty((len(times), solver.n)), array("d", bytes(8 * solver.n))
     for row, t in zip(rows, times):
-        landing.advance_to(t)
+        if not solver.advance(t):
+            raise ArithmeticError("the step size of the core has collapsed")
         solver.interpolate(t, one)
         row[:] = one
     return rows
 
 
-def disagreement(landing: Landing, yardstick: Yardstick, until: float) -> float:
+def disagreement(solver: Solver, yardstick: Yardstick, until: float) -> float:
     """Largest difference of any state, less the energy integrals, every millisecond up to `until` [s], relative to that state's largest
     value; infinite where the two have not taken the same numbers of steps, rejected steps and right-hand sides."""
     times = 1e-3 * np.arange(round(until / 1e-3) + 1)
-    n = yardstick.n - layout.INTEGRALS
-    core, c = (states[:, :n] for states in (core_states(landing, times), yardstick.states(times)))
-    if landing.statistics != yardstick.statistics():
+    n = yardstick.controlled
+    core, c = (states[:, :n] for states in (core_states(solver, times), yardstick.states(times)))
+    if (solver.steps, solver.rejected, solver.rhs_calls) != tuple(yardstick.statistics().values()):
         return np.inf
     largest = np.abs(core).max(axis=0)
     return float((np.abs(core - c).max(axis=0) / np.where(largest > 0.0, largest, 1.0)).max())

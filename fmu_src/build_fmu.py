@@ -30,7 +30,7 @@ from fmu_documentation import write_documentation
 HERE = Path(__file__).parent
 ROOT = HERE.parent
 PACKAGE = HERE / "rlv_landing"
-MODULES = ("__init__.py", "errors.py", "quantities.py", "parameters.py", "touchdown.py", "landing.py")
+MODULES = ("__init__.py", "errors.py", "quantities.py", "parameters.py", "touchdown.py", "assembly.py", "landing.py")
 # pythonfmu's command line, CSV tool and builder, which no slave needs
 NOT_NEEDED = ("__main__.py", "csvbuilder.py", "deploy.py", "builder.py", "osutil.py")
 # the line of pythonfmu's `__init__.py` that imports the builder, and with it argparse, logging and minidom: a third of an instance
@@ -74,13 +74,15 @@ def lay_out(folder: Path) -> tuple[Path, Path]:
     """Copy slave and package to `folder` under names that carry the version, so that two versions live in one process."""
     name = "rlv_landing_" + re.sub(r"\W", "_", version())
     package = folder / name
-    (package / "core").mkdir(parents=True)
+    package.mkdir()
     for module in MODULES:
         shutil.copy(PACKAGE / module, package / module)
-    for file in sorted((PACKAGE / "core").iterdir()):
+    for file in sorted((PACKAGE / "core").rglob("*")):
         # compiled cores of all Python versions that are there, but none of older kernels
         if file.suffix == ".py" or (file.suffix in (".so", ".pyd") and package_name().encode() in file.read_bytes()):
-            shutil.copy(file, package / "core" / file.name)
+            target = package / file.relative_to(PACKAGE)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(file, target)
     text = (HERE / "landing_fmu.py").read_text()
     (package / "slave.py").write_text(re.sub(r"^from rlv_landing\b", f"from {name}", text, flags=re.M))
     script = folder / f"{name.replace('rlv_landing', 'landing_fmu')}.py"

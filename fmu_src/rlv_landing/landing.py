@@ -6,13 +6,13 @@ from array import array
 from collections.abc import Callable, Mapping
 from math import inf, isfinite
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .core import DormandPrince, Exponential, Model, Solver, layout, output_size, state_size
+from .assembly import begin, build_system
+from .core import DormandPrince, Exponential, Solver
 from .errors import LandingError, unknown
-from .parameters import PARAMETER_QUANTITIES, Parameters, azimuth, check_value
+from .parameters import Parameters, check_value
 from .quantities import INPUT_NAMES, INPUT_QUANTITIES, LEG_QUANTITIES, MODES, OUTPUT_NAMES, SHARED_QUANTITIES, Z_TURNS
-from .touchdown import FreeFlight
 
 if TYPE_CHECKING:
     from numpy import float64
@@ -20,36 +20,28 @@ if TYPE_CHECKING:
 
     from .history import History
 
-# Typical size of each state: the absolute part of the error that is allowed is rtol times this.
-BODY_SCALE = (0.1, 0.1, 0.1, 1.0, 1.0, 1.0)
-LEG_SCALE = (0.1, 0.1, 1.0, 1.0, 1e5, 1e5, 1e-3, 1e-3)
 DEFAULT_RTOL = 1e-5
-# the integration methods: see `rlv_landing.core.exponential` and `dormand_prince`
+# the integration methods: see `rlv_landing.core.solvers`
 METHODS: dict[str, type[Solver]] = {"exponential": Exponential, "dormand-prince": DormandPrince}
-HEADER = 10
 # samples between two looks at signals and two calls of `progress` in a run
 SLICE = 250
 # where a ground motion's rate is an input of its own
-RATE_INPUTS = {layout.HEAVE: layout.HEAVE_RATE, layout.TILT: layout.TILT_RATE}
+RATE_INPUTS = {"ground.heave": "ground.heave_rate", "ground.tilt": "ground.tilt_rate"}
 
 
-def build_model(parameters: Parameters, kind: type[Model] = Model) -> Model:
-    """The kernels' numbers from the user's parameters; `kind` is the compiled or the pure core's class."""
-    groups = MODES[parameters.drop.mode]
-    turns = [azimuth(g.azimuth) for g in groups]
-    model = kind(
-        array("d", (s for s, _ in turns)),
-        array("d", (c for _, c in turns)),
-        array("d", (float(len(g.legs)) for g in groups)),
-        array("d", (1.0 if s == 0.0 else 0.5 for s, _ in turns)),
-    )
-    for name, q in PARAMETER_QUANTITIES.items():
-        if q.symbol:
-            setattr(model, q.symbol, parameters[name])
-    model.Lb = -parameters.main_strut.joint_depth
-    model.Ld = -parameters.auxiliary_strut.joint_depth
-    model.at_joint = 1.0 if parameters.vehicle.transverse_load_at == "joint" else 0.0
-    return model
+class StateHeader(NamedTuple):
+    """What `Landing.state` begins with: the landing's time, and what the integrator keeps beside its arrays."""
+
+    time: float  # [s]
+    t: float  # end of the last internal step [s]
+    t_old: float  # and its start [s]
+    t_input: float  # when the inputs were set [s]
+    h: float  # the next internal step [s]
+    error_old: float  # error of the last step, in units of the tolerance
+    energy_start: float  # [J]
+    steps: float
+    rejected: float
+    rhs_calls: float
 
 
 def output_order(mode: str) -> list[tuple[int, float]]:
@@ -97,17 +89,10 @@ class Landing:
         if method not in METHODS:
             raise unknown("integration method", method, METHODS)
         self._rtol = rtol
-        self._model = build_model(self.parameters)
-        groups = len(MODES[self.parameters.drop.mode])
-        n = state_size(groups)
-        scale = array("d", BODY_SCALE + LEG_SCALE * groups + (1.0,) * layout.INTEGRALS)
-        relative = array("d", bytes(8 * n))
-        for g in range(groups):
-            for p in (layout.P1, layout.P2):
-                relative[layout.BODY + layout.LEG * g + p] = 1.0
-        self._solver = METHODS[method](self._model, scale, relative, rtol)
-        self._y = array("d", bytes(8 * n))
-        self._out = array("d", bytes(8 * output_size(groups)))
+        self._system = build_system(self.parameters)
+        self._solver: Solver = METHODS[method](self._system, rtol)
+        self._y = array("d", bytes(8 * self._system.n))
+        self._out = array("d", bytes(8 * self._system.row))
         self._out_time = inf
         self._order = output_order(self.parameters.drop.mode)
         self._pick = itemgetter(*(i for i, _ in self._order))
@@ -134,43 +119,12 @@ class Landing:
 
     def reset(self) -> None:
         """Go back to the start: time 0, inputs 0, the flight before the first contact."""
-        solver = self._solver
-        for i, value in enumerate(self._start_state()):
-            solver.y[i] = value
-        for i in range(layout.INPUTS):
-            solver.u[i] = solver.u_rate[i] = 0.0
-        solver.steps = solver.rejected = solver.rhs_calls = 0.0
-        solver.h = inf
-        solver.energy_start = 0.0
-        solver.restart(0.0)
+        self._system.energy_start = 0.0
+        begin(self._solver, self.parameters)
         self._time = 0.0
         self._out_time = inf
-        solver.energy_start = self.get("energy.balance")
+        self._system.energy_start = self.get("energy.balance")
         self._out_time = inf
-
-    def _start_state(self) -> array[float]:
-        """The state at time 0: the state at first contact taken back along the free flight of the rigid vehicle.
-
-        The ground's origin lies below the CG at first contact, where the lowest footpad just touches.
-        """
-        p, drop = self.parameters, self.parameters.drop
-        groups = len(MODES[drop.mode])
-        flight = FreeFlight(p)
-        lowest = flight.lowest(drop.contact_time)
-        if lowest < -1e-6:
-            raise LandingError(
-                f"drop.contact_time = {drop.contact_time:g} s of free flight would pass {-lowest:.3g} m below the ground; "
-                "shorten it, or touch down with less pitch rate or a faster descent"
-            )
-        y = array("d", bytes(8 * state_size(groups)))
-        for i, value in enumerate(flight.before_contact(drop.contact_time)):
-            y[i] = value
-        radius, height = flight.footpad
-        for i in range(groups):
-            k = layout.BODY + layout.LEG * i
-            y[k + layout.R], y[k + layout.H] = radius, height
-            y[k + layout.P1] = y[k + layout.P2] = p.main_strut.charge_pressure
-        return y
 
     def set_inputs(self, values: Mapping[str, Any], rates: Mapping[str, Any] | None = None) -> None:
         """Set inputs by name from now on; others go on as they were.
@@ -190,8 +144,9 @@ class Landing:
             i = _input_index(name)
             if not isfinite(rate):
                 raise LandingError(f"rate of {name} = {rate:g} {INPUT_QUANTITIES[i].unit}/s must be finite")
-            if i in RATE_INPUTS:
-                new[RATE_INPUTS[i]] = float(check_value(INPUT_QUANTITIES[RATE_INPUTS[i]], rate))
+            if name in RATE_INPUTS:
+                own = _input_index(RATE_INPUTS[name])
+                new[own] = float(check_value(INPUT_QUANTITIES[own], rate))
             else:
                 new_rates[i] = float(rate)
         if new == list(solver.u_now) and new_rates == list(solver.u_rate):
@@ -205,7 +160,7 @@ class Landing:
         self._out_time = inf
         jump = self.get("energy.contact") - before
         if jump != 0.0:
-            solver.y[solver.n - layout.INTEGRALS + layout.W_GROUND] += jump
+            self._system.add_ground_work(solver.y, jump)
             solver.restart(self._time)
             self._out_time = inf
 
@@ -247,7 +202,9 @@ class Landing:
     def state(self) -> array[float]:
         """The whole state, the integrator's included: what `restore` needs to go on with the very same digits."""
         s = self._solver
-        header = (self._time, s.t, s.t_old, s.t_input, s.h, s.error_old, s.energy_start, s.steps, s.rejected, s.rhs_calls)
+        header = StateHeader(
+            self._time, s.t, s.t_old, s.t_input, s.h, s.error_old, self._system.energy_start, s.steps, s.rejected, s.rhs_calls
+        )
         return array("d", [*header, *s.u, *s.u_rate, *s.y, *s.dense])
 
     def restore(self, state: array[float]) -> None:
@@ -256,20 +213,22 @@ class Landing:
         Raises LandingError if its length is not that of this landing's state or a number in it is not finite.
         """
         s = self._solver
-        expected = HEADER + 2 * layout.INPUTS + 6 * s.n
+        targets = (s.u, s.u_rate, s.y, s.dense)
+        at = len(StateHeader._fields)
+        expected = at + sum(map(len, targets))
         if len(state) != expected:
             raise LandingError(f"state has {len(state)} numbers, this landing's has {expected}; it comes from another mode or version")
-        if not all(isfinite(v) for i, v in enumerate(state) if i != 4):
+        if not all(map(isfinite, state)):
             raise LandingError("state holds numbers that are not finite; take one that state() gave")
-        self._time, s.t, s.t_old, s.t_input, s.h, s.error_old, s.energy_start, s.steps, s.rejected, s.rhs_calls = state[:HEADER]
-        at = HEADER
-        for target in (s.u, s.u_rate, s.y, s.dense):
+        header = StateHeader(*state[:at])
+        self._time, s.t, s.t_old, s.t_input, s.h = header.time, header.t, header.t_old, header.t_input, header.h
+        self._system.energy_start = header.energy_start
+        for target in targets:
             for i in range(len(target)):
                 target[i] = state[at + i]
             at += len(target)
-        calls = s.rhs_calls
-        s.refresh()
-        s.rhs_calls = calls
+        s.recompute_derived()
+        s.error_old, s.steps, s.rejected, s.rhs_calls = header.error_old, header.steps, header.rejected, header.rhs_calls
         self._out_time = inf
 
     def run(self, until: float = 1.0, every: float = 1e-3, progress: Callable[[float], object] | None = None) -> History:
@@ -289,7 +248,7 @@ class Landing:
             raise LandingError(f"until = {until:g} s must be finite and after the present time, {self._time:g} s")
         start, solver = self._time, self._solver
         samples = int((until - start) / every * (1.0 + 1e-12) + 1e-9) + 1
-        rows = np.empty((samples, solver.row))
+        rows = np.empty((samples, self._system.row))
         flat = rows.reshape(-1)
         reached = 0
         while reached < samples:

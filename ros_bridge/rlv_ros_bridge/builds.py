@@ -12,7 +12,7 @@ from pathlib import Path
 import rlv_landing
 
 # The files that decide the digits, as the FMU carries them, too.
-MODEL_FILE = re.compile(r"(?:^|/)rlv_landing[^/]*/((?:core/\w+|landing|parameters|quantities|touchdown)\.py)$")
+MODEL_FILE = re.compile(r"(?:^|/)rlv_landing[^/]*/((?:core/(?:\w+/)*\w+|assembly|landing|parameters|quantities|touchdown)\.py)$")
 
 
 def build_metadata(fmu: Path) -> dict[str, str]:
@@ -28,7 +28,7 @@ def build_metadata(fmu: Path) -> dict[str, str]:
 def own_model() -> str:
     """The digest of the model that is installed here."""
     root = Path(rlv_landing.__file__).parent
-    files = [*(root / "core").glob("*.py"), *root.glob("*.py")]
+    files = [*(root / "core").rglob("*.py"), *root.glob("*.py")]
     texts = {m[1]: f.read_bytes() for f in files if (m := MODEL_FILE.search(f"rlv_landing/{f.relative_to(root).as_posix()}"))}
     return _digest(texts)
 

@@ -6,10 +6,12 @@ from collections.abc import Mapping
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
+from rlv_landing.core import Phase
+
 from .messages import set_stamp
 from .pacer import Pacer
 
-PHASES = ("falling", "contact", "settled", "toppled")
+PHASES = tuple(phase.name.lower() for phase in Phase)
 
 
 def phase_name(phase: float) -> str:

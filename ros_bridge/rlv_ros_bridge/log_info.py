@@ -7,6 +7,7 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from rlv_landing.core import Phase
 from rlv_landing.errors import LandingError
 from rlv_landing.history import History
 from rlv_landing.reading import Reading
@@ -17,7 +18,7 @@ from .log_reader import Decoder, LogReader
 from .topics import DIAGNOSTICS
 
 # What `/diagnostics` calls the phases whose outcome `rlv_landing.summary` has words for.
-PHASES = ("falling", "contact", "settled", "toppled")
+PHASES = tuple(phase.name.lower() for phase in Phase)
 
 
 @dataclass

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from pytest import approx
 from scipy.integrate import quad
 
-from rlv_landing.core.fluid import fluid, strain_energy
+from rlv_landing.core.struts.fluid import fluid, strain_energy
 
 PA = 101300.0
 pressures = st.floats(2e3, 5e7)
@@ -14,31 +14,32 @@ constants = st.tuples(st.floats(1e-6, 0.05), st.floats(1.05, 1.6), st.floats(3e8
 
 @given(constants)
 def test_volume_is_one_and_energy_zero_at_ambient_pressure(c):
-    v, _, h = fluid(PA, *c, PA)
-    assert v == approx(1.0, rel=1e-14)
-    assert h == approx(0.0, abs=1e-5)
-    assert strain_energy(PA, 1e-4, *c, PA) == approx(0.0, abs=1e-9)
+    f = fluid(PA, *c, PA)
+    assert f.v == approx(1.0, rel=1e-14)
+    assert f.h == approx(0.0, abs=1e-5)
+    assert strain_energy(f, PA, 1e-4, PA) == approx(0.0, abs=1e-9)
 
 
 @given(pressures, constants)
 def test_compressibility_is_the_derivative_of_volume(P, c):
     step = 1e-4 * P
-    higher, lower = fluid(P + step, *c, PA)[0], fluid(P - step, *c, PA)[0]
-    assert fluid(P, *c, PA)[1] == approx((higher - lower) / (2.0 * step), rel=1e-5)
+    higher, lower = fluid(P + step, *c, PA).v, fluid(P - step, *c, PA).v
+    assert fluid(P, *c, PA).dv == approx((higher - lower) / (2.0 * step), rel=1e-5)
 
 
 @given(pressures, constants)
 def test_flow_energy_is_the_integral_of_volume_over_pressure(P, c):
-    expected, _ = quad(lambda p: fluid(p, *c, PA)[0], PA, P, epsabs=0.0, epsrel=1e-10, limit=200)
-    assert fluid(P, *c, PA)[2] == approx(expected, rel=1e-7, abs=1e-3)
+    expected, _ = quad(lambda p: fluid(p, *c, PA).v, PA, P, epsabs=0.0, epsrel=1e-10, limit=200)
+    assert fluid(P, *c, PA).h == approx(expected, rel=1e-7, abs=1e-3)
 
 
 @given(pressures, constants)
 def test_strain_energy_is_the_work_of_compression(P, c):
     """Work on a fixed mass of 1e-4 m3 at ambient pressure: integral of (p - Pa) (-dV)."""
-    expected, _ = quad(lambda p: (p - PA) * -fluid(p, *c, PA)[1], PA, P, epsabs=0.0, epsrel=1e-10, limit=200)
-    V = 1e-4 * fluid(P, *c, PA)[0]
-    assert strain_energy(P, V, *c, PA) == approx(1e-4 * expected, rel=1e-6, abs=1e-9)
+    expected, _ = quad(lambda p: (p - PA) * -fluid(p, *c, PA).dv, PA, P, epsabs=0.0, epsrel=1e-10, limit=200)
+    f = fluid(P, *c, PA)
+    V = 1e-4 * f.v
+    assert strain_energy(f, P, V, PA) == approx(1e-4 * expected, rel=1e-6, abs=1e-9)
 
 
 @given(st.floats(-1e9, 1e3), constants)

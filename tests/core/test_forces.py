@@ -8,12 +8,17 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from rlv_landing import Parameters
-from rlv_landing.core.auxiliary_strut import auxiliary
-from rlv_landing.core.contact import contact, damping_ramp, friction, normal_force
-from rlv_landing.core.damper import damper, orifice_flow, orifice_slope, seal_friction, stop_force
-from rlv_landing.landing import build_model
+from rlv_landing.assembly import leg_models
+from rlv_landing.core.ground.kinds import ground_force
+from rlv_landing.core.ground.normal import damping_ramp, normal_force
+from rlv_landing.core.ground.paper_friction import friction_along
+from rlv_landing.core.records import FootMotion
+from rlv_landing.core.struts.elastic import elastic
+from rlv_landing.core.struts.end_stops import stop_force
+from rlv_landing.core.struts.fluid import fluid
+from rlv_landing.core.struts.liquid_spring import liquid_spring, orifice_flow, orifice_slope, seal_friction
 
-P = build_model(Parameters())
+P = leg_models(Parameters())[0]
 speeds = st.floats(-5.0, 5.0)
 
 
@@ -50,9 +55,7 @@ def test_end_stops_only_push_back_and_only_dissipate(overlap, v):
 @given(st.floats(0.0, 0.03), speeds, st.floats(2e3, 1e7), st.floats(2e3, 1e7))
 def test_chambers_keep_the_liquid_mass(s, v, P1, P2):
     """d(rho V)/dt of both chambers together is zero whatever the state: rho = rho0/v(P)."""
-    from rlv_landing.core.fluid import fluid
-
-    _, dP1, dP2, *_ = damper(s, v, P1, P2, P)
+    _, dP1, dP2, *_ = liquid_spring(s, v, P1, P2, P)
     constants = (P.x_air, P.n_air, P.B0, P.kB, P.Pa)
     v1, dv1, _ = fluid(P1, *constants)
     v2, dv2, _ = fluid(P2, *constants)
@@ -63,9 +66,9 @@ def test_chambers_keep_the_liquid_mass(s, v, P1, P2):
 
 @given(st.floats(0.0, 0.03), speeds, st.floats(2e3, 1e7), st.floats(2e3, 1e7))
 def test_damper_dissipates_in_orifice_and_seal(s, v, P1, P2):
-    _, _, _, orifice, seal, *_ = damper(s, v, P1, P2, P)
-    assert orifice >= 0.0
-    assert seal >= 0.0
+    given = liquid_spring(s, v, P1, P2, P)
+    assert given.orifice >= 0.0
+    assert given.seal >= 0.0
 
 
 @given(st.floats(-2e7, 2e7))
@@ -78,15 +81,15 @@ def test_orifice_slope_is_the_flows_derivative(dP):
 @given(st.floats(0.0, 0.03), st.floats(2e3, 1e7), st.sampled_from((1.0, -1.0)))
 def test_chambers_even_out_at_the_told_rates(s, pressure, x):
     """At rest and nearly even, P1' = a1 x and P2' = -a2 x with x = P2 - P1 [Pa]."""
-    _, dP1, dP2, _, _, _, a1, a2 = damper(s, 0.0, pressure, pressure + x, P)
-    assert dP1 == approx(a1 * x, rel=1e-6)
-    assert dP2 == approx(-a2 * x, rel=1e-6)
+    given = liquid_spring(s, 0.0, pressure, pressure + x, P)
+    assert given.dz1 == approx(given.a1 * x, rel=1e-6)
+    assert given.dz2 == approx(-given.a2 * x, rel=1e-6)
 
 
 @given(st.floats(-0.01, 0.01), speeds)
 def test_auxiliary_strut_is_odd_and_dissipates(s, v):
-    force, power = auxiliary(s, v, P)
-    opposite, _ = auxiliary(-s, -v, P)
+    force, power = elastic(s, v, P)
+    opposite, _ = elastic(-s, -v, P)
     assert opposite == approx(-force)
     assert power >= 0.0
 
@@ -114,7 +117,7 @@ def test_sliding_friction_stays_within_the_cone(d, vx, vz, share):
     if share == 1.0:
         vz = 0.0
     sx, sz = (P.s_r0 if vx > 0.0 else -P.s_r0), (P.s_r0 if vz > 0.0 else -P.s_r0)
-    Fn, Fx, Fz, *_ = contact(d, 0.0, vx, vz, sx, sz, share, P)
+    Fn, Fx, Fz, *_ = ground_force(FootMotion(d, 0.0, vx, vz), sx, sz, P._replace(share_1=share))
     stick_damping = P.Cr * (abs(vx) + abs(vz))
     assert sqrt(Fx * Fx + Fz * Fz) <= (1.0 + P.ar) * P.mu * Fn * (1.0 + 1e-9) + stick_damping
     assert Fx * vx + Fz * vz <= 0.0
@@ -122,17 +125,18 @@ def test_sliding_friction_stays_within_the_cone(d, vx, vz, share):
 
 def test_friction_slips_only_where_it_has_reached_its_limit_in_the_sense_of_motion():
     Fn = 1000.0
-    assert friction(1e-3, Fn, P.mu, 0.1, P.s_r0, P)[1] == 0.0
-    assert friction(1e-3, Fn, P.mu, 0.1, 0.5 * P.s_r0, P)[1] == 0.1
-    assert friction(1e-3, Fn, P.mu, -0.1, P.s_r0, P)[1] == -0.1
-    assert friction(-1e-3, 0.0, P.mu, 0.1, P.s_r0, P) == (0.0, -P.s_r0 / P.tau_sr)
+    assert friction_along(1e-3, Fn, P.mu, 0.1, P.s_r0, P)[1] == 0.0
+    assert friction_along(1e-3, Fn, P.mu, 0.1, 0.5 * P.s_r0, P)[1] == 0.1
+    assert friction_along(1e-3, Fn, P.mu, -0.1, P.s_r0, P)[1] == -0.1
+    assert friction_along(-1e-3, 0.0, P.mu, 0.1, P.s_r0, P) == (0.0, -P.s_r0 / P.tau_sr)
 
 
 def test_friction_at_rest_is_shared_evenly_in_space_and_whole_in_the_symmetric_plane():
     s = 0.5 * P.s_r0
-    Fn, Fx, Fz, *_ = contact(1e-3, 0.0, 0.0, 0.0, s, s, 0.5, P)
+    pressed = FootMotion(1e-3, 0.0, 0.0, 0.0)
+    Fn, Fx, Fz, *_ = ground_force(pressed, s, s, P._replace(share_1=0.5))
     assert Fx == Fz == approx(-P.mu / sqrt(2.0) * Fn * (1.0 + P.ar) * 0.5)
-    Fn, Fx, Fz, *_ = contact(1e-3, 0.0, 0.0, 0.0, s, 0.0, 1.0, P)
+    Fn, Fx, Fz, *_ = ground_force(pressed, s, 0.0, P._replace(share_1=1.0))
     assert Fx == approx(-P.mu * Fn * (1.0 + P.ar) * 0.5)
     assert Fz == 0.0
 
@@ -140,6 +144,6 @@ def test_friction_at_rest_is_shared_evenly_in_space_and_whole_in_the_symmetric_p
 @pytest.mark.parametrize("v", [1e-9, 1e-3, 1.0])
 def test_stick_damping_has_faded_where_slip_begins(v):
     """So the force just below and just at the limit differ only by the Stribeck term."""
-    below = friction(1e-3, 1000.0, P.mu, v, P.s_r0 * (1.0 - 1e-12), P)[0]
+    below = friction_along(1e-3, 1000.0, P.mu, v, P.s_r0 * (1.0 - 1e-12), P)[0]
     expected = -P.mu * 1000.0 * (1.0 + P.ar)
     assert below == approx(expected, rel=1e-9)

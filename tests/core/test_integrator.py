@@ -5,6 +5,7 @@ import subprocess
 import sys
 import threading
 import time
+from array import array
 from concurrent.futures import ThreadPoolExecutor
 from math import exp, factorial
 
@@ -13,11 +14,13 @@ import pytest
 from pytest import approx
 from scipy.integrate import quad
 
-from rlv_landing import Landing, core, load_preset
-from rlv_landing.core import dormand_prince as dp
-from rlv_landing.core import layout
-from rlv_landing.core.exponential import SMALL, phi1, phi2, phi3
-from rlv_landing.landing import METHODS
+from rlv_landing import Landing, Parameters, core, load_preset
+from rlv_landing.assembly import new_solver
+from rlv_landing.core.access import BODY, LEG, leg_state
+from rlv_landing.core.solvers import dormand_prince as dp
+from rlv_landing.core.solvers.phi import SMALL, phi1, phi2, phi3
+from rlv_landing.landing import DEFAULT_RTOL, METHODS
+from rlv_landing.quantities import MODES
 
 A = np.zeros((7, 7))
 for row in range(2, 8):
@@ -97,13 +100,14 @@ def test_a_stiff_orifice_does_not_hold_the_exponential_method():
 
 
 def test_friction_displacements_never_pass_the_slip_limit(mode):
-    landing = Landing(load_preset("yue2022-figures"), mode, rtol=1e-3)
-    solver, limit = landing._solver, landing.parameters.ground.stick_displacement
+    parameters = load_preset("yue2022-figures", mode)
+    solver, limit = new_solver(parameters, 1e-3), parameters.ground.stick_displacement
     reached = 0.0
     while solver.t < 0.5:
         solver.advance(solver.t + 1e-6)
-        for k in range(layout.BODY, solver.n - layout.INTEGRALS, layout.LEG):
-            reached = max(reached, abs(solver.y[k + layout.SX]), abs(solver.y[k + layout.SZ]))
+        for i in range(len(MODES[mode])):
+            leg = leg_state(solver.y, BODY + LEG * i)
+            reached = max(reached, abs(leg.q1), abs(leg.q2))
     assert reached == limit
 
 
@@ -129,12 +133,9 @@ def test_error_falls_with_the_tolerance_on_a_smooth_arc(method):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_dense_output_meets_both_ends_of_a_step_and_is_smooth_between(method):
-    landing = Landing(method=method)
-    solver = landing._solver
+    solver = new_solver(Parameters(), DEFAULT_RTOL, METHODS[method])
     solver.advance(0.1)
     n = solver.n
-    from array import array
-
     end = array("d", bytes(8 * n))
     solver.interpolate(solver.t, end)
     assert np.array(end) == approx(np.array(solver.y), rel=1e-12, abs=1e-12)
@@ -180,8 +181,8 @@ def test_compiled_and_pure_core_give_the_same_digits(mode, method):
 @pytest.mark.skipif(not core.COMPILED, reason="measured on the pure core")
 def test_other_threads_run_during_a_run():
     """The interpreter does not switch threads of itself here: the other one gets on only where the core lets it."""
-    solver = Landing()._solver
-    rows = np.empty(1000 * solver.row)
+    solver = new_solver(Parameters(), DEFAULT_RTOL)
+    rows = np.empty(1000 * solver.system.row)
     turns, waiting, done = [0], threading.Event(), threading.Event()
 
     def other():

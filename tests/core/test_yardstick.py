@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 
 from rlv_landing import Landing, load_preset
+from rlv_landing.assembly import new_solver
+from rlv_landing.quantities import INPUT_NAMES
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "benchmarks"))
 from cvode_in_c import ADAMS, BDF, CvodeInC
@@ -25,17 +27,21 @@ RATES = {"external.force_y": 500.0, "ground.heave_rate": -0.3, "ground.tilt_rate
 
 @pytest.mark.parametrize("rtol", [1e-3, 1e-5])
 def test_the_landing_in_c_takes_the_cores_steps_to_the_same_states(mode, rtol):
-    landing, start = (Landing(load_preset("yue2022-figures"), mode, rtol) for _ in range(2))
-    assert disagreement(landing, Yardstick(start, rtol), 0.5) < 1e-9
+    parameters = load_preset("yue2022-figures", mode)
+    assert disagreement(new_solver(parameters, rtol), Yardstick(parameters, rtol), 0.5) < 1e-9
 
 
 def test_the_landing_in_c_has_the_cores_inputs_slope_and_stops(mode):
     """With the transverse load at the footpads, on a slope, so fast that a strut reaches both ends."""
     values = {"vehicle.transverse_load_at": "footpad", "ground.slope": 0.03, "drop.vertical_velocity": -4.0, "main_strut.stroke_max": 0.03}
-    landing, start, watched = (Landing(load_preset("yue2022-figures").with_values(values), mode, 1e-4) for _ in range(3))
-    landing.set_inputs(INPUTS, RATES)
-    landing._solver.rhs_calls = 1.0  # the C landing starts with the inputs, so it has no restart
-    assert disagreement(landing, Yardstick(start, 1e-4, inputs=INPUTS, rates=RATES), 0.3) < 1e-9
+    parameters = load_preset("yue2022-figures", mode).with_values(values)
+    solver = new_solver(parameters, 1e-4)
+    for i, name in enumerate(INPUT_NAMES):
+        solver.u[i], solver.u_rate[i] = INPUTS.get(name, 0.0), RATES.get(name, 0.0)
+    solver.restart(0.0)
+    solver.rhs_calls = 1.0  # the C landing starts with the inputs, so it has no restart
+    assert disagreement(solver, Yardstick(parameters, 1e-4, inputs=INPUTS, rates=RATES), 0.3) < 1e-9
+    watched = Landing(parameters, mode, 1e-4)
     watched.set_inputs(INPUTS, RATES)
     stroke = watched.run(0.3)["leg[1].main_strut.stroke"]
     assert stroke.min() < 0.0
@@ -43,8 +49,9 @@ def test_the_landing_in_c_has_the_cores_inputs_slope_and_stops(mode):
 
 
 def test_a_landing_in_c_of_another_vehicle_is_told_from_the_cores(mode):
-    heavier = load_preset("yue2022-figures").with_values({"vehicle.inertia": 250.0})
-    assert disagreement(Landing(load_preset("yue2022-figures"), mode), Yardstick(Landing(heavier, mode), 1e-5), 0.2) > 1e-3
+    parameters = load_preset("yue2022-figures", mode)
+    heavier = parameters.with_values({"vehicle.inertia": 250.0})
+    assert disagreement(new_solver(parameters, 1e-5), Yardstick(heavier, 1e-5), 0.2) > 1e-3
 
 
 @pytest.mark.parametrize("method", [ADAMS, BDF])

@@ -13,15 +13,21 @@ from pytest import approx
 from vehicle_3d import AZIMUTHS, LEGS, POSITION, QUATERNION, SPIN, VELOCITY, Inputs, Vehicle3D, land, rotation
 
 from rlv_landing import Landing, load_preset
-from rlv_landing.core import layout
-from rlv_landing.core.model import Model
-from rlv_landing.core.vehicle import right_hand_side
-from rlv_landing.landing import build_model
+from rlv_landing.assembly import build_system
+from rlv_landing.core import LegState, access
+from rlv_landing.core.bodies.planar import Planar
 
 FIGURES = "yue2022-figures"
 BODY = ("x", "y", "pitch", "vx", "vy", "pitch_rate")
 # leg group of legs 1 to 4 in the kernels' state, and the side on which z is turned
 GROUPS = {"2-2": ((0, 1), (0, -1), (1, -1), (1, 1)), "1-2-1": ((0, 1), (1, -1), (2, 1), (1, 1))}
+# where a leg's state has the friction displacement across the symmetric plane
+ACROSS = LegState._fields.index("q2")
+
+
+def leg_at(group: int) -> int:
+    """Where the state of a leg group begins."""
+    return access.BODY + access.LEG * group
 
 
 def random_state(rng: np.random.Generator, mode: str, model: Vehicle3D, upright: float) -> tuple[np.ndarray, np.ndarray]:
@@ -30,24 +36,23 @@ def random_state(rng: np.random.Generator, mode: str, model: Vehicle3D, upright:
     `upright` is the slope of the ground now: the body's height is chosen so that one footpad is near it.
     """
     groups = max(g for g, _ in GROUPS[mode]) + 1
-    y = np.zeros(layout.BODY + layout.LEG * groups + layout.INTEGRALS)
+    y = np.zeros(leg_at(groups) + access.ACCOUNTS)
     y[:6] = rng.uniform([-0.5, 0.0, -0.4, -2.0, -2.0, -3.0], [0.5, 0.0, 0.4, 2.0, 2.0, 3.0])
     rest = model.start(np.zeros(6))[LEGS:].reshape(8, 4)
     body = [y[0], y[1], 0.0, np.cos(-0.5 * y[2]), 0.0, 0.0, np.sin(-0.5 * y[2]), y[3], y[4], 0.0, 0.0, 0.0, -y[5]]
     legs = np.zeros((8, 4))
     for g in range(groups):
-        k = layout.BODY + layout.LEG * g
-        y[k : k + 8] = [
+        y[leg_at(g) : leg_at(g + 1)] = [
             *(rest[:2, 0] + rng.uniform(-0.04, 0.04, 2)),
             *rng.uniform(-2.0, 2.0, 2),
             *10.0 ** rng.uniform(3.0, 7.5, 2),
             *rng.uniform(-1.5e-3, 1.5e-3, 2),
         ]
     if mode == "1-2-1":  # a leg in the symmetric plane neither slides nor sticks along z
-        y[layout.BODY + layout.SZ] = y[layout.BODY + 2 * layout.LEG + layout.SZ] = 0.0
+        y[leg_at(0) + ACROSS] = y[leg_at(2) + ACROSS] = 0.0
     for i, (g, side) in enumerate(GROUPS[mode]):
-        legs[:, i] = y[layout.BODY + layout.LEG * g : layout.BODY + layout.LEG * (g + 1)]
-        legs[layout.SZ, i] *= side
+        legs[:, i] = y[leg_at(g) : leg_at(g + 1)]
+        legs[ACROSS, i] *= side
     foot = rotation(np.array(body[3:7])) @ (legs[0] * model.e_r + legs[1] * model.e_y)
     height = (foot[1] + np.tan(upright) * (foot[0] + y[0])).min()
     y[1] = body[1] = rng.uniform(-0.01, 0.005) - height
@@ -79,7 +84,7 @@ def test_accelerations_and_rates_are_the_same_at_random_states_to_rounding(mode:
         y, state = random_state(rng, mode, model, parameters.ground.slope)
         u = array("d", [*loads.force, loads.moment, loads.heave, loads.heave_rate, loads.tilt, loads.tilt_rate])
         ours = array("d", bytes(8 * len(y)))
-        right_hand_side(array("d", y), u, build_model(parameters, Model), ours, array("d", bytes(8 * 200)))
+        build_system(parameters, Planar).rhs(array("d", y), u, ours)
         e = model.evaluate(0.0, state)
         touching += int((e["penetration"] > 0.0).sum())
 
@@ -88,10 +93,10 @@ def test_accelerations_and_rates_are_the_same_at_random_states_to_rounding(mode:
         assert -e["spin_rate"][2] == approx(ours[5], rel=1e-9, abs=1e-9 * size)
         assert np.abs([e["acceleration"][2], *e["spin_rate"][:2]]).max() < 1e-9 * size
         for i, (g, side) in enumerate(GROUPS[mode]):
-            k = layout.BODY + layout.LEG * g
-            assert (e["r_acc"][i], e["h_acc"][i]) == approx(tuple(ours[k + 2 : k + 4]), rel=1e-9, abs=1e-9 * size)
-            assert (e["upper_rate"][i], e["lower_rate"][i]) == approx(tuple(ours[k + 4 : k + 6]), rel=1e-9)
-            assert (e["slip_x_rate"][i], side * e["slip_z_rate"][i]) == approx(tuple(ours[k + 6 : k + 8]), rel=1e-9, abs=1e-11)
+            leg = access.leg_state(ours, leg_at(g))
+            assert (e["r_acc"][i], e["h_acc"][i]) == approx((leg.vr, leg.vh), rel=1e-9, abs=1e-9 * size)
+            assert (e["upper_rate"][i], e["lower_rate"][i]) == approx((leg.z1, leg.z2), rel=1e-9)
+            assert (e["slip_x_rate"][i], side * e["slip_z_rate"][i]) == approx((leg.q1, leg.q2), rel=1e-9, abs=1e-11)
     assert 100 < touching < 150 * 4  # some footpads in the ground, some above it
 
 

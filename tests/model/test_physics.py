@@ -1,6 +1,5 @@
 """The landing against closed forms and conservation laws."""
 
-from array import array
 from math import cos, sin
 
 import numpy as np
@@ -10,11 +9,9 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from rlv_landing import Landing, Parameters, load_preset
-from rlv_landing.core import layout
-from rlv_landing.core.model import Model
-from rlv_landing.core.vehicle import right_hand_side
+from rlv_landing.assembly import leg_places, new_solver
+from rlv_landing.core.access import BODY, LEG, leg_state
 from rlv_landing.history import History
-from rlv_landing.landing import build_model
 from rlv_landing.quantities import MODES
 
 FIGURES = "yue2022-figures"
@@ -267,7 +264,7 @@ def inertial_positions(y: np.ndarray, groups: list[tuple[float, float, float]]) 
     out = [(y[0], y[1])]
     s, c = np.sin(y[2]), np.cos(y[2])
     for i, (_, cos_g, _) in enumerate(groups):
-        r, h = y[layout.BODY + layout.LEG * i], y[layout.BODY + layout.LEG * i + 1]
+        r, h, *_ = leg_state(y, BODY + LEG * i)
         out.append((y[0] + r * cos_g * c + h * s, y[1] - r * cos_g * s + h * c))
     return np.array(out)
 
@@ -275,17 +272,15 @@ def inertial_positions(y: np.ndarray, groups: list[tuple[float, float, float]]) 
 @pytest.mark.parametrize("time", [0.1, 0.2, 0.26, 0.3, 0.41])
 def test_newton_and_euler_hold_for_the_whole_vehicle(mode, time):
     """Sum of m a = contact forces + weight, and the same for moments about the origin, by differentiating positions twice."""
-    landing = Landing(load_preset(FIGURES).with_values(FOOTPAD), mode, rtol=1e-8)
+    parameters = load_preset(FIGURES, mode).with_values(FOOTPAD)
+    landing, solver = Landing(parameters, rtol=1e-8), new_solver(parameters, 1e-8)
     landing.advance_to(time)
     out = landing.outputs()
-    solver = landing._solver
-    y = np.array(landing._y)
-    groups = [(solver.model.sin_g[i], solver.model.cos_g[i], solver.model.count[i]) for i in range(solver.model.n_groups)]
-    dy = array("d", bytes(8 * len(y)))
-    right_hand_side(
-        array("d", y), array("d", bytes(8 * layout.INPUTS)), build_model(landing.parameters, Model), dy, array("d", bytes(8 * 200))
-    )
-    solver_dy = np.array(dy)
+    solver.advance(time)
+    y, solver_dy = np.zeros(solver.n), np.zeros(solver.n)
+    solver.interpolate(time, y)
+    solver.derivatives(time, y, solver_dy)
+    groups = leg_places(parameters)
     masses = np.array([178.0, *(4.2 * n for *_, n in groups)])
 
     def momentum(state: np.ndarray, rate: np.ndarray) -> np.ndarray:
@@ -303,8 +298,8 @@ def test_newton_and_euler_hold_for_the_whole_vehicle(mode, time):
         q = np.zeros_like(state)
         q[:3] = state[3:6]
         for i in range(len(groups)):
-            k = layout.BODY + layout.LEG * i
-            q[k : k + 2] = state[k + 2 : k + 4]
+            k = BODY + LEG * i
+            q[k : k + 2] = leg_state(state, k)[2:4]
         return q
 
     eps = 1e-7

@@ -1,25 +1,49 @@
 """The kernels: plain Python on `math` alone, compiled where a compiler was there, the same digits either way.
 
-`Solver` and `Model` come from the compiled module if there is one for this Python, else from the plain files.
-RLV_LANDING_PURE=1 in the environment asks for the plain files.
+The classes come from the compiled module if there is one for this Python, else from the plain files. RLV_LANDING_PURE=1 in the
+environment asks for the plain files. Records and laws' names are those of the plain files always.
 """
 
+from __future__ import annotations
+
 import os
+from typing import TYPE_CHECKING
 
-from . import layout
+from .ground.kinds import FRICTION_LAWS
+from .records import Accounts, BodyModel, BodyState, Inputs, LegModel, LegPlace, LegState, Phase
+from .struts.kinds import AUXILIARY_STRUTS, MAIN_STRUTS
 
-try:
-    if os.environ.get("RLV_LANDING_PURE") == "1":
-        raise ImportError("the pure core is asked for")
-    from .compiled import DormandPrince, Exponential, Model, Solver, output_size, state_size
+COMPILED = False
+if not TYPE_CHECKING and os.environ.get("RLV_LANDING_PURE") != "1":
+    try:
+        from .compiled import DormandPrince, Exponential, Planar, Solver, System
 
-    COMPILED = True
-except ImportError:
-    from .dormand_prince import DormandPrince
-    from .exponential import Exponential
-    from .integrator import Solver, output_size, state_size
-    from .model import Model
+        COMPILED = True
+    except ImportError:
+        pass
+if not COMPILED:
+    from .bodies.planar import Planar
+    from .bodies.system import System
+    from .solvers.dormand_prince import DormandPrince
+    from .solvers.exponential import Exponential
+    from .solvers.solver import Solver
 
-    COMPILED = False
-
-__all__ = ["COMPILED", "DormandPrince", "Exponential", "Model", "Solver", "layout", "output_size", "state_size"]
+__all__ = [
+    "AUXILIARY_STRUTS",
+    "COMPILED",
+    "FRICTION_LAWS",
+    "MAIN_STRUTS",
+    "Accounts",
+    "BodyModel",
+    "BodyState",
+    "DormandPrince",
+    "Exponential",
+    "Inputs",
+    "LegModel",
+    "LegPlace",
+    "LegState",
+    "Phase",
+    "Planar",
+    "Solver",
+    "System",
+]

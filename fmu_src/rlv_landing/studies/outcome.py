@@ -11,6 +11,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core import Phase
 from ..errors import LandingError, unknown
 from ..history import History
 from ..parameters import azimuth, check_value
@@ -20,7 +21,7 @@ Array = NDArray[np.float64]
 Name = Literal["toppled", "bottomed out", "slid", "moving", "settled"]
 # the outcomes, the severest first
 SEVERITY: tuple[Name, ...] = get_args(Name)
-SETTLED, TOPPLED = 2.0, 3.0
+SETTLED, TOPPLED = float(Phase.SETTLED), float(Phase.TOPPLED)
 # the paper does not print its footpads' diameter; a leg's spreading alone moves a footpad by some centimetres
 DEFAULT_SLIDE = 0.3
 

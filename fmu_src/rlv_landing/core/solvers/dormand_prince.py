@@ -4,10 +4,14 @@ Coefficients: Dormand and Prince (1980); the fourth-order interpolant: Hairer, N
 Equations I, II.6.
 """
 
+from __future__ import annotations
+
 from array import array
 
-from .integrator import BETA, Solver
-from .pointer import data
+from ..bodies.system import System
+from ..memory import Buffer, data
+from .solver import Solver
+from .step_control import BETA
 
 A21 = 1.0 / 5.0
 A31, A32 = 3.0 / 40.0, 9.0 / 40.0
@@ -23,13 +27,16 @@ D5, D6, D7 = 701980252875.0 / 199316789632.0, -1453857185.0 / 822651844.0, 69997
 class DormandPrince(Solver):
     """Six right-hand sides a step, fifth order, error of a fourth-order companion."""
 
-    def __init__(self, model, scale, relative, rtol):
-        super().__init__(model, scale, relative, rtol)
+    k5: Buffer
+    k6: Buffer
+
+    def __init__(self, system: System, rtol: float) -> None:
+        super().__init__(system, rtol)
         self.k5 = array("d", bytes(8 * self.n))
         self.k6 = array("d", bytes(8 * self.n))
         self.exponent = 0.2 - 0.75 * BETA
 
-    def attempt(self, h):
+    def _try_step(self, h: float) -> None:
         """Write the seven stages and the new state of a step of `h` [s]."""
         n = self.n
         t = self.t
@@ -38,26 +45,26 @@ class DormandPrince(Solver):
         k5, k6, k7 = data(self.k5), data(self.k6), data(self.k_end)
         for i in range(n):
             s[i] = y[i] + h * (A21 * k1[i])
-        self.slope(t + 0.2 * h, s, k2)
+        self._derivatives(t + 0.2 * h, s, k2)
         for i in range(n):
             s[i] = y[i] + h * (A31 * k1[i] + A32 * k2[i])
-        self.slope(t + 0.3 * h, s, k3)
+        self._derivatives(t + 0.3 * h, s, k3)
         for i in range(n):
             s[i] = y[i] + h * (A41 * k1[i] + A42 * k2[i] + A43 * k3[i])
-        self.slope(t + 0.8 * h, s, k4)
+        self._derivatives(t + 0.8 * h, s, k4)
         for i in range(n):
             s[i] = y[i] + h * (A51 * k1[i] + A52 * k2[i] + A53 * k3[i] + A54 * k4[i])
-        self.slope(t + 8.0 / 9.0 * h, s, k5)
+        self._derivatives(t + 8.0 / 9.0 * h, s, k5)
         for i in range(n):
             s[i] = y[i] + h * (A61 * k1[i] + A62 * k2[i] + A63 * k3[i] + A64 * k4[i] + A65 * k5[i])
-        self.slope(t + h, s, k6)
+        self._derivatives(t + h, s, k6)
         for i in range(n):
             end[i] = y[i] + h * (A71 * k1[i] + A73 * k3[i] + A74 * k4[i] + A75 * k5[i] + A76 * k6[i])
-        self.slope(t + h, end, k7)
+        self._derivatives(t + h, end, k7)
         for i in range(n):
             e[i] = h * (E1 * k1[i] + E3 * k3[i] + E4 * k4[i] + E5 * k5[i] + E6 * k6[i] + E7 * k7[i])
 
-    def bend(self, h):
+    def _dense_correction(self, h: float) -> None:
         """The interpolant's fourth-order part."""
         n = self.n
         for i in range(n):

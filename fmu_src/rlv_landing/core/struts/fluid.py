@@ -1,17 +1,22 @@
 """Liquid with entrapped air: one equation of state, and what follows from it. [closure]"""
 
+from __future__ import annotations
+
 from math import exp, log
 
+from ..records import FluidState
+
+# the air has given by then [Pa]
 P_FLOOR = 1.0
 
 
-def fluid(P, x, n, B0, kB, Pa):
-    """Return (v, dv/dP, h) of the mixture at absolute pressure `P` [Pa], with `v` the specific volume relative to that at `Pa`.
+def fluid(P: float, x: float, n: float, B0: float, kB: float, Pa: float) -> FluidState:
+    """The mixture at absolute pressure `P` [Pa], with v the specific volume relative to that at `Pa`.
 
     v = (1 - x) (1 + kB (P - Pa)/B0)^(-1/kB) + x (Pa/P)^(1/n); `x` air's volume fraction at `Pa`, `n` its polytropic
     exponent, `B0`, `kB` the liquid's bulk modulus [Pa] and its slope. Density is rho0/v and the effective bulk modulus
     -v/(dv/dP), so that liquid mass is conserved by construction. h = integral of v dP from `Pa` [Pa] is the energy that a
-    flow carries. Pressures below 1 Pa count as 1 Pa: the air has given by then.
+    flow carries. Pressures below 1 Pa count as 1 Pa.
     """
     if P < P_FLOOR:
         P = P_FLOOR
@@ -21,10 +26,9 @@ def fluid(P, x, n, B0, kB, Pa):
     v = liquid + air
     dv = -liquid / (a * B0) - air / (n * P)
     h = B0 / (kB - 1.0) * (a * liquid - (1.0 - x)) + n / (n - 1.0) * (P * air - x * Pa)
-    return v, dv, h
+    return FluidState(v, dv, h)
 
 
-def strain_energy(P, V, x, n, B0, kB, Pa):
-    """Energy [J] stored in volume `V` [m3] at pressure `P` [Pa]: V/v times (h - (P - Pa) v), zero at `Pa`."""
-    v, _, h = fluid(P, x, n, B0, kB, Pa)
-    return V / v * (h - (P - Pa) * v)
+def strain_energy(f: FluidState, P: float, V: float, Pa: float) -> float:
+    """Energy [J] stored in volume `V` [m3] of the mixture `f` at pressure `P` [Pa]: V/v times (h - (P - Pa) v), zero at `Pa`."""
+    return V / f.v * (f.h - (P - Pa) * f.v)

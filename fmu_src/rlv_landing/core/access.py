@@ -1,0 +1,119 @@
+"""Records from and to arrays of numbers: nothing else knows where a field stands.
+
+A state is the body's, then each leg's, then the accounts. What is kept between two kernels is an array of records of one kind. Compiled,
+each of these functions is an access through an address (see `core_source`).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .memory import Doubles, Records
+from .records import (
+    Accounts,
+    BodyModel,
+    BodyOutputs,
+    BodyState,
+    EnergyOutputs,
+    Inputs,
+    LegForces,
+    LegModel,
+    LegOutputs,
+    LegPlace,
+    LegState,
+    LegStatus,
+    PhiWeights,
+    PlanarLoads,
+    StatusOutputs,
+    StiffPair,
+)
+
+# how many numbers a record takes
+BODY = len(BodyState._fields)
+LEG = len(LegState._fields)
+ACCOUNTS = len(Accounts._fields)
+INPUTS = len(Inputs._fields)
+LEG_FORCES = len(LegForces._fields)
+LEG_STATUS = len(LegStatus._fields)
+PLANAR_LOADS = len(PlanarLoads._fields)
+STIFF_PAIR = len(StiffPair._fields)
+PHI_WEIGHTS = len(PhiWeights._fields)
+BODY_OUTPUTS = len(BodyOutputs._fields)
+ENERGY_OUTPUTS = len(EnergyOutputs._fields)
+STATUS_OUTPUTS = len(StatusOutputs._fields)
+LEG_OUTPUTS = len(LegOutputs._fields)
+
+# where a leg's state has what may be stiff in it
+Z1 = LegState._fields.index("z1")
+Z2 = LegState._fields.index("z2")
+
+
+def body_state(y: Doubles, at: int) -> BodyState:
+    """The body's state that stands at `y[at:]`."""
+    return BodyState(*y[at : at + BODY])
+
+
+def leg_state(y: Doubles, at: int) -> LegState:
+    """The leg's state that stands at `y[at:]`."""
+    return LegState(*y[at : at + LEG])
+
+
+def accounts(y: Doubles, at: int) -> Accounts:
+    """The accounts that stand at `y[at:]`."""
+    return Accounts(*y[at : at + ACCOUNTS])
+
+
+def inputs(u: Doubles, at: int) -> Inputs:
+    """The inputs that stand at `u[at:]`."""
+    return Inputs(*u[at : at + INPUTS])
+
+
+def put(record: tuple[float, ...], y: Doubles, at: int) -> None:
+    """Write a record to `y[at:]`."""
+    for i, value in enumerate(record):
+        y[at + i] = value
+
+
+def body_model(kept: Records[BodyModel], i: int) -> BodyModel:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def leg_model(kept: Records[LegModel], i: int) -> LegModel:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def leg_place(kept: Records[LegPlace], i: int) -> LegPlace:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def leg_forces_of(kept: Records[LegForces], i: int) -> LegForces:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def leg_status_of(kept: Records[LegStatus], i: int) -> LegStatus:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def planar_loads_of(kept: Records[PlanarLoads], i: int) -> PlanarLoads:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def stiff_pair_of(kept: Records[StiffPair], i: int) -> StiffPair:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def phi_weights_of(kept: Records[PhiWeights], i: int) -> PhiWeights:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def keep(record: tuple[Any, ...], kept: Records[Any], i: int) -> None:
+    """Keep a record as the `i`-th."""
+    kept[i] = record

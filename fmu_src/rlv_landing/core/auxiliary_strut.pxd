@@ -1,1 +1,0 @@
-cdef (double, double) auxiliary(double s, double v, Model p) noexcept nogil

@@ -1,0 +1,1 @@
+"""Bodies on legs, each a `System` that solvers integrate."""

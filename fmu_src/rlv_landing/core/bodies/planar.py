@@ -1,0 +1,207 @@
+"""The planar body as a user sees it: its motion, and what is read of it."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Sequence
+
+from ..access import (
+    BODY,
+    BODY_OUTPUTS,
+    ENERGY_OUTPUTS,
+    LEG,
+    LEG_OUTPUTS,
+    LEG_STATUS,
+    STATUS_OUTPUTS,
+    accounts,
+    body_model,
+    body_state,
+    inputs,
+    keep,
+    leg_forces_of,
+    leg_model,
+    leg_place,
+    leg_state,
+    leg_status_of,
+    planar_loads_of,
+    put,
+)
+from ..leg import leg_status
+from ..memory import Buffer, Doubles, Records, data, room
+from ..records import (
+    Accounts,
+    BodyModel,
+    BodyOutputs,
+    EnergyOutputs,
+    HeldEnergy,
+    LegModel,
+    LegOutputs,
+    LegPlace,
+    LegStatus,
+    StatusOutputs,
+)
+from .planar_legs import footpad_kinetic_energy, footpad_moment, turned
+from .planar_motion import PlanarMotion
+from .planar_status import phase_of
+
+
+class Planar(PlanarMotion):
+    """The planar body with its outputs: body, energies, status, then each leg group, in the order of `rlv_landing.quantities`.
+
+    Strut forces change sign here: the user's are negative in compression. Mirror images are made where the names are made.
+    `energy_start` [J] is the mechanical energy at the start, which the energy balance is drawn up against.
+    """
+
+    energy_start: float
+    _rates: Buffer
+    _status: Records[LegStatus]
+
+    def __init__(self, body: BodyModel, legs: Sequence[LegModel], places: Sequence[LegPlace], scale: Buffer, relative: Buffer) -> None:
+        super().__init__(body, legs, places, scale, relative)
+        self.energy_start = 0.0
+        self._rates = array("d", bytes(8 * self.n))
+        self._status = room(self.groups, LEG_STATUS)
+
+    def add_ground_work(self, y: Buffer, work: float) -> None:
+        """Add the `work` [J] of a ground that was moved at once to the accounts in the state `y`."""
+        self._add_ground_work(data(y), work)
+
+    def _add_ground_work(self, y: Doubles, work: float) -> None:
+        at = BODY + LEG * self.groups
+        a = accounts(y, at)
+        ground = a.ground + work
+        put(Accounts(a.orifice, a.seal, a.stop, a.auxiliary, a.contact, a.friction, a.external, ground, a.transverse), y, at)
+
+    def outputs(self, y: Doubles, u: Doubles, out: Doubles, at: int) -> None:
+        """Write all outputs to `out[at:]`."""
+        rates = data(self._rates)
+        self.rhs(y, u, rates)
+        for i in range(self.groups):
+            depth = planar_loads_of(self._loads, i).depth
+            keep(leg_status(leg_state(y, BODY + LEG * i), leg_forces_of(self._forces, i), depth, leg_model(self._legs, i)), self._status, i)
+        kinetic = self._kinetic_energy(y)
+        self._put_body(y, u, rates, out, at)
+        at += BODY_OUTPUTS
+        self._put_energies(y, self._held(y, kinetic), out, at)
+        at += ENERGY_OUTPUTS
+        self._put_status(y, rates, kinetic, out, at)
+        at += STATUS_OUTPUTS
+        for i in range(self.groups):
+            self._put_leg(i, out, at + LEG_OUTPUTS * i)
+
+    def _put_body(self, y: Doubles, u: Doubles, rates: Doubles, out: Doubles, at: int) -> None:
+        s = body_state(y, 0)
+        r = body_state(rates, 0)
+        along = self._acceleration(y, s, inputs(u, 0), turned(s.pitch, 0.0)).y
+        top = along - s.pitch_rate * s.pitch_rate * body_model(self._body, 0).H
+        put(BodyOutputs(s.x, s.y, s.pitch, s.vx, s.vy, s.pitch_rate, r.vx, r.vy, r.pitch_rate, top), out, at)
+
+    def _kinetic_energy(self, y: Doubles) -> float:
+        """Kinetic energy [J] of body and footpads."""
+        p = body_model(self._body, 0)
+        body = body_state(y, 0)
+        turn = turned(body.pitch, 0.0)
+        vx = body.vx * turn.cos_p - body.vy * turn.sin_p
+        vy = body.vx * turn.sin_p + body.vy * turn.cos_p
+        twice = p.m_u * (body.vx * body.vx + body.vy * body.vy) + p.I_u * body.pitch_rate * body.pitch_rate
+        for i in range(self.groups):
+            m_d = leg_model(self._legs, i).m_d
+            twice += footpad_kinetic_energy(vx, vy, body.pitch_rate, leg_state(y, BODY + LEG * i), leg_place(self._places, i), m_d)
+        return 0.5 * twice
+
+    def _held(self, y: Doubles, kinetic: float) -> HeldEnergy:
+        """The mechanical energy, from the status that is kept of the legs."""
+        p = body_model(self._body, 0)
+        body = body_state(y, 0)
+        turn = turned(body.pitch, 0.0)
+        height = p.m_u * body.y
+        liquid = auxiliary = contact = stop = 0.0
+        for i in range(self.groups):
+            leg = leg_state(y, BODY + LEG * i)
+            place = leg_place(self._places, i)
+            s = leg_status_of(self._status, i)
+            height += footpad_moment(body, leg, place, turn, leg_model(self._legs, i).m_d)
+            liquid += place.legs * s.main
+            auxiliary += place.legs * s.auxiliary
+            contact += place.legs * s.contact
+            stop += place.legs * s.stop
+        return HeldEnergy(kinetic, p.g * height, liquid, auxiliary, contact, stop)
+
+    def _put_energies(self, y: Doubles, held: HeldEnergy, out: Doubles, at: int) -> None:
+        a = accounts(y, BODY + LEG * self.groups)
+        mechanical = held.kinetic + held.potential + held.liquid + held.auxiliary + held.contact + held.stop
+        dissipated = a.orifice + a.seal + a.stop + a.auxiliary + a.contact + a.friction
+        supplied = a.external + a.ground + a.transverse
+        put(
+            EnergyOutputs(
+                kinetic=held.kinetic,
+                potential=held.potential,
+                liquid=held.liquid,
+                auxiliary=held.auxiliary,
+                contact=held.contact,
+                stop=held.stop,
+                dissipated_orifice=a.orifice,
+                dissipated_seal=a.seal,
+                dissipated_stop=a.stop,
+                dissipated_auxiliary=a.auxiliary,
+                dissipated_contact=a.contact,
+                dissipated_friction=a.friction,
+                work_external=a.external,
+                work_ground=a.ground,
+                work_transverse=a.transverse,
+                dissipated=dissipated,
+                balance=mechanical + dissipated - supplied - self.energy_start,
+            ),
+            out,
+            at,
+        )
+
+    def _put_status(self, y: Doubles, rates: Doubles, kinetic: float, out: Doubles, at: int) -> None:
+        """The stability margin is the distance [m] from the whole vehicle's CG to the nearer of the outermost footpads, negative beyond."""
+        body = body_state(y, 0)
+        mass = body_model(self._body, 0).m_u
+        moment = mass * body.x
+        first = planar_loads_of(self._loads, 0)
+        low = first.foot_x
+        high = first.foot_x
+        depth = first.depth
+        for i in range(self.groups):
+            loads = planar_loads_of(self._loads, i)
+            footpads = leg_place(self._places, i).legs * leg_model(self._legs, i).m_d
+            mass += footpads
+            moment += footpads * loads.foot_x
+            low = min(low, loads.foot_x)
+            high = max(high, loads.foot_x)
+            depth = max(depth, loads.depth)
+        x = moment / mass
+        margin = min(x - low, high - x)
+        phase = phase_of(body, body_state(rates, 0), margin, depth, kinetic, mass)
+        put(StatusOutputs(phase, margin), out, at)
+
+    def _put_leg(self, i: int, out: Doubles, at: int) -> None:
+        f = leg_forces_of(self._forces, i)
+        loads = planar_loads_of(self._loads, i)
+        s = leg_status_of(self._status, i)
+        put(
+            LegOutputs(
+                main_strut_force=-f.main,
+                main_strut_stroke=f.stroke,
+                main_strut_stroke_rate=f.stroke_rate,
+                main_strut_pressure_upper=s.pressure_upper,
+                main_strut_pressure_lower=s.pressure_lower,
+                main_strut_liquid_mass=s.liquid_mass,
+                auxiliary_strut_force=-f.auxiliary,
+                auxiliary_strut_stroke=f.auxiliary_stroke,
+                auxiliary_strut_stroke_rate=f.auxiliary_rate,
+                footpad_x=loads.foot_x,
+                footpad_y=loads.foot_y,
+                footpad_z=loads.foot_z,
+                contact_force_x=loads.contact_x,
+                contact_force_y=loads.contact_y,
+                contact_force_z=loads.contact_z,
+                contact_penetration=loads.depth,
+                contact_active=1.0 if loads.depth > 0.0 else 0.0,
+            ),
+            out,
+            at,
+        )

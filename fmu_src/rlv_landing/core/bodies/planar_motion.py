@@ -1,0 +1,207 @@
+"""How the planar body moves on its leg groups: the vehicle of a symmetric landing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ..access import (
+    ACCOUNTS,
+    BODY,
+    BODY_OUTPUTS,
+    ENERGY_OUTPUTS,
+    INPUTS,
+    LEG,
+    LEG_FORCES,
+    LEG_OUTPUTS,
+    PLANAR_LOADS,
+    STATUS_OUTPUTS,
+    Z1,
+    Z2,
+    body_model,
+    body_state,
+    inputs,
+    keep,
+    leg_forces_of,
+    leg_model,
+    leg_place,
+    leg_state,
+    planar_loads_of,
+    put,
+)
+from ..ground.kinds import friction_bound
+from ..leg import leg_forces
+from ..memory import Buffer, Doubles, Records, room, stored
+from ..records import (
+    Accounts,
+    BodyAcceleration,
+    BodyModel,
+    BodyState,
+    Inputs,
+    LegForces,
+    LegModel,
+    LegPlace,
+    LegState,
+    PlanarLoads,
+    StiffPair,
+    Turn,
+)
+from .planar_legs import (
+    foot_motion,
+    foot_point,
+    frame_acceleration,
+    leg_rates,
+    planar_loads,
+    transverse_height,
+    turned,
+)
+from .system import System
+
+
+class PlanarMotion(System):
+    """One body in its symmetric plane on leg groups, and its ground.
+
+    The state is a `BodyState`, a `LegState` for each group, and the `Accounts`, which no other state depends on.
+    """
+
+    groups: int
+    _body: Records[BodyModel]
+    _places: Records[LegPlace]
+    _legs: Records[LegModel]
+    _forces: Records[LegForces]
+    _loads: Records[PlanarLoads]
+
+    def __init__(self, body: BodyModel, legs: Sequence[LegModel], places: Sequence[LegPlace], scale: Buffer, relative: Buffer) -> None:
+        groups = len(legs)
+        row = BODY_OUTPUTS + ENERGY_OUTPUTS + STATUS_OUTPUTS + LEG_OUTPUTS * groups
+        super().__init__(scale, relative, ACCOUNTS, INPUTS, row, groups)
+        self.groups = groups
+        self._body = stored([body])
+        self._places = stored(places)
+        self._legs = stored(legs)
+        self._forces = room(groups, LEG_FORCES)
+        self._loads = room(groups, PLANAR_LOADS)
+
+    def inputs_after(self, u: Doubles, rates: Doubles, dt: float, now: Doubles) -> None:
+        """Loads go on at their rates, heave and tilt at their own, which change at theirs."""
+        a = inputs(u, 0)
+        rate = inputs(rates, 0)
+        put(
+            Inputs(
+                force_x=a.force_x + rate.force_x * dt,
+                force_y=a.force_y + rate.force_y * dt,
+                moment=a.moment + rate.moment * dt,
+                heave=a.heave + (a.heave_rate + 0.5 * rate.heave_rate * dt) * dt,
+                heave_rate=a.heave_rate + rate.heave_rate * dt,
+                tilt=a.tilt + (a.tilt_rate + 0.5 * rate.tilt_rate * dt) * dt,
+                tilt_rate=a.tilt_rate + rate.tilt_rate * dt,
+            ),
+            now,
+            0,
+        )
+
+    def rhs(self, y: Doubles, u: Doubles, dy: Doubles) -> None:
+        """Write dy/dt at the state `y` and the inputs `u` to `dy`; keep the legs' forces and loads on the way."""
+        p = body_model(self._body, 0)
+        body = body_state(y, 0)
+        now = inputs(u, 0)
+        turn = turned(body.pitch, p.alpha + now.tilt)
+        for i in range(self.groups):
+            self._load(i, y, body, now, turn)
+        a = self._acceleration(y, body, now, turn)
+        put(
+            BodyState(
+                body.vx, body.vy, body.pitch_rate, a.x * turn.cos_p + a.y * turn.sin_p, a.y * turn.cos_p - a.x * turn.sin_p, a.pitch
+            ), dy, 0
+        )  # fmt: skip
+        transverse = 0.0
+        for i in range(self.groups):
+            transverse += self._move(i, y, body.pitch_rate, a, dy)
+        external = now.force_x * body.vx + now.force_y * body.vy + now.moment * body.pitch_rate
+        put(self._powers(external, transverse), dy, BODY + LEG * self.groups)
+
+    def _load(self, i: int, y: Doubles, body: BodyState, u: Inputs, turn: Turn) -> None:
+        """Keep the forces and loads of leg group `i`."""
+        leg = leg_state(y, BODY + LEG * i)
+        place = leg_place(self._places, i)
+        model = leg_model(self._legs, i)
+        point = foot_point(body, leg, place, u, turn)
+        foot = foot_motion(point, u, turn)
+        keep(leg_forces(leg, foot, model), self._forces, i)
+        weight = model.m_d * body_model(self._body, 0).g
+        keep(planar_loads(leg_forces_of(self._forces, i), point, foot.depth, place, turn, weight), self._loads, i)
+
+    def _acceleration(self, y: Doubles, body: BodyState, u: Inputs, turn: Turn) -> BodyAcceleration:
+        """The body's acceleration under the legs' loads.
+
+        Two coupled equations for a_x and the pitch acceleration, because the transverse force that keeps each footpad in its
+        plane contains both; a_y stands alone. Clockwise pitch and moments are positive.
+        """
+        p = body_model(self._body, 0)
+        rate = body.pitch_rate
+        fy = u.force_y - p.m_u * p.g
+        force_x = u.force_x * turn.cos_p - fy * turn.sin_p
+        force_y = u.force_x * turn.sin_p + fy * turn.cos_p
+        moment = u.moment
+        m11 = p.m_u
+        m12 = 0.0
+        m21 = 0.0
+        m22 = p.I_u
+        for i in range(self.groups):
+            leg = leg_state(y, BODY + LEG * i)
+            place = leg_place(self._places, i)
+            model = leg_model(self._legs, i)
+            loads = planar_loads_of(self._loads, i)
+            n = place.legs
+            s = place.sin_g
+            yn = transverse_height(leg.h, p, model)
+            mass = n * model.m_d * s * s
+            m11 += mass
+            m12 += mass * leg.h
+            m21 += mass * yn
+            m22 += mass * yn * leg.h
+            bias = n * s * (loads.tangential + model.m_d * s * (2.0 * rate * leg.vh - rate * rate * leg.r * place.cos_g))
+            force_x += n * loads.body_x - bias
+            force_y += n * loads.body_y
+            moment += n * loads.moment - bias * yn
+        determinant = m11 * m22 - m12 * m21
+        return BodyAcceleration((force_x * m22 - moment * m12) / determinant, force_y / p.m_u, (m11 * moment - m21 * force_x) / determinant)
+
+    def _move(self, i: int, y: Doubles, rate: float, a: BodyAcceleration, dy: Doubles) -> float:
+        """Write the rates of leg group `i` to `dy`; return the power [W] that its transverse forces create."""
+        leg = leg_state(y, BODY + LEG * i)
+        place = leg_place(self._places, i)
+        model = leg_model(self._legs, i)
+        loads = planar_loads_of(self._loads, i)
+        frame = frame_acceleration(leg, place, rate, a)
+        put(leg_rates(leg, leg_forces_of(self._forces, i), loads, place, frame, model.m_d), dy, BODY + LEG * i)
+        force = -model.m_d * place.sin_g * frame.x - loads.tangential
+        arm = leg.h - transverse_height(leg.h, body_model(self._body, 0), model)
+        return place.legs * (-force * place.sin_g * rate * arm)
+
+    def _powers(self, external: float, transverse: float) -> Accounts:
+        """The powers [W] that the accounts gather; those from outside and of the transverse forces are given."""
+        orifice = seal = stop = auxiliary = contact = friction = ground = 0.0
+        for i in range(self.groups):
+            n = leg_place(self._places, i).legs
+            forces = leg_forces_of(self._forces, i)
+            orifice += n * forces.orifice
+            seal += n * forces.seal
+            stop += n * forces.stop
+            auxiliary += n * forces.auxiliary_dissipated
+            contact += n * forces.contact
+            friction += n * forces.friction
+            ground += n * planar_loads_of(self._loads, i).ground
+        return Accounts(orifice, seal, stop, auxiliary, contact, friction, external, ground, transverse)
+
+    def stiff(self, k: int) -> StiffPair:
+        """The states of leg group `k`'s main strut law."""
+        forces = leg_forces_of(self._forces, k)
+        at = BODY + LEG * k
+        return StiffPair(at + Z1, at + Z2, forces.a1, forces.a2)
+
+    def project(self, y: Doubles) -> None:
+        """Bring what the friction laws keep to where they let it be."""
+        for i in range(self.groups):
+            leg = leg_state(y, BODY + LEG * i)
+            q = friction_bound(leg.q1, leg.q2, leg_model(self._legs, i))
+            put(LegState(leg.r, leg.h, leg.vr, leg.vh, leg.z1, leg.z2, q.q1, q.q2), y, BODY + LEG * i)

@@ -1,0 +1,1 @@
+"""Laws of the ground under a footpad: a file each, and `kinds.py`, which chooses among them."""

@@ -1,0 +1,1 @@
+"""Integration methods for a `System`; none of them knows what it integrates."""

@@ -1,0 +1,1 @@
+"""Laws of struts: a file each, and `kinds.py`, which chooses among them."""
