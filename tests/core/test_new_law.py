@@ -1,0 +1,134 @@
+"""A new law of the main strut is one file, and its import and its line in `struts/kinds.py`: in a copy of the core, pure and compiled."""
+
+import importlib
+import shutil
+import sys
+from array import array
+from pathlib import Path
+
+import numpy as np
+import pytest
+from Cython.Build import cythonize
+from pytest import approx
+from setuptools import Distribution, Extension
+from setuptools.command.build_ext import build_ext
+
+from rlv_landing import load_preset
+from rlv_landing.assembly import body_model, build_system, leg_models, leg_places, start_state
+from rlv_landing.quantities import LEG_QUANTITIES, SHARED_QUANTITIES
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "fmu_src"))
+from core_source import CORE, DIRECTIVES, MODULE, write_source
+
+LAW = '''\
+"""A linear spring and damper."""
+
+from __future__ import annotations
+
+from ..records import LegModel, StrutForce, StrutStatus
+
+SPRING_RATE, DAMPING = 2e5, 3e3
+
+
+def linear_spring(s: float, v: float, z1: float, z2: float, p: LegModel) -> StrutForce:
+    """The strut at stroke `s` [m] and stroke rate `v` [m/s]."""
+    damping = DAMPING * v
+    return StrutForce(SPRING_RATE * s + damping, 0.0, 0.0, damping * v, 0.0, 0.0, 0.0, 0.0)
+
+
+def linear_spring_status(s: float, z1: float, z2: float, p: LegModel) -> StrutStatus:
+    """What the spring holds."""
+    return StrutStatus(0.5 * SPRING_RATE * s * s, 0.0, 0.0, 0.0, 0.0)
+'''
+IMPORT = "from .linear_spring import linear_spring, linear_spring_status\n"
+LINE = '    "linear-spring": MainStrutLaw(linear_spring, linear_spring_status),\n'
+STROKE, RATE, FORCE = ([q.name for q in LEG_QUANTITIES].index(f"main_strut.{name}") for name in ("stroke", "stroke_rate", "force"))
+
+
+def extended(folder: Path) -> Path:
+    """A copy of the core with the new law, as a package in `folder`."""
+    core = folder / "core_with_spring"
+    shutil.copytree(CORE, core, ignore=shutil.ignore_patterns("__pycache__", f"{MODULE}.*"))
+    (core / "struts" / "linear_spring.py").write_text(LAW)
+    kinds = core / "struts" / "kinds.py"
+    text = kinds.read_text()
+    changed = text
+    for neighbour, added in (("from .liquid_spring import", IMPORT), ('    "liquid-spring": MainStrutLaw(', LINE)):
+        (line,) = (line for line in text.splitlines(keepends=True) if line.startswith(neighbour))
+        changed = changed.replace(line, line + added)
+    kinds.write_text(changed)
+    return core
+
+
+def compiled(core: Path, folder: Path) -> Path:
+    """Compile the `core` below `folder`; return the folder of the package. Unoptimised, which changes no digit and takes less time."""
+    source = write_source(folder / "source", core)
+    extension = Extension(f"{source.parent.name}.{MODULE}", [str(source)], extra_compile_args=["-O0", "-ffp-contract=off"])
+    command = build_ext(Distribution({"ext_modules": cythonize([extension], compiler_directives=DIRECTIVES, quiet=True)}))
+    command.build_lib, command.build_temp = str(folder / "built"), str(folder / "temporary")
+    command.ensure_finalized()
+    command.run()
+    return folder / "built" / source.parent.name
+
+
+def land(planar, exponential, kind: float) -> np.ndarray:
+    """The outputs of a landing, a row every millisecond, with a mixed vehicle: the first leg group keeps its liquid spring."""
+    parameters = load_preset("yue2022-figures", "2-2").with_values({"vehicle.transverse_load_at": "footpad"})
+    like = build_system(parameters)
+    first, second = leg_models(parameters)
+    legs = [first, second._replace(main_kind=kind)]
+    system = planar(body_model(parameters), legs, leg_places(parameters), array("d", like.scale), array("d", like.relative))
+    solver = exponential(system, 1e-6)
+    for i, value in enumerate(start_state(parameters)):
+        solver.y[i] = value
+    solver.restart(0.0)
+    rows = np.zeros((301, system.row))
+    assert solver.record(0.0, 1e-3, 0, len(rows), rows.reshape(-1)) == len(rows)
+    return rows
+
+
+@pytest.fixture(scope="module")
+def core(tmp_path_factory):
+    return extended(tmp_path_factory.mktemp("law"))
+
+
+@pytest.fixture(scope="module")
+def pure_rows(core):
+    sys.path.insert(0, str(core.parent))
+    try:
+        planar = importlib.import_module(f"{core.name}.bodies.planar").Planar
+        exponential = importlib.import_module(f"{core.name}.solvers.exponential").Exponential
+    finally:
+        sys.path.pop(0)
+    return land(planar, exponential, 1.0)
+
+
+def test_a_leg_with_the_new_law_obeys_it_and_its_neighbour_keeps_its_own(pure_rows):
+    shared = len(SHARED_QUANTITIES)
+    old, new = (pure_rows[:, shared + len(LEG_QUANTITIES) * group :] for group in (0, 1))
+    assert new[:, STROKE].max() > 1e-3
+    assert -new[:, FORCE] == approx(2e5 * new[:, STROKE] + 3e3 * new[:, RATE], rel=1e-12, abs=1e-9)
+    assert np.abs(-old[:, FORCE] - 2e5 * old[:, STROKE] - 3e3 * old[:, RATE]).max() > 100.0
+
+
+def test_the_energy_balance_closes_with_the_new_law(pure_rows):
+    names = [q.name for q in SHARED_QUANTITIES]
+    balance = pure_rows[:, names.index("energy.balance")]
+    assert np.ptp(balance) < 1e-4 * pure_rows[-1, names.index("energy.dissipated")]
+
+
+def test_the_compiled_copy_gives_the_same_digits(core, pure_rows, tmp_path):
+    package = compiled(core, tmp_path)
+    sys.path.insert(0, str(package.parent))
+    try:
+        module = importlib.import_module(f"{package.name}.{MODULE}")
+    finally:
+        sys.path.pop(0)
+    assert np.array_equal(land(module.Planar, module.Exponential, 1.0), pure_rows)
+
+
+def test_two_kernel_files_that_define_the_same_name_are_refused(tmp_path):
+    core = extended(tmp_path)
+    (core / "struts" / "another.py").write_text("DAMPING = 1.0\n")
+    with pytest.raises(ValueError, match=r"DAMPING is defined in another\.py and in linear_spring\.py; give one of them another name"):
+        write_source(tmp_path / "source", core)
