@@ -7,8 +7,8 @@ FMU := build/RlvLanding.fmu
 COFMUPY := build/cofmupy/.packages
 CHROMIUM := build/chromium/.packages
 CORE := $(shell find fmu_src/rlv_landing/core -name '*.py')
-SLAVE := fmu_src/landing_fmu.py fmu_src/build_fmu.py $(wildcard fmu_src/fmu_*.py fmu_src/fmu_*.j2 fmu_src/fmu_front/*) CHANGELOG.md LICENSE \
-  $(addprefix fmu_src/rlv_landing/,__init__.py errors.py quantities.py parameters.py touchdown.py assembly.py landing.py plots.py)
+SLAVE := fmu_src/landing_fmu.py $(wildcard fmu_src/fmu_build/*.py fmu_src/fmu_build/*.j2 fmu_src/fmu_front/*) CHANGELOG.md LICENSE \
+  $(addprefix fmu_src/rlv_landing/,__init__.py errors.py quantities.py parameters.py touchdown.py assembly.py landing.py figures/plots.py)
 
 .PHONY: help run test lint torture bench annotate coverage docs clean
 help:
@@ -29,7 +29,7 @@ $(VENV)/.packages: pyproject.toml
 	$(BIN)/python -m pip install -q -e '.[dev]'
 	@touch $@
 
-$(VENV)/.core: $(VENV)/.packages setup.py fmu_src/core_source.py fmu_src/core_declarations.py $(CORE)
+$(VENV)/.core: $(VENV)/.packages setup.py fmu_src/fmu_build/core_source.py fmu_src/fmu_build/core_declarations.py $(CORE)
 	$(BIN)/python setup.py -q build_ext --inplace --force
 	@touch $@
 

@@ -10,4 +10,4 @@ if [ -z "${PYTHON:-}" ]; then
     fi
 fi
 "$PYTHON" setup.py -q build_ext --inplace
-exec "$PYTHON" fmu_src/build_fmu.py "$@"
+PYTHONPATH="fmu_src${PYTHONPATH:+:$PYTHONPATH}" exec "$PYTHON" -m fmu_build.build "$@"

@@ -21,7 +21,7 @@ def extensions() -> list[Extension]:
         from Cython.Build import cythonize
     except ImportError:
         return []
-    from core_source import COMPILE_ARGS, CORE, DIRECTIVES, LIMITED_API, MODULE, write_source
+    from fmu_build.core_source import COMPILE_ARGS, CORE, DIRECTIVES, LIMITED_API, MODULE, write_source
 
     if LIMITED:
         # it would be found before the binary for all versions

@@ -13,7 +13,7 @@ from setuptools import Extension
 
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT / "fmu_src"))
-from core_source import DIRECTIVES, MODULE, write_source  # noqa: E402
+from fmu_build.core_source import DIRECTIVES, MODULE, write_source  # noqa: E402
 
 LINE = re.compile(r'<pre class="cython line score-(\d+)"[^>]*>[^<]*<span class="">(\d+)</span>: (.*?)</pre>')
 

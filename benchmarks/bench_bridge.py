@@ -26,12 +26,12 @@ from rich.console import Console
 from rich.table import Table
 from rows import FMU, append_rows
 
-from rlv_ros_bridge.fmu_runner import FmuRunner
-from rlv_ros_bridge.messages import SampleBytes
-from rlv_ros_bridge.pacer import spread
-from rlv_ros_bridge.qos import TELEMETRY
-from rlv_ros_bridge.recorder import RecordedTopic, Recorder
-from rlv_ros_bridge.topics import SAMPLED
+from rlv_ros_bridge.fmu.runner import FmuRunner
+from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.messages.qos import TELEMETRY
+from rlv_ros_bridge.messages.samples import SampleBytes
+from rlv_ros_bridge.messages.topics import SAMPLED
+from rlv_ros_bridge.node.pacer import spread
 
 STEP = 1e-3
 FAST_SECONDS, REPEATS = 10.0, 5
@@ -40,9 +40,9 @@ SPIN_SECONDS = 300e-6
 
 LAND = """
 import json, sys, time
-from rlv_ros_bridge.land import land
-from rlv_ros_bridge.landing_run import LandingRun
-from rlv_ros_bridge.ros_setup import StopFlag
+from rlv_ros_bridge.node.land import land
+from rlv_ros_bridge.node.landing_run import LandingRun
+from rlv_ros_bridge.ros.setup import StopFlag
 
 found, go_on = {}, LandingRun.go_on
 
@@ -64,8 +64,8 @@ print(json.dumps({**found, "samples": summary.samples, "factor": summary.realtim
 """
 REPLAY = """
 import json, sys
-from rlv_ros_bridge.replay_node import ReplayNode, ReplayOptions, replay
-from rlv_ros_bridge.ros_setup import StopFlag
+from rlv_ros_bridge.replay.replay_node import ReplayNode, ReplayOptions, replay
+from rlv_ros_bridge.ros.setup import StopFlag
 
 found, play = {}, ReplayNode.play
 

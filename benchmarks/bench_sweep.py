@@ -21,10 +21,10 @@ from bench_landing import append_rows
 from rich.console import Console
 from rich.table import Table
 
-from rlv_landing.studies.result_files import PART_ROWS, Results
-from rlv_landing.studies.row import Task
-from rlv_landing.studies.study import read_study
-from rlv_landing.studies.sweep import THREAD_ROWS, default_workers
+from rlv_landing.studies.sweep.result_files import PART_ROWS, Results
+from rlv_landing.studies.sweep.row import Task
+from rlv_landing.studies.sweep.study import read_study
+from rlv_landing.studies.sweep.sweep import THREAD_ROWS, default_workers
 
 STUDY = """
 [study]

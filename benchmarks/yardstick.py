@@ -21,7 +21,7 @@ from rlv_landing.quantities import INPUT_NAMES
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent / "fmu_src"))
-from core_source import COMPILE_ARGS  # noqa: E402
+from fmu_build.core_source import COMPILE_ARGS  # noqa: E402
 
 # of the core's `BodyModel` and `LegModel`, which are the same for all legs here, in the order of the C struct that is made from them
 PARAMETERS = (

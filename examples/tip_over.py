@@ -6,9 +6,9 @@ import os
 from math import degrees, radians
 
 from rlv_landing import load_preset
-from rlv_landing.studies.envelope import envelope
-from rlv_landing.studies.envelope_study import Axis, EnvelopeStudy
-from rlv_landing.studies.tip_over import LOCKED, RigidBlock
+from rlv_landing.studies.envelope.search import envelope
+from rlv_landing.studies.envelope.study import Axis, EnvelopeStudy
+from rlv_landing.studies.envelope.tip_over import LOCKED, RigidBlock
 
 RAISED = (-0.5, 0.0, 0.5)
 SLOPES = (0.0, 5.0, 10.0)

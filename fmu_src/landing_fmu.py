@@ -2,8 +2,8 @@
 
 The C front (`fmu_front/`) calls it through pythonfmu's binary, with known value references of the right type only, in the order that FMI
 allows, and returns the worst status that is logged here during a call.
-`build_fmu.py` packs this file into its own copy of the package, whose name carries the version; units, types and dependencies come into
-the description there (`fmu_description.py`).
+`fmu_build/build.py` packs this file into its own copy of the package, whose name carries the version; `fmu_build/description.py` adds
+units, types and dependencies to the description.
 """
 
 import json

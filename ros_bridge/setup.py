@@ -3,7 +3,7 @@
 from pathlib import Path
 from xml.etree import ElementTree
 
-from setuptools import setup
+from setuptools import find_packages, setup
 
 NAME = "rlv_ros_bridge"
 
@@ -12,7 +12,7 @@ setup(
     version=ElementTree.parse("package.xml").findtext("version"),
     description=ElementTree.parse("package.xml").findtext("description"),
     license="Apache-2.0",
-    packages=[NAME],
+    packages=find_packages(include=[NAME, f"{NAME}.*"]),
     install_requires=["setuptools"],
     zip_safe=True,
     data_files=[

@@ -48,7 +48,7 @@ def build(folder: Path, landing: Path = LANDING) -> dict[str, Path]:
 def add_front(fmu: Path) -> None:
     """Give an FMU of pythonfmu the C front of RlvLanding.fmu, without which it runs in hosts that are Python processes only."""
     sys.path.insert(0, str(ROOT / "fmu_src"))
-    from fmu_binary import replace_binaries
+    from fmu_build.binary import replace_binaries
 
     with TemporaryDirectory() as folder:
         files = Path(folder) / "files"

@@ -51,6 +51,12 @@ DISPLAY_UNITS = {
     "cm3": ("m3", 1e-6),
 }
 
+
+def shown(q: Quantity) -> tuple[str, float]:
+    """The unit that people read the quantity in, and how much of the SI unit one of it is."""
+    return (q.display_unit, DISPLAY_UNITS[q.display_unit][1]) if q.display_unit in DISPLAY_UNITS else (q.unit, 1.0)
+
+
 # unit that a quantity is read in -> its order of magnitude [SI unit]; 1 where none is listed
 NOMINALS = {"mm": 1e-2, "deg": 0.1, "kN": 1e3, "N.m": 1e3, "MPa": 1e6, "J": 100.0, "m/s2": 10.0, "rad/s2": 10.0}
 

@@ -8,11 +8,11 @@ import click
 
 from rlv_landing.errors import LandingError
 
-from .cli import replay
-from .log_cli import log
-from .node_command import node
-from .picture_cli import animate
-from .view_cli import view
+from .commands.animate import animate
+from .commands.log import log
+from .commands.node import node
+from .commands.replay import replay
+from .commands.view import view
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})

@@ -12,8 +12,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "benchmar
 from annotate import ROOT, annotate, lines
 
 sys.path.insert(0, str(ROOT / "fmu_src"))
-from core_declarations import declarations
-from core_source import CORE, kernels
+from fmu_build.core_declarations import declarations
+from fmu_build.core_source import CORE, kernels
 
 # called from Python once a step of the caller's, or once at all; what they call is compiled
 ENTRIES = {"inputs_at", "derivatives", "restart", "recompute_derived", "advance", "interpolate", "outputs_at", "record", "add_ground_work"}

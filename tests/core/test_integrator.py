@@ -222,7 +222,7 @@ def test_landings_in_several_threads_are_the_same_as_one_by_one(mode):
 def test_compiled_core_is_made_from_the_present_kernels():
     sys.path.insert(0, str(core.__path__[0]) + "/../..")
     try:
-        from core_source import digest
+        from fmu_build.core_source import digest
     finally:
         sys.path.pop(0)
     from rlv_landing.core import compiled

@@ -18,7 +18,7 @@ from rlv_landing.assembly import body_model, build_system, leg_models, leg_place
 from rlv_landing.quantities import LEG_QUANTITIES, SHARED_QUANTITIES
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "fmu_src"))
-from core_source import CORE, DIRECTIVES, MODULE, write_source
+from fmu_build.core_source import CORE, DIRECTIVES, MODULE, write_source
 
 LAW = '''\
 """A linear spring and damper."""

@@ -32,25 +32,25 @@ def test_build_script_writes_where_it_is_told_and_says_what_it_checked(tmp_path)
 
 def test_the_front_compiles_without_a_warning_and_exports_fmi_functions_only(unpacked, tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(ROOT / "fmu_src")
-    import fmu_binary
+    from fmu_build import binary
 
     root = ElementTree.parse(unpacked / "modelDescription.xml").getroot()
-    (tmp_path / "variables.h").write_text(fmu_binary.variables_header(root, "stock.so"))
-    monkeypatch.setattr(fmu_binary, "FLAGS", [*fmu_binary.FLAGS, "-Werror", "-Wpedantic"])
-    fmu_binary.compile_front(tmp_path / "front.so", tmp_path)
+    (tmp_path / "variables.h").write_text(binary.variables_header(root, "stock.so"))
+    monkeypatch.setattr(binary, "FLAGS", [*binary.FLAGS, "-Werror", "-Wpedantic"])
+    binary.compile_front(tmp_path / "front.so", tmp_path)
     listed = subprocess.run(["nm", "-D", "--defined-only", tmp_path / "front.so"], capture_output=True, text=True, check=True).stdout
     names = {line.split()[-1] for line in listed.splitlines()}
-    declared = re.findall(r"#define (fmi2\w+) +fmi2FullName", (fmu_binary.HEADERS / "fmi2Functions.h").read_text())
+    declared = re.findall(r"#define (fmi2\w+) +fmi2FullName", (binary.HEADERS / "fmi2Functions.h").read_text())
     assert names == {name for name in declared if not OF_MODEL_EXCHANGE.search(name)}
 
 
 def test_an_unknown_binary_of_pythonfmus_stops_the_build(monkeypatch, unpacked):
     """A binary with other finalisers than the known two is for a person to look at."""
     monkeypatch.syspath_prepend(ROOT / "fmu_src")
-    import fmu_binary
+    from fmu_build import binary
 
     stock = next((unpacked / "binaries" / "linux64").glob("pythonfmu-export-*.so")).read_bytes()
     with pytest.raises(SystemExit, match="has 1 finalisers, 2 are known"):
-        fmu_binary.without_last_finaliser(stock)
+        binary.without_last_finaliser(stock)
     with pytest.raises(SystemExit, match="no 64-bit little-endian ELF file"):
-        fmu_binary.without_last_finaliser(b"MZ" + stock)
+        binary.without_last_finaliser(b"MZ" + stock)

@@ -117,12 +117,12 @@ def test_page_lists_every_variable_with_unit_bounds_and_default_as_the_descripti
 
 def build(target: Path, **environment: str) -> bytes:
     subprocess.run(
-        [sys.executable, "fmu_src/build_fmu.py", str(target)],
+        [sys.executable, "-m", "fmu_build.build", str(target)],
         cwd=ROOT,
         check=True,
         capture_output=True,
         timeout=300,
-        env={**os.environ, **environment},
+        env={**os.environ, "PYTHONPATH": "fmu_src", **environment},
     )
     return target.read_bytes()
 
@@ -137,7 +137,7 @@ def test_two_builds_of_the_same_sources_give_the_same_bytes(tmp_path):
     assert fmpy.read_model_description(str(tmp_path / "a.fmu")).generationDateAndTime == "2023-11-14T22:13:21Z"
 
 
-DATE = "import build_fmu; print(build_fmu.source_date().isoformat())"
+DATE = "from fmu_build import build; print(build.source_date().isoformat())"
 
 
 @pytest.mark.parametrize(
@@ -164,9 +164,7 @@ def test_bad_source_date_is_refused_with_what_to_do(tmp_path, epoch):
 
 def source_date(folder: Path, committed: bool, epoch: str) -> subprocess.CompletedProcess[str]:
     """The date that a copy of the build scripts finds in `folder`, a git repository or none."""
-    (folder / "fmu_src").mkdir()
-    for script in sorted((ROOT / "fmu_src").glob("*.py")):
-        shutil.copy(script, folder / "fmu_src" / script.name)
+    shutil.copytree(ROOT / "fmu_src" / "fmu_build", folder / "fmu_src" / "fmu_build", ignore=shutil.ignore_patterns("__pycache__"))
     environment = {**os.environ, "SOURCE_DATE_EPOCH": epoch, "GIT_CEILING_DIRECTORIES": str(folder.parent)}
     if committed:
         git = ["git", "-c", "user.name=n", "-c", "user.email=e@example.org", "-c", "commit.gpgsign=false"]

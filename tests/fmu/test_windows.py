@@ -17,9 +17,9 @@ STOCK = Path(pythonfmu.__file__).parent / "resources" / "binaries" / "win64" / "
 @pytest.fixture
 def fmu_binary(monkeypatch):
     monkeypatch.syspath_prepend(ROOT / "fmu_src")
-    import fmu_binary
+    from fmu_build import binary
 
-    return fmu_binary
+    return binary
 
 
 @pytest.fixture

@@ -13,8 +13,8 @@ from mcap.records import Attachment, Channel, Chunk, DataEnd, Footer, Header, Me
 from mcap.stream_reader import StreamReader
 from mcap.writer import Writer
 
-from rlv_ros_bridge.qos import TELEMETRY
-from rlv_ros_bridge.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.messages.qos import TELEMETRY
 
 CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 CDR = bytes([0, 1, 0, 0])

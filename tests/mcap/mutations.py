@@ -17,9 +17,9 @@ from pathlib import Path
 from log_tools import messages_of
 
 from rlv_landing.errors import LandingError
-from rlv_ros_bridge.bag_reader import open_log
-from rlv_ros_bridge.log_info import log_info
-from rlv_ros_bridge.recover import recover
+from rlv_ros_bridge.logs.bag_reader import open_log
+from rlv_ros_bridge.logs.info import log_info
+from rlv_ros_bridge.logs.recover import recover
 
 MEMORY = 2 * 1024**3
 

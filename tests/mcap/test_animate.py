@@ -19,12 +19,12 @@ from log_tools import in_attachment, rewrite
 from numpy.typing import NDArray
 from PIL import Image
 
-from rlv_landing.animation import Film, frame_rows, save_animation
 from rlv_landing.errors import LandingError
+from rlv_landing.figures.animation import Film, frame_rows, save_animation
+from rlv_landing.figures.wireframe import wireframe
 from rlv_landing.history import History
-from rlv_landing.wireframe import wireframe
-from rlv_ros_bridge.log_history import log_history
-from rlv_ros_bridge.log_reader import LogReader
+from rlv_ros_bridge.logs.history import log_history
+from rlv_ros_bridge.logs.reader import LogReader
 
 FILM = ("--fps", "10", "--slow-motion", "2", "--end", "0.6", "--width", "480")
 FRAMES = 13

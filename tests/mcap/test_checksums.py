@@ -14,9 +14,9 @@ from mcap.records import Chunk, ChunkIndex, Message
 from mcap.writer import CompressionType, IndexType, Writer
 
 from rlv_landing.errors import LandingError
-from rlv_ros_bridge.log_reader import LogReader
-from rlv_ros_bridge.mcap_stream import RecordStream
-from rlv_ros_bridge.recover import recover
+from rlv_ros_bridge.logs.mcap_stream import RecordStream
+from rlv_ros_bridge.logs.reader import LogReader
+from rlv_ros_bridge.logs.recover import recover
 
 HEAD = 9
 # Where a chunk's record has its checksum, and where its compressed bytes begin.

@@ -11,10 +11,11 @@ from bridge_tools import one_error_line, run
 
 from rlv_landing import Landing, load_preset
 from rlv_landing.errors import LandingError
-from rlv_landing.reading import Reading
 from rlv_landing.summary import OUTCOMES
-from rlv_ros_bridge.log_info import log_info
-from rlv_ros_bridge.log_reader import LogReader
+from rlv_landing.validation.reading import Reading
+from rlv_ros_bridge.logs.history import history_of
+from rlv_ros_bridge.logs.info import log_info
+from rlv_ros_bridge.logs.reader import LogReader
 
 
 def test_log_info_sums_a_complete_log_up(log: Path, mode: str) -> None:
@@ -25,7 +26,7 @@ def test_log_info_sums_a_complete_log_up(log: Path, mode: str) -> None:
     assert (told["start"], told["duration"]) == (0.0, 1.0)
     struts = next(t for t in told["topics"] if t["name"] == "/landing/struts")
     assert struts == {"name": "/landing/struts", "type": "sensor_msgs/msg/JointState", "messages": 1001, "rate": 1000.0}
-    history = LogReader(log).history()
+    history = history_of(LogReader(log))
     landing = told["landing"]
     assert landing["outcome"] == OUTCOMES[int(Landing(load_preset("yue2022-figures"), mode).run(1.0)["status.phase"][-1])]
     assert landing["bottomed_out"] == []

@@ -15,14 +15,14 @@ from rosbags.typesys import Stores, get_typestore
 
 from rlv_landing import Landing, load_preset
 from rlv_landing.errors import LandingError
+from rlv_landing.figures.plots import save_overview
 from rlv_landing.history import History
-from rlv_landing.measures import leg_work
-from rlv_landing.plots import save_overview
 from rlv_landing.summary import summarise
-from rlv_landing.tables import comparison_table
-from rlv_ros_bridge.export import part
-from rlv_ros_bridge.log_history import log_history
-from rlv_ros_bridge.log_reader import LogReader
+from rlv_landing.tables.landing import comparison_table
+from rlv_landing.validation.measures import leg_work
+from rlv_ros_bridge.logs.export import part
+from rlv_ros_bridge.logs.history import log_history
+from rlv_ros_bridge.logs.reader import LogReader
 
 START = 1_790_000_000_000_000_000
 

@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from rlv_landing.plots import COLOURS
+from rlv_landing.figures.plots import COLOURS
 from rlv_landing.quantities import MODES
-from rlv_ros_bridge.log_reader import LogReader
+from rlv_ros_bridge.logs.reader import LogReader
 
 LAYOUT = Path(__file__).resolve().parents[2] / "ros_bridge" / "config" / "foxglove.json"
 LEGS_OF = {f"leg {leg}": (leg, colour) for group, colour in zip(MODES["2-2"], COLOURS) for leg, _ in group.legs}

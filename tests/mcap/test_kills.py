@@ -16,7 +16,8 @@ from mcap.exceptions import EndOfFile
 from mcap.stream_reader import StreamReader
 from rosbags.rosbag2 import Reader
 
-from rlv_ros_bridge.log_reader import LogReader
+from rlv_ros_bridge.logs.history import history_of
+from rlv_ros_bridge.logs.reader import LogReader
 
 STRUTS = {"/landing/struts": "sensor_msgs/msg/JointState"}
 # The landing that is cut short: longer than any moment that is tried [s].
@@ -130,4 +131,4 @@ def test_info_tells_what_a_killed_node_has_left(fmu: Path, tmp_path: Path) -> No
     assert published - LOSS <= told["start"] + told["duration"] <= published + 0.1
     (file,) = folder.iterdir()
     assert messages_of_stream_reader(file) == told["messages"]
-    assert len(LogReader(folder).history()) > 1000 * (published - LOSS)
+    assert len(history_of(LogReader(folder))) > 1000 * (published - LOSS)

@@ -15,7 +15,8 @@ from rosbags.typesys import Stores, get_typestore
 
 from rlv_landing import Landing, load_preset
 from rlv_landing.history import History
-from rlv_ros_bridge.log_reader import LogReader
+from rlv_ros_bridge.logs.history import history_of
+from rlv_ros_bridge.logs.reader import LogReader
 
 LEGS = (1, 2, 3, 4)
 # topic -> what its message carries: the output's name and where it stands in the message, axes and signs written out
@@ -107,7 +108,7 @@ def test_the_diagnostics_tell_phase_balance_pace_and_what_the_integrator_has_don
 
 def test_our_reader_gives_the_landing_back_with_its_parameters(log: Path, mode: str) -> None:
     expected = expected_history(mode)
-    history = LogReader(log).history()
+    history = history_of(LogReader(log))
     assert same_bits(history.time, expected.time)
     for name in history.names:
         assert same_bits(history[name], expected[name]), name
@@ -128,4 +129,4 @@ def test_the_log_carries_what_it_takes_to_repeat_the_run(log: Path, mode: str, f
     parameters = reader.parameters()
     assert parameters is not None
     again = Landing(parameters).run(1.0, 1e-3)
-    assert same_bits(again["leg[1].main_strut.force"], reader.history()["leg[1].main_strut.force"])
+    assert same_bits(again["leg[1].main_strut.force"], history_of(reader)["leg[1].main_strut.force"])

@@ -9,9 +9,9 @@ import pytest
 from log_tools import CDR, CLOCK_TYPE, messages_of
 from mcap.reader import make_reader
 
-from rlv_ros_bridge.open_chunk import TIMES
-from rlv_ros_bridge.qos import TELEMETRY
-from rlv_ros_bridge.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.logs.open_chunk import TIMES
+from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.messages.qos import TELEMETRY
 
 SIZES = {"/a": 12, "/b": 40, "/c": 16}
 SINGLE = "/single"

@@ -20,9 +20,9 @@ from rosbags.rosbag2 import Reader
 from zstandard import ZstdError
 
 from rlv_landing.errors import LandingError
-from rlv_ros_bridge.log_reader import LogReader
-from rlv_ros_bridge.qos import CLOCK, TELEMETRY, parse_qos
-from rlv_ros_bridge.recorder import CHUNK_BYTES, RecordedTopic, Recorder
+from rlv_ros_bridge.logs.reader import LogReader
+from rlv_ros_bridge.logs.recorder import CHUNK_BYTES, RecordedTopic, Recorder
+from rlv_ros_bridge.messages.qos import CLOCK, TELEMETRY, parse_qos
 
 CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 TOPICS = [RecordedTopic("/a", CLOCK_TYPE, TELEMETRY), RecordedTopic("/b", CLOCK_TYPE, CLOCK)]
@@ -73,7 +73,7 @@ def test_no_chunk_is_larger_than_64_kib(tmp_path: Path) -> None:
 
 
 def test_what_is_flushed_can_be_read_before_the_file_is_closed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("rlv_ros_bridge.recorder.FLUSH_SECONDS", 0.0)
+    monkeypatch.setattr("rlv_ros_bridge.logs.recorder.FLUSH_SECONDS", 0.0)
     recorder = Recorder(tmp_path / "log", TOPICS, {"key": "value"})
     recorder.write("/a", 1, CDR)
     recorder.flush()
@@ -148,7 +148,7 @@ def test_a_folder_that_goes_away_is_noticed_at_the_next_flush_and_at_the_end(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, how: str
 ) -> None:
     for flushed in (True, False):
-        monkeypatch.setattr("rlv_ros_bridge.recorder.FLUSH_SECONDS", 0.0)
+        monkeypatch.setattr("rlv_ros_bridge.logs.recorder.FLUSH_SECONDS", 0.0)
         folder, away = tmp_path / f"log-{flushed}", tmp_path / f"away-{flushed}"
         recorder = Recorder(folder, TOPICS)
         recorder.write("/a", 1, CDR)

@@ -25,9 +25,9 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.rosbag2 import Reader
 
 from rlv_landing.errors import LandingError
-from rlv_ros_bridge.log_reader import LogReader
-from rlv_ros_bridge.mcap_stream import LARGEST_CHUNK, RecordStream
-from rlv_ros_bridge.recover import recover
+from rlv_ros_bridge.logs.mcap_stream import LARGEST_CHUNK, RecordStream
+from rlv_ros_bridge.logs.reader import LogReader
+from rlv_ros_bridge.logs.recover import recover
 
 Found = list[tuple[str, int, int, bytes]]
 
@@ -238,7 +238,7 @@ def test_a_chunk_that_claims_gigabytes_does_not_fill_the_memory(tmp_path: Path) 
     for name, record in (("honest", chunk), ("lying", small)):
         write_with_chunk(tmp_path / f"{name}.mcap", record)
     code = (
-        "import re, sys; from rlv_ros_bridge.mcap_stream import RecordStream; from pathlib import Path\n"
+        "import re, sys; from rlv_ros_bridge.logs.mcap_stream import RecordStream; from pathlib import Path\n"
         "for name in sys.argv[1:]:\n"
         "    stream = RecordStream(Path(name)); assert len(list(stream)) == 1; assert len(stream.damage) == 1, stream.damage\n"
         "print(re.search('VmHWM:\\\\s+(\\\\d+) kB', Path('/proc/self/status').read_text())[1])"  # getrusage tells the parent's, too

@@ -15,8 +15,8 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.rosbag2 import Reader
 from rosbags.typesys import Stores, get_typestore
 
-from rlv_ros_bridge.topics import BODY_FRAME, JOINTS, WORLD_FRAME
-from rlv_ros_bridge.transforms import Transform, serialised
+from rlv_ros_bridge.messages.topics import BODY_FRAME, JOINTS, WORLD_FRAME
+from rlv_ros_bridge.messages.transforms import Transform, serialised
 
 STORE = get_typestore(Stores.ROS2_KILTED)
 TYPE = "tf2_msgs/msg/TFMessage"

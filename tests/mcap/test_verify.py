@@ -17,15 +17,15 @@ from rclpy.serialization import serialize_message
 
 from rlv_landing import Landing
 from rlv_landing.errors import LandingError
-from rlv_ros_bridge.input_queue import Applied
-from rlv_ros_bridge.inputs import HEAVE, TILT, WRENCH
-from rlv_ros_bridge.log_reader import LogReader
-from rlv_ros_bridge.messages import SampleBytes
-from rlv_ros_bridge.qos import TELEMETRY
-from rlv_ros_bridge.recorder import RecordedTopic, Recorder
-from rlv_ros_bridge.recover import recover
-from rlv_ros_bridge.topics import APPLIED, APPLIED_GROUND, APPLIED_WRENCH, SAMPLED, Topic
-from rlv_ros_bridge.verify import TOLERANCE, Verification, verify
+from rlv_ros_bridge.logs.reader import LogReader
+from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.logs.recover import recover
+from rlv_ros_bridge.logs.verify import TOLERANCE, Verification, verify
+from rlv_ros_bridge.messages.inputs import HEAVE, TILT, WRENCH
+from rlv_ros_bridge.messages.qos import TELEMETRY
+from rlv_ros_bridge.messages.samples import SampleBytes
+from rlv_ros_bridge.messages.topics import APPLIED, APPLIED_GROUND, APPLIED_WRENCH, SAMPLED, Topic
+from rlv_ros_bridge.node.input_queue import Applied
 
 AT = 300_000_000
 GROUND = (*HEAVE, *TILT)

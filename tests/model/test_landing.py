@@ -11,8 +11,8 @@ from pytest import approx
 
 from rlv_landing import Landing, LandingError, load_preset
 from rlv_landing.history import History
-from rlv_landing.paper import MEANINGS, Reading, compare, counts, printed_scalars
 from rlv_landing.quantities import OUTPUT_NAMES, OUTPUT_QUANTITIES
+from rlv_landing.validation.paper import MEANINGS, Reading, compare, counts, printed_scalars
 
 FIGURES = "yue2022-figures"
 

@@ -6,8 +6,8 @@ import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from rlv_landing.errors import LandingError
-from rlv_ros_bridge.definitions import definition, dependencies
-from rlv_ros_bridge.topics import RECORDED
+from rlv_ros_bridge.messages.definitions import definition, dependencies
+from rlv_ros_bridge.messages.topics import RECORDED
 
 TYPES = sorted({t.type_name for t in RECORDED})
 

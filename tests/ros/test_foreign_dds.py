@@ -10,7 +10,7 @@ from pathlib import Path
 from bridge_tools import HERE, ROOT, TIMEOUT, command, environment
 from remote import ACTIVATE, CLEANUP, CONFIGURE, DEACTIVATE, Remote
 
-from rlv_ros_bridge.log_reader import Decoder, LogReader
+from rlv_ros_bridge.logs.reader import Decoder, LogReader
 
 PROFILE = ROOT / "ros_bridge" / "config" / "foreign_dds.xml"
 # Cyclone DDS on this machine only, as the node is by ROS_AUTOMATIC_DISCOVERY_RANGE.

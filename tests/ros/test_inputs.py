@@ -20,11 +20,12 @@ from remote import CLEANUP, CONFIGURE, Remote
 from sensor_msgs.msg import JointState
 
 from rlv_landing import Landing, LandingError
-from rlv_ros_bridge.input_queue import Applied
-from rlv_ros_bridge.inputs import HEAVE, READINGS, TILT, WRENCH, read_ground, read_wrench
-from rlv_ros_bridge.log_reader import Decoder, LogReader
-from rlv_ros_bridge.topics import APPLIED_GROUND, APPLIED_WRENCH
-from rlv_ros_bridge.verify import verify
+from rlv_ros_bridge.logs.history import history_of
+from rlv_ros_bridge.logs.reader import Decoder, LogReader
+from rlv_ros_bridge.logs.verify import verify
+from rlv_ros_bridge.messages.inputs import HEAVE, READINGS, TILT, WRENCH, read_ground, read_wrench
+from rlv_ros_bridge.messages.topics import APPLIED_GROUND, APPLIED_WRENCH
+from rlv_ros_bridge.node.input_queue import Applied
 
 FORCE, MOTION = st.floats(-1e7, 1e7), st.floats(-1.0, 1.0)
 
@@ -135,7 +136,7 @@ def assert_repeats(log: Path) -> None:
         if message.topic in names:
             changes.setdefault(message.log_time, []).append(READINGS[names[message.topic]](decode(message)))
     assert len(changes) >= 2
-    found = reader.history()
+    found = history_of(reader)
     landing = Landing(reader.parameters())
     for k in range(len(found)):
         for column in ("body.x", "body.y", "body.pitch", "leg[1].main_strut.force", "leg[3].contact.force_z"):

@@ -17,8 +17,9 @@ from std_msgs.msg import String
 from rlv_landing import Landing, load_preset
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.quantities import INPUT_NAMES, OUTPUT_NAMES, STATISTIC_QUANTITIES
-from rlv_ros_bridge.log_reader import LogReader
-from rlv_ros_bridge.node_settings import SETTINGS
+from rlv_ros_bridge.logs.history import history_of
+from rlv_ros_bridge.logs.reader import LogReader
+from rlv_ros_bridge.node.settings import SETTINGS
 
 Processes = list[subprocess.Popen[str]]
 
@@ -87,7 +88,7 @@ def test_transitions_load_land_pause_and_free(managed: tuple[subprocess.Popen[st
     assert ended(node)[0] == 0
     # Paused, stepped and at two paces: the same landing, digit for digit.
     (log,) = (tmp_path / "logs").iterdir()
-    found = complete(log).history()
+    found = history_of(complete(log))
     expected = Landing(load_preset("yue2022-figures"), "2-2").run(1.0, 1e-3)
     for name in ("body.y", "body.pitch", "leg[1].main_strut.force", "leg[3].contact.force_z"):
         assert np.array_equal(found[name], expected[name]), name
@@ -110,9 +111,9 @@ def test_a_reset_takes_the_parameters_that_were_set_meanwhile(managed: tuple[sub
     assert ended(node)[0] == 143
     first, second = sorted((tmp_path / "logs").iterdir(), key=mass)
     assert (mass(first), mass(second)) == (178.0, 200.0)
-    assert (len(complete(first).history()), len(complete(second).history())) == (101, 1001)
+    assert (len(history_of(complete(first))), len(history_of(complete(second)))) == (101, 1001)
     expected = Landing(load_preset("yue2022-figures").with_values({"vehicle.mass": 200.0}), "2-2").run(1.0, 1e-3)
-    assert np.array_equal(complete(second).history()["body.y"], expected["body.y"])
+    assert np.array_equal(history_of(complete(second))["body.y"], expected["body.y"])
 
 
 def test_parameters_are_described_checked_and_kept_while_landing(managed: tuple[subprocess.Popen[str], Remote]) -> None:

@@ -14,10 +14,10 @@ from scipy.spatial.transform import Rotation
 
 from rlv_landing import Landing, load_preset
 from rlv_landing.quantities import OUTPUT_NAMES
-from rlv_ros_bridge.axes import from_ros, pitch_quaternion, to_ros, world_to_body
-from rlv_ros_bridge.columns import COLUMN_NAMES, sample_columns
-from rlv_ros_bridge.markers import Wireframe
-from rlv_ros_bridge.messages import SampleMessages
+from rlv_ros_bridge.messages.axes import from_ros, pitch_quaternion, to_ros, world_to_body
+from rlv_ros_bridge.messages.columns import COLUMN_NAMES, sample_columns
+from rlv_ros_bridge.messages.markers import Wireframe
+from rlv_ros_bridge.messages.samples import SampleMessages
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 # The paper's x forward, y up, z right, each in ROS's x forward, y left, z up.

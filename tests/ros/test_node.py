@@ -16,9 +16,10 @@ from rclpy.qos import ReliabilityPolicy
 from remote import ACTIVATE, CONFIGURE, Remote
 from std_msgs.msg import String
 
-from rlv_ros_bridge.log_reader import LogReader
-from rlv_ros_bridge.qos import parse_qos
-from rlv_ros_bridge.topics import CLOCK, LATCHED, RECORDED, STRUTS, TF, resolve
+from rlv_ros_bridge.logs.reader import LogReader
+from rlv_ros_bridge.messages.qos import parse_qos
+from rlv_ros_bridge.messages.rclpy_qos import qos_profile
+from rlv_ros_bridge.messages.topics import CLOCK, LATCHED, RECORDED, STRUTS, TF, resolve
 
 # `struts` last: a node that waits for a match on it finds the others matched. What is latched came before.
 TOPICS = {resolve("landing", t.name): t.type_name for t in (*(t for t in RECORDED[1:] if t not in (*LATCHED, TF)), STRUTS)}
@@ -183,7 +184,7 @@ def test_the_quality_of_service_is_what_was_asked_for_and_is_in_the_log(
     reader = LogReader(tmp_path / "log")
     assert list(reader.messages(["/landing/robot_description"]))
     written = parse_qos(reader.channels["/landing/struts"].qos)
-    assert written.profile().reliability == RELIABILITY[qos]
+    assert qos_profile(written).reliability == RELIABILITY[qos]
 
 
 def test_the_node_runs_without_a_home_folder_and_leaves_nothing_behind(fmu: Path, tmp_path: Path) -> None:

@@ -14,8 +14,9 @@ import yaml
 from bridge_tools import ROOT, TIMEOUT, environment, new_domain
 
 import rlv_landing
-from rlv_ros_bridge.log_reader import LogReader
-from rlv_ros_bridge.node_settings import SETTINGS
+from rlv_ros_bridge.logs.history import history_of
+from rlv_ros_bridge.logs.reader import LogReader
+from rlv_ros_bridge.node.settings import SETTINGS
 
 PACKAGE = ROOT / "ros_bridge"
 LAUNCH = PACKAGE / "launch" / "landing.launch.py"
@@ -53,7 +54,7 @@ def test_colcon_builds_the_package_and_its_node_lands(fmu: Path, tmp_path: Path)
     done = subprocess.run(line, cwd=tmp_path, env=env, capture_output=True, text=True, timeout=TIMEOUT, check=False)
     assert done.returncode == 0, done.stderr
     (log,) = (tmp_path / "logs").iterdir()
-    assert len(LogReader(log).history()) == 1001
+    assert len(history_of(LogReader(log))) == 1001
 
 
 def test_the_package_says_its_version_and_all_that_it_imports() -> None:

@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 from bridge_tools import TIMEOUT, Heard, Listener, by_topic, run, start
 
-from rlv_ros_bridge.log_reader import LogMessage, LogReader
-from rlv_ros_bridge.qos import TELEMETRY
-from rlv_ros_bridge.recorder import RecordedTopic, Recorder
-from rlv_ros_bridge.topics import CLOCK, TF
+from rlv_ros_bridge.logs.reader import LogMessage, LogReader
+from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.messages.qos import TELEMETRY
+from rlv_ros_bridge.messages.topics import CLOCK, TF
 
 
 def contents(log: Path) -> tuple[list[LogMessage], dict[str, str]]:

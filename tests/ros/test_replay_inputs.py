@@ -11,14 +11,15 @@ from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.serialization import serialize_message
 from remote import ACTIVATE, CLEANUP, CONFIGURE, DEACTIVATE, Remote
 
-from rlv_ros_bridge.input_queue import Applied
-from rlv_ros_bridge.inputs import HEAVE, READINGS, TILT, WRENCH
-from rlv_ros_bridge.log_reader import Decoder, LogReader
-from rlv_ros_bridge.message_types import message_class
-from rlv_ros_bridge.qos import TELEMETRY
-from rlv_ros_bridge.recorder import RecordedTopic, Recorder
-from rlv_ros_bridge.topics import APPLIED, APPLIED_GROUND, APPLIED_WRENCH
-from rlv_ros_bridge.verify import verify
+from rlv_ros_bridge.logs.history import history_of
+from rlv_ros_bridge.logs.reader import Decoder, LogReader
+from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.logs.verify import verify
+from rlv_ros_bridge.messages.inputs import HEAVE, READINGS, TILT, WRENCH
+from rlv_ros_bridge.messages.message_types import message_class
+from rlv_ros_bridge.messages.qos import TELEMETRY
+from rlv_ros_bridge.messages.topics import APPLIED, APPLIED_GROUND, APPLIED_WRENCH
+from rlv_ros_bridge.node.input_queue import Applied
 
 Change = tuple[str, dict[str, float]]
 
@@ -81,8 +82,8 @@ def test_the_inputs_of_a_log_steer_another_landing(
     steered = LogReader(tmp_path / "steered")
     found = verify(steered)
     assert (found.first, found.other_bits, found.inputs) == (None, 0, len(arrived))
-    alone = LogReader(one_log).history()
-    together = steered.history()
+    alone = history_of(LogReader(one_log))
+    together = history_of(steered)
     last = min(len(together), len(alone)) - 1
     assert abs(together["body.x"][last] - alone["body.x"][last]) > 1e-3
 

@@ -12,8 +12,8 @@ from bridge_tools import Listener
 from pytest import approx
 from terminal import Terminal
 
-from rlv_ros_bridge.log_reader import LogReader
-from rlv_ros_bridge.replay_clock import STALL_SECONDS, ReplayClock
+from rlv_ros_bridge.logs.reader import LogReader
+from rlv_ros_bridge.replay.clock import STALL_SECONDS, ReplayClock
 
 SPACE, RIGHT, UP, DOWN = " ", "\x1b[C", "\x1b[A", "\x1b[B"
 STRUTS = {"/landing/struts": "sensor_msgs/msg/JointState"}

@@ -9,8 +9,8 @@ import pytest
 import yourdfpy
 
 from rlv_landing import Landing, load_preset
-from rlv_ros_bridge.robot_description import robot_description
-from rlv_ros_bridge.topics import BODY_FRAME, JOINTS, TOP_FRAME
+from rlv_ros_bridge.messages.robot_description import robot_description
+from rlv_ros_bridge.messages.topics import BODY_FRAME, JOINTS, TOP_FRAME
 
 
 def parsed(text: str) -> yourdfpy.URDF:

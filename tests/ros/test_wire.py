@@ -13,10 +13,10 @@ from rosbags.typesys import Stores, get_typestore
 
 from rlv_landing import load_preset
 from rlv_landing.quantities import OUTPUT_NAMES
-from rlv_ros_bridge.markers import Wireframe
-from rlv_ros_bridge.messages import SampleBytes, SampleMessages
-from rlv_ros_bridge.topics import CLOCK, MARKERS
-from rlv_ros_bridge.wire import padded
+from rlv_ros_bridge.messages.markers import Wireframe
+from rlv_ros_bridge.messages.samples import SampleBytes, SampleMessages
+from rlv_ros_bridge.messages.topics import CLOCK, MARKERS
+from rlv_ros_bridge.messages.wire import padded
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 SAMPLES = st.lists(FINITE, min_size=len(OUTPUT_NAMES), max_size=len(OUTPUT_NAMES))

@@ -10,8 +10,8 @@ import pytest
 
 from rlv_landing import load_preset
 from rlv_landing.cli import main
-from rlv_landing.studies.audit import Audit, audit
-from rlv_landing.studies.validate import Validation, validate
+from rlv_landing.validation.audit import Audit, audit
+from rlv_landing.validation.validate import Validation, validate
 
 FIGURES = "yue2022-figures"
 

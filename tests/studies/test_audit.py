@@ -10,10 +10,10 @@ from pytest import approx
 
 from rlv_landing import Landing, LandingError, load_preset
 from rlv_landing.history import History
-from rlv_landing.studies.audit import DISSIPATED, HELD, SUPPLIED
-from rlv_landing.studies.bounds import BOUNDS
-from rlv_landing.studies.convergence import smooth_arc
-from rlv_landing.studies.momentum import impulse, momentum
+from rlv_landing.validation.audit import DISSIPATED, HELD, SUPPLIED
+from rlv_landing.validation.bounds import BOUNDS
+from rlv_landing.validation.convergence import smooth_arc
+from rlv_landing.validation.momentum import impulse, momentum
 
 FIGURES = "yue2022-figures"
 LEGS = (1, 2, 3, 4)

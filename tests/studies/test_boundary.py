@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rlv_landing.studies.boundary import Lattice, Tracer
+from rlv_landing.studies.envelope.boundary import Lattice, Tracer
 
 LATTICE = Lattice(8, 2, (32, 64))
 

@@ -11,11 +11,11 @@ import pytest
 from pytest import approx
 
 from rlv_landing import Landing, LandingError, load_preset
-from rlv_landing.studies.envelope import Envelope, envelope
-from rlv_landing.studies.envelope_results import record, runs, verdict
-from rlv_landing.studies.envelope_store import Store
-from rlv_landing.studies.envelope_study import CRITERIA, Axis, EnvelopeStudy, study_from
-from rlv_landing.studies.landed import FAILED, Landed, land
+from rlv_landing.studies.envelope.landed import FAILED, Landed, land
+from rlv_landing.studies.envelope.results import record, runs, verdict
+from rlv_landing.studies.envelope.search import Envelope, envelope
+from rlv_landing.studies.envelope.store import Store
+from rlv_landing.studies.envelope.study import CRITERIA, Axis, EnvelopeStudy, study_from
 from rlv_landing.studies.outcome import SEVERITY, outcome
 
 if sys.version_info >= (3, 11):

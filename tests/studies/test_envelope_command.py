@@ -16,9 +16,9 @@ import pytest
 from pytest import approx
 
 from rlv_landing import load_preset
-from rlv_landing.studies.envelope import envelope
-from rlv_landing.studies.envelope_results import record
-from rlv_landing.studies.envelope_study import Axis, EnvelopeStudy
+from rlv_landing.studies.envelope.results import record
+from rlv_landing.studies.envelope.search import envelope
+from rlv_landing.studies.envelope.study import Axis, EnvelopeStudy
 
 V, TILT = "drop.horizontal_velocity", "drop.tilt"
 STUDY = EnvelopeStudy(

@@ -15,9 +15,9 @@ import pytest
 
 from rlv_landing import Landing, LandingError, load_preset
 from rlv_landing.history import History
+from rlv_landing.identification.objective import CONDITIONS, Objective, Series, paper_targets, read_targets
+from rlv_landing.identification.priors import BORE, PRIORS, ROD_AREA, FreeNumbers
 from rlv_landing.presets import read_toml
-from rlv_landing.studies.objective import CONDITIONS, Objective, Series, paper_targets, read_targets
-from rlv_landing.studies.priors import BORE, PRIORS, ROD_AREA, FreeNumbers
 
 FIGURES = "yue2022-figures"
 TRUTH = {"main_strut.orifice_area_compression": 1.1e-5, "ground.friction": 0.25}

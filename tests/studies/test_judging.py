@@ -10,7 +10,7 @@ import pytest
 from pytest import approx
 
 import rlv_landing
-from rlv_landing.paper import Comparison, counts, paper_counts_against_test, printed_scalars
+from rlv_landing.validation.paper import Comparison, counts, paper_counts_against_test, printed_scalars
 
 SCALARS = {s.id: s for s in printed_scalars()}
 
@@ -50,7 +50,7 @@ def test_counts_take_in_what_is_just_within_and_nothing_that_was_not_found():
 
 def test_the_papers_own_counts_against_its_tests_follow_from_the_printed_table():
     """Counted here from the file of printed numbers, by the rule as it is written."""
-    with Path(rlv_landing.__file__).with_name("paper_numbers.csv").open(newline="", encoding="utf-8") as f:
+    with (Path(rlv_landing.__file__).parent / "validation" / "paper_numbers.csv").open(newline="", encoding="utf-8") as f:
         rows = list(csv.DictReader(f))
     sizes: dict[tuple[str, str, str], float] = {}
     for r in rows:

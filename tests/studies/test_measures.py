@@ -7,8 +7,8 @@ import pytest
 from pytest import approx
 
 from rlv_landing import LandingError
-from rlv_landing.measures import buffering_efficiency, damper_work, energy_discrepancy, leg_work, onset, rrms, work_of
 from rlv_landing.quantities import LEGS
+from rlv_landing.validation.measures import buffering_efficiency, damper_work, energy_discrepancy, leg_work, onset, rrms, work_of
 
 FMAX, SMAX = 5000.0, 0.025
 

@@ -9,10 +9,10 @@ from math import isnan
 import pytest
 
 from rlv_landing import LandingError, load_preset
-from rlv_landing.paper import printed_scalars
-from rlv_landing.report import render_report, write_whole
-from rlv_landing.studies.validate import validate
-from rlv_landing.tables import number
+from rlv_landing.figures.report import render_report, write_whole
+from rlv_landing.tables.landing import number
+from rlv_landing.validation.paper import printed_scalars
+from rlv_landing.validation.validate import validate
 
 VOID = {"meta", "link", "br", "hr", "img", "input"}
 

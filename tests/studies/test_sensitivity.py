@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from study_tools import rows, run
 
-from rlv_landing.studies.sensitivity import indices_of, sobol_design, sobol_indices
-from rlv_landing.studies.study import Study, read_study
+from rlv_landing.studies.sweep.sensitivity import indices_of, sobol_design, sobol_indices
+from rlv_landing.studies.sweep.study import Study, read_study
 
 STUDY = """
 [study]

@@ -10,8 +10,8 @@ from pytest import approx
 
 from rlv_landing import Landing, LandingError, load_preset
 from rlv_landing.history import History
-from rlv_landing.sensors import ACCELERATION, SAMPLING, STROKES, low_pass, resample, smooth_stroke, through_sensors
-from rlv_ros_bridge.columns import COLUMN_NAMES
+from rlv_landing.validation.sensors import ACCELERATION, SAMPLING, STROKES, low_pass, resample, smooth_stroke, through_sensors
+from rlv_ros_bridge.messages.columns import COLUMN_NAMES
 
 STROKE, FORCE = STROKES[0], "leg[1].main_strut.force"
 

@@ -13,10 +13,10 @@ from pyarrow import parquet
 from study_tools import rows, write_study
 
 from rlv_landing import Landing, __version__, load_preset
-from rlv_landing.measures import leg_work
 from rlv_landing.studies.outcome import outcome
-from rlv_landing.studies.responses import DEFAULT, Measure, expand, known_responses
-from rlv_landing.studies.study import read_study
+from rlv_landing.studies.sweep.responses import DEFAULT, Measure, expand, known_responses
+from rlv_landing.studies.sweep.study import read_study
+from rlv_landing.validation.measures import leg_work
 
 FIGURES = "yue2022-figures"
 ROOT = Path(__file__).resolve().parent.parent.parent

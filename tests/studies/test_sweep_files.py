@@ -12,9 +12,9 @@ import pytest
 from pyarrow import parquet
 from study_tools import rows, start, wait_for, write_study
 
-from rlv_landing.studies.result_files import Results
-from rlv_landing.studies.row import Task
-from rlv_landing.studies.study import read_study
+from rlv_landing.studies.sweep.result_files import Results
+from rlv_landing.studies.sweep.row import Task
+from rlv_landing.studies.sweep.study import read_study
 
 
 def parts(folder: Path) -> list[Path]:
@@ -109,7 +109,7 @@ def test_a_disk_too_full_for_the_joined_file_keeps_its_parts(tmp_path, command):
 
 
 def test_the_joined_file_does_not_depend_on_its_parts(tmp_path, monkeypatch):
-    monkeypatch.setattr("rlv_landing.studies.result_files.GROUP_ROWS", 16)
+    monkeypatch.setattr("rlv_landing.studies.sweep.result_files.GROUP_ROWS", 16)
     study = write_study(tmp_path, samples=30)
     task = Task(read := read_study(study), read.design)
     made = [[i, task.sample(i), 3, *task.rows(i, i + 1)[0].values(), "0", "why", *[None] * len(task.plan.responses)] for i in range(60)]

@@ -8,11 +8,11 @@ import pytest
 from pytest import approx
 
 from rlv_landing import Landing, Parameters, load_preset
-from rlv_landing.studies.envelope import envelope
-from rlv_landing.studies.envelope_study import Axis, EnvelopeStudy
-from rlv_landing.studies.landed import land
+from rlv_landing.studies.envelope.landed import land
+from rlv_landing.studies.envelope.search import envelope
+from rlv_landing.studies.envelope.study import Axis, EnvelopeStudy
+from rlv_landing.studies.envelope.tip_over import LOCKED, RigidBlock
 from rlv_landing.studies.outcome import outcome
-from rlv_landing.studies.tip_over import LOCKED, RigidBlock
 from rlv_landing.studies.whole_landing import whole_landing
 
 V = "drop.horizontal_velocity"

@@ -9,10 +9,10 @@ import pytest
 from pytest import approx
 
 from rlv_landing import LandingError, load_preset
-from rlv_landing.curves import read_curves
 from rlv_landing.history import History
-from rlv_landing.paper import printed_scalars
-from rlv_landing.studies.validate import missed_bounds, parse_bounds, stated_bounds, validate
+from rlv_landing.validation.curves import read_curves
+from rlv_landing.validation.paper import printed_scalars
+from rlv_landing.validation.validate import missed_bounds, parse_bounds, stated_bounds, validate
 
 FORCE, STROKE = "leg[1].main_strut.force", "leg[1].main_strut.stroke"
 BROKEN = "main_strut.orifice_area_compression=60 mm2"

@@ -15,9 +15,9 @@ from playwright.sync_api import Browser, Page
 from pytest import approx
 from sight import Outside, Pixels, free_port, painted, plot_of, screenshot, vehicle_of
 
-from rlv_landing.plots import COLOURS
-from rlv_ros_bridge.log_history import log_history
-from rlv_ros_bridge.rerun_scene import FORCE, GROUND, INK
+from rlv_landing.figures.plots import COLOURS
+from rlv_ros_bridge.logs.history import log_history
+from rlv_ros_bridge.viewer.rerun_scene import FORCE, GROUND, INK
 
 FIRST, SECOND = COLOURS[:2]
 

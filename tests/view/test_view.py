@@ -20,8 +20,8 @@ from rerun.chunk import RrdReader
 from sight import Started
 
 from rlv_landing.history import History
-from rlv_ros_bridge.log_history import log_history
-from rlv_ros_bridge.rerun_scene import curves
+from rlv_ros_bridge.logs.history import log_history
+from rlv_ros_bridge.viewer.rerun_scene import curves
 
 
 def drawn(path: Path) -> dict[str, tuple[Any, list[Any]]]:

@@ -26,8 +26,8 @@ def audit(name: str | None, preset: str | None, file: str | None, mode: str | No
     rlv-landing audit yue2022-figures
     rlv-landing audit --parameters mine.toml --mode 2-2 --json
     """
-    from ..studies.audit import audit as run
-    from ..study_tables import audit_tables, missed_lines
+    from ..tables.study_tables import audit_tables, missed_lines
+    from ..validation.audit import audit as run
 
     if name is not None and preset is not None:
         raise LandingError(f"the preset is named twice, {name} and --preset {preset}; name it once")

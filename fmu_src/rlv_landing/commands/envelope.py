@@ -62,13 +62,13 @@ def envelope(
     """
     from tqdm import tqdm
 
-    from ..envelope_figure import save_envelope
-    from ..envelope_tables import envelope_tables
+    from ..figures.envelope_figure import save_envelope
     from ..studies import toml_keys
-    from ..studies.envelope import envelope as run
-    from ..studies.envelope_results import record, write_csv, write_json
-    from ..studies.envelope_store import Store
-    from ..studies.envelope_study import study_from
+    from ..studies.envelope.results import record, write_csv, write_json
+    from ..studies.envelope.search import envelope as run
+    from ..studies.envelope.store import Store
+    from ..studies.envelope.study import study_from
+    from ..tables.envelope_tables import envelope_tables
 
     check_writable(plot, ".svg" if plot is not None and plot.suffix == ".svg" else ".png", force)
     document = toml_keys.read(study)[0] if study is not None else {}

@@ -62,12 +62,12 @@ def identify(
     """
     from tqdm import tqdm
 
-    from ..curves import read_curves
+    from ..identification.identify import Search
+    from ..identification.identify_report import write_report
+    from ..identification.objective import CONDITIONS, Objective, Series, paper_targets, read_targets
+    from ..identification.priors import PRIORS, FreeNumbers
     from ..presets import to_toml
-    from ..studies.identify import Search
-    from ..studies.identify_report import write_report
-    from ..studies.objective import CONDITIONS, Objective, Series, paper_targets, read_targets
-    from ..studies.priors import PRIORS, FreeNumbers
+    from ..validation.curves import read_curves
 
     if list_priors:
         for p in PRIORS:

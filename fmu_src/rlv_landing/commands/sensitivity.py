@@ -37,11 +37,11 @@ def sensitivity(
     The folder (default: the study's name and -sensitivity) holds results.parquet and the bars. More responses of a study that is done need
     no further landings: name them and --resume. Exit codes as for sweep.
     """
-    from ..studies.row import Task
-    from ..studies.sensitivity import indices_of, numeric_responses, sobol_design
-    from ..studies.sensitivity_figure import save_bars
-    from ..studies.study import read_study
-    from ..sweep_tables import indices_table
+    from ..figures.sensitivity_figure import save_bars
+    from ..studies.sweep.row import Task
+    from ..studies.sweep.sensitivity import indices_of, numeric_responses, sobol_design
+    from ..studies.sweep.study import read_study
+    from ..tables.sweep_tables import indices_table
 
     check_writable(plot, ".png", force=True)
     read = read_study(study)

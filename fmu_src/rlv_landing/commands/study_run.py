@@ -15,8 +15,8 @@ import click
 from ..errors import LandingError
 
 if TYPE_CHECKING:
-    from ..studies.row import Plan, Task
-    from ..studies.sweep import Engine, Failed
+    from ..studies.sweep.row import Plan, Task
+    from ..studies.sweep.sweep import Engine, Failed
 
 F = TypeVar("F", bound=Callable[..., Any])
 FAILED, INTERRUPTED = 1, 130
@@ -65,12 +65,12 @@ def run_options(command: F) -> F:
 def engine_for(plan: Plan, where: Where) -> Iterator[Engine]:
     """Threads, or the cluster that --scheduler names."""
     if where.scheduler is None:
-        from ..studies.sweep import threads
+        from ..studies.sweep.sweep import threads
 
         with threads(plan, where.workers) as engine:
             yield engine
     else:
-        from ..studies.cluster import cluster
+        from ..studies.sweep.cluster import cluster
 
         if where.workers is not None:
             raise LandingError("--workers counts threads here; a cluster has its own, so leave --workers or --scheduler out")
@@ -85,8 +85,8 @@ def run_task(task: Task, folder: Path, where: Where) -> Path:
     """
     from tqdm import tqdm
 
-    from ..studies.result_files import Results
-    from ..studies.sweep import LostError, Sweep, check_all
+    from ..studies.sweep.result_files import Results
+    from ..studies.sweep.sweep import LostError, Sweep, check_all
 
     if where.strict:
         check_all(task)

@@ -12,7 +12,7 @@ import click
 from .study_run import Where, run_options, run_task
 
 if TYPE_CHECKING:
-    from ..studies.row import Task
+    from ..studies.sweep.row import Task
 
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
@@ -51,8 +51,8 @@ def sweep(
 
     Exit codes: 0 done, 1 ended before its time (a full disk, a lost cluster, --strict), 2 bad input, 130 interrupted.
     """
-    from ..studies.row import Task
-    from ..studies.study import read_study
+    from ..studies.sweep.row import Task
+    from ..studies.sweep.study import read_study
 
     read = read_study(study)
     task = Task(read, read.design)
@@ -61,8 +61,8 @@ def sweep(
         return
     folder = results if results is not None else Path(read.name)
     path = run_task(task, folder, Where(resume, workers, scheduler, timeout, strict))
-    from ..studies.sweep_summary import summarise_results
-    from ..sweep_tables import summary_table
+    from ..studies.sweep.summary import summarise_results
+    from ..tables.sweep_tables import summary_table
 
     summary = summarise_results(path)
     if as_json:
@@ -74,8 +74,8 @@ def sweep(
 
 def show_plan(task: Task, workers: int | None, as_json: bool, notes: tuple[str, ...] = ()) -> None:
     """Print how many landings a study makes, its first rows, and how long it may take by one timed landing."""
-    from ..studies.sweep import default_workers
-    from ..sweep_tables import FIRST_ROWS, plan_table
+    from ..studies.sweep.sweep import default_workers
+    from ..tables.sweep_tables import FIRST_ROWS, plan_table
 
     count = workers or default_workers()
     notes = (*notes, *task.study.notes)

@@ -48,8 +48,8 @@ def validate(
     rlv-landing validate --html report.html
     rlv-landing validate --parameters mine.toml --require none --mode 2-2 --test-data drop7.csv
     """
-    from ..studies.validate import missed_bounds, parse_bounds, stated_bounds
-    from ..studies.validate import validate as run
+    from ..validation.validate import missed_bounds, parse_bounds, stated_bounds
+    from ..validation.validate import validate as run
 
     check_writable(html, ".html", force)
     parameters, modes, label = choose(preset, file, mode, pairs)
@@ -58,7 +58,7 @@ def validate(
     found = run(parameters, modes, measured, "forward" if phase == "forward" else "zero")
     missed = [] if bounds is None else missed_bounds(found.counts, bounds)
     if html is not None:
-        from ..report import write_report
+        from ..figures.report import write_report
 
         write_report(found, parameters, html, label, phase)
     if as_json:
@@ -66,7 +66,7 @@ def validate(
         record = {**found.record(), "parameters": label, "modes": list(modes), "required": required, "missed": missed}
         click.echo(json.dumps(record, indent=1, allow_nan=False))
     else:
-        from ..study_tables import validation_tables
+        from ..tables.study_tables import validation_tables
 
         click.echo(validation_tables(found), nl=False)
     for line in missed:
@@ -76,8 +76,8 @@ def validate(
 
 def _measured(tests: tuple[str, ...], modes: tuple[str, ...]) -> dict[str, History]:
     """The measured curves by mode. Raises LandingError where a mode is not named, not run, or named twice."""
-    from ..curves import read_curves
     from ..quantities import MODES
+    from ..validation.curves import read_curves
 
     found: dict[str, History] = {}
     for text in tests:

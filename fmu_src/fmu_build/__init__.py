@@ -1,0 +1,1 @@
+"""The build of the FMU: slave, package, compiled core, binary, description, documentation."""

@@ -1,0 +1,166 @@
+"""Builds `build/RlvLanding.fmu`: the slave, its own copy of the package with the compiled core, pythonfmu's binary, description and
+documentation.
+
+Run by `build_fmu.sh`. pythonfmu's FMU is unpacked, completed and packed anew, the same bytes from the same sources. The FMU is
+validated by FMPy and landed once before it takes its place.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+from datetime import datetime, timezone
+from pathlib import Path
+from xml.etree import ElementTree
+
+import fmpy
+from fmpy.validation import validate_fmu
+from pythonfmu.builder import FmuBuilder
+
+from .binary import replace_binaries
+from .core_source import package_name
+from .description import describe
+from .documentation import write_documentation
+
+HERE = Path(__file__).parent.parent
+ROOT = HERE.parent
+PACKAGE = HERE / "rlv_landing"
+MODULES = ("__init__.py", "errors.py", "quantities.py", "parameters.py", "touchdown.py", "assembly.py", "landing.py")
+# pythonfmu's command line, CSV tool and builder, which no slave needs
+NOT_NEEDED = ("__main__.py", "csvbuilder.py", "deploy.py", "builder.py", "osutil.py")
+# the line of pythonfmu's `__init__.py` that imports the builder, and with it argparse, logging and minidom: a third of an instance
+IMPORTS_BUILDER = "from .builder import FmuBuilder\n"
+# what a zip file can date: 1980, which stands for a source without a date, to 2107
+OLDEST, NEWEST = 315532800, 4354819199
+
+# pythonfmu runs its script anew for each instance: classes made there would pile up
+SCRIPT = """\
+from {package}.slave import RlvLanding, keep
+
+__all__ = ["RlvLanding"]
+keep(globals())  # pythonfmu drops a reference to them each time
+"""
+
+
+def version() -> str:
+    """The package's version, as its `__init__.py` says."""
+    found = re.search(r'^__version__ = "(.+)"$', (PACKAGE / "__init__.py").read_text(), re.M)
+    if found is None:
+        raise SystemExit("error: rlv_landing/__init__.py states no __version__")
+    return found[1]
+
+
+def source_date() -> datetime:
+    """The date of the sources [UTC]: SOURCE_DATE_EPOCH of the environment, else that of the last git commit, else 1980-01-01."""
+    text = os.environ.get("SOURCE_DATE_EPOCH", "")
+    if not text and (ROOT / ".git").exists():
+        try:
+            text = subprocess.run(["git", "log", "-1", "--format=%ct"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+        except (OSError, subprocess.CalledProcessError):
+            text = ""
+    if text and not (re.fullmatch(r"\d+\s*", text) and int(text) <= NEWEST):
+        raise SystemExit(
+            f"error: SOURCE_DATE_EPOCH = {text!r} is not a number of seconds from 1970-01-01 to 2107; leave it out or correct it"
+        )
+    return datetime.fromtimestamp(max(int(text or OLDEST), OLDEST), timezone.utc)
+
+
+def lay_out(folder: Path) -> tuple[Path, Path]:
+    """Copy slave and package to `folder` under names that carry the version, so that two versions live in one process."""
+    name = "rlv_landing_" + re.sub(r"\W", "_", version())
+    package = folder / name
+    package.mkdir()
+    for module in MODULES:
+        shutil.copy(PACKAGE / module, package / module)
+    for file in sorted((PACKAGE / "core").rglob("*")):
+        # compiled cores of all Python versions that are there, but none of older kernels
+        if file.suffix == ".py" or (file.suffix in (".so", ".pyd") and package_name().encode() in file.read_bytes()):
+            target = package / file.relative_to(PACKAGE)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(file, target)
+    text = (HERE / "landing_fmu.py").read_text()
+    (package / "slave.py").write_text(re.sub(r"^from rlv_landing\b", f"from {name}", text, flags=re.M))
+    script = folder / f"{name.replace('rlv_landing', 'landing_fmu')}.py"
+    script.write_text(SCRIPT.format(package=name))
+    return script, package
+
+
+def unpack_pythonfmus(folder: Path) -> Path:
+    """Have pythonfmu build its FMU of slave and package; return the folder of its files, without those that are not needed."""
+    slave, package = lay_out(folder)
+    built = FmuBuilder.build_FMU(slave, dest=folder / "out" / "RlvLanding.fmu", project_files=[package])
+    files = folder / "files"
+    with zipfile.ZipFile(built) as archive:
+        archive.extractall(files)
+    for name in NOT_NEEDED:
+        (files / "resources" / "pythonfmu" / name).unlink()
+    init = files / "resources" / "pythonfmu" / "__init__.py"
+    text = init.read_text()
+    if text.count(IMPORTS_BUILDER) != 1:
+        raise SystemExit(
+            "error: pythonfmu's __init__.py does not import its builder as 0.7.0's does; look at IMPORTS_BUILDER in fmu_build/build.py"
+        )
+    init.write_text(text.replace(IMPORTS_BUILDER, ""))
+    return files
+
+
+def write_description(files: Path, date: datetime) -> ElementTree.Element:
+    """Complete pythonfmu's modelDescription.xml in `files`; return its root."""
+    path = files / "modelDescription.xml"
+    tree = ElementTree.parse(path)
+    root = tree.getroot()
+    describe(root, date.strftime("%Y-%m-%dT%H:%M:%SZ"))
+    ElementTree.indent(tree, "\t")
+    tree.write(path, encoding="UTF-8", xml_declaration=True)
+    return root
+
+
+def pack(files: Path, target: Path, date: datetime) -> None:
+    """Zip all of `files`, in the order of their names, all of `date`, so that the same files give the same bytes."""
+    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+        for name in sorted(p.relative_to(files).as_posix() for p in files.rglob("*") if p.is_file()):
+            entry = zipfile.ZipInfo(name, date.timetuple()[:6])
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.create_system = 3  # Unix, whose modes these are
+            entry.external_attr = (0o100755 if name.endswith((".so", ".dll")) else 0o100644) << 16
+            archive.writestr(entry, (files / name).read_bytes())
+
+
+def check(fmu: Path) -> str:
+    """Validate the FMU's description and land it once; say what came of it. Raises SystemExit with what is wrong."""
+    problems = validate_fmu(str(fmu))
+    if problems:
+        raise SystemExit("error: the FMU is not valid: " + "; ".join(problems))
+    result = fmpy.simulate_fmu(str(fmu), stop_time=0.2, output_interval=1e-3, output=["leg[1].main_strut.force", "energy.balance"])
+    force, balance = result["leg[1].main_strut.force"].min(), abs(result["energy.balance"]).max()
+    if not (force < -1000.0 and balance < 1e-3):
+        raise SystemExit(f"error: the FMU's trial landing is off: strut force {force:g} N, energy balance {balance:g} J")
+    return f"valid; trial landing: main strut 1 down to {force:.0f} N, energy balance within {balance:.1e} J"
+
+
+def main(destination: str) -> None:
+    """Build, check, and only then put the FMU in place."""
+    target = Path(destination)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    date = source_date()
+    with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
+        folder = Path(name)
+        files = unpack_pythonfmus(folder)
+        replace_binaries(files)
+        root = write_description(files, date)
+        write_documentation(files, root)
+        made = folder / "RlvLanding.fmu"
+        pack(files, made, date)
+        found = check(made)
+        shutil.copy(made, target.with_suffix(".part"))
+        target.with_suffix(".part").replace(target)
+    print(f"{target}: {found}")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1] if len(sys.argv) > 1 else str(ROOT / "build" / "RlvLanding.fmu"))

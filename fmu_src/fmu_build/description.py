@@ -1,0 +1,134 @@
+"""The FMU's description: what pythonfmu's lacks is added to it from the one table of quantities. Runs at build time only.
+
+Units, types, bounds, nominal values and exact starts of the variables; dependencies of the outputs; attributes of the model.
+"""
+
+from __future__ import annotations
+
+import math
+from xml.etree.ElementTree import Element, SubElement
+
+from rlv_landing import __version__
+from rlv_landing.parameters import PARAMETER_QUANTITIES
+from rlv_landing.quantities import BASE_UNITS, DISPLAY_UNITS, INPUT_QUANTITIES, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES, Quantity
+
+from .dependencies import inputs_of, known_at_start
+
+DIMENSIONLESS = "1"
+# SI unit -> physical kind, FMI's `quantity`
+PHYSICAL_KINDS = {
+    "m": "Length",
+    "m2": "Area",
+    "m3": "Volume",
+    "s": "Time",
+    "kg": "Mass",
+    "rad": "Angle",
+    "rad/s": "AngularVelocity",
+    "rad/s2": "AngularAcceleration",
+    "m/s": "Velocity",
+    "m/s2": "Acceleration",
+    "s/m": "TimePerLength",
+    "N": "Force",
+    "N.m": "Torque",
+    "N/m": "TranslationalSpringConstant",
+    "N.s/m": "TranslationalDampingConstant",
+    "N/Pa": "ForcePerPressure",
+    "J": "Energy",
+    "Pa": "Pressure",
+    "kg/m3": "Density",
+    "kg.m2": "MomentOfInertia",
+    DIMENSIONLESS: "Dimensionless",
+}
+CAPABILITIES = {
+    "needsExecutionTool": True,  # a Python library on the host
+    "canHandleVariableCommunicationStepSize": True,
+    "canInterpolateInputs": True,
+    "canBeInstantiatedOnlyOncePerProcess": False,
+    "canGetAndSetFMUstate": True,
+    "canSerializeFMUstate": True,
+}
+QUANTITIES = {q.name: q for q in (*PARAMETER_QUANTITIES.values(), *INPUT_QUANTITIES, *OUTPUT_QUANTITIES, *STATISTIC_QUANTITIES)}
+
+
+def describe(root: Element, date: str) -> None:
+    """Complete pythonfmu's description `root` in place; `date` (ISO 8601, UTC) is what it says of the time of its making."""
+    root.set("generationTool", f"rlv-landing {__version__} with {root.get('generationTool')}")
+    root.set("generationDateAndTime", date)
+    simulation, variables, structure = (root.find(name) for name in ("CoSimulation", "ModelVariables", "ModelStructure"))
+    assert simulation is not None
+    assert variables is not None
+    assert structure is not None
+    for capability, can in CAPABILITIES.items():
+        simulation.set(capability, str(can).lower())
+    root.insert(1, unit_definitions())
+    root.insert(2, type_definitions())
+    for variable in variables:
+        complete(variable, QUANTITIES[variable.attrib["name"]])
+    structure.clear()
+    structure.extend(unknowns([v.attrib["name"] for v in variables]))
+
+
+def type_name(q: Quantity) -> str:
+    """The type of a real quantity: its physical kind, and the unit that it is shown in where that is another."""
+    kind = PHYSICAL_KINDS[q.unit or DIMENSIONLESS]
+    return f"{kind}_{q.display_unit.replace('/', '_per_')}" if q.display_unit else kind
+
+
+def unit_definitions() -> Element:
+    """Every SI unit of the table in base units, with its display units."""
+    node = Element("UnitDefinitions")
+    for unit, exponents in {**BASE_UNITS, DIMENSIONLESS: {}}.items():
+        element = SubElement(node, "Unit", name=unit)
+        SubElement(element, "BaseUnit", {base: str(e) for base, e in exponents.items()})
+        for display, (si, factor) in DISPLAY_UNITS.items():
+            if si == unit:
+                SubElement(element, "DisplayUnit", name=display, factor=repr(1.0 / factor))
+    return node
+
+
+def type_definitions() -> Element:
+    """A type for each physical kind and display unit that the table has."""
+    node = Element("TypeDefinitions")
+    types = {type_name(q): q for q in QUANTITIES.values() if q.kind == "real"}
+    for name in sorted(types):
+        q = types[name]
+        of_kind = SubElement(SubElement(node, "SimpleType", name=name), "Real")
+        of_kind.set("quantity", PHYSICAL_KINDS[q.unit or DIMENSIONLESS])
+        _set_units(of_kind, q)
+    return node
+
+
+def complete(variable: Element, q: Quantity) -> None:
+    """Put type, unit, bounds, nominal value and start into the `variable` of the quantity `q`.
+
+    Units stand here as well as in the type, for importers that read no types. Starts are written with all digits.
+    """
+    typed = variable[0]
+    if q.kind == "real":
+        typed.set("declaredType", type_name(q))
+        _set_units(typed, q)
+        if "start" in typed.attrib:
+            typed.set("start", repr(float(q.default)))
+        if variable.get("causality") != "parameter":
+            typed.set("nominal", repr(q.nominal))
+    if q.kind in ("real", "integer"):
+        for attribute, bound in (("min", q.lo), ("max", q.hi)):
+            if math.isfinite(bound):
+                typed.set(attribute, repr(float(bound)) if q.kind == "real" else str(int(bound)))
+
+
+def _set_units(typed: Element, q: Quantity) -> None:
+    typed.set("unit", q.unit or DIMENSIONLESS)
+    if q.display_unit:
+        typed.set("displayUnit", q.display_unit)
+
+
+def unknowns(names: list[str]) -> list[Element]:
+    """Outputs with the inputs that they depend on at once, and their initial values with inputs and parameters."""
+    index = {name: i for i, name in enumerate(names, start=1)}
+    outputs, initial = Element("Outputs"), Element("InitialUnknowns")
+    for q in OUTPUT_QUANTITIES:
+        for node, known in ((outputs, inputs_of(q.name)), (initial, known_at_start(q.name))):
+            numbers = sorted(index[name] for name in known)
+            SubElement(node, "Unknown", index=str(index[q.name]), dependencies=" ".join(map(str, numbers)))
+    return [outputs, initial]

@@ -1,0 +1,102 @@
+"""What the FMU carries for people: documentation/index.html, licences, change log and the icon model.png. Runs at build time only."""
+
+from __future__ import annotations
+
+import math
+import shutil
+from importlib.metadata import distribution
+from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import Element
+
+from jinja2 import Environment, StrictUndefined
+from latex2mathml.converter import convert
+from markupsafe import Markup
+
+from rlv_landing import Parameters, __version__
+from rlv_landing.figures.plots import inline_svg
+from rlv_landing.parameters import PARAMETER_QUANTITIES
+from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES, Quantity
+
+from .dependencies import inputs_of
+from .drawing import vehicle_figure
+
+ROOT = Path(__file__).parents[2]
+TEMPLATE = Path(__file__).with_name("documentation.html.j2")
+LICENCE_OF = "pythonfmu"
+DOTS_PER_INCH = 100
+
+
+def write_documentation(files: Path, description: Element) -> None:
+    """Write all of it below `files`, the FMU's folder; `description` is the root of its modelDescription.xml."""
+    documentation = files / "documentation"
+    licences = documentation / "licenses"
+    licences.mkdir(parents=True)
+    vehicle_figure(Parameters()).savefig(files / "model.png", dpi=DOTS_PER_INCH, metadata={"Software": None})
+    shutil.copyfile(ROOT / "CHANGELOG.md", documentation / "CHANGELOG.md")
+    shutil.copyfile(ROOT / "LICENSE", licences / "LICENSE")
+    (licences / f"{LICENCE_OF}-LICENSE").write_text(licence_text(LICENCE_OF), encoding="utf-8")
+    (documentation / "index.html").write_text(render(files, description), encoding="utf-8")
+
+
+def licence_text(package: str) -> str:
+    """The licence of an installed package, from its metadata. Raises SystemExit where it brings none."""
+    for path in distribution(package).files or ():
+        if path.name.upper().startswith("LICENSE") and ".dist-info" in path.parts[0]:
+            return path.read_text(encoding="utf-8")
+    raise SystemExit(f"error: the installed {package} brings no licence text, which the FMU has to carry; install it from PyPI")
+
+
+def render(files: Path, description: Element) -> str:
+    """The page, self-contained, as well-formed XML as well."""
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment.filters["math"] = lambda latex: Markup(convert(latex, display="block"))
+    experiment = description.find("DefaultExperiment")
+    simulation = description.find("CoSimulation")
+    assert experiment is not None
+    assert simulation is not None
+    return environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
+        version=__version__,
+        model=description.attrib,
+        experiment=experiment.attrib,
+        capabilities=simulation.attrib,
+        cores=sorted(p.name for p in files.glob("resources/*/core/compiled.*")),
+        drawing=Markup(inline_svg(vehicle_figure(Parameters(), named=True), "vehicle", "The vehicle on its four legs")),
+        pythonfmu=distribution("pythonfmu").version,
+        tables=[
+            ("parameters", "Parameters", "fixed; set them before or in initialization mode", rows(PARAMETER_QUANTITIES.values())),
+            ("inputs", "Inputs", "continuous; 0 by default", rows(INPUT_QUANTITIES)),
+            ("outputs", "Outputs", "calculated; leg[1] stands for every leg, numbered as drawn", rows(outputs_of_one_leg())),
+            ("statistics", "Statistics", "local; what the integrator has done", rows(STATISTIC_QUANTITIES)),
+        ],
+    )
+
+
+def outputs_of_one_leg() -> list[Quantity]:
+    """The outputs, of the legs the first one's only: those of the others differ in the leg's number alone."""
+    return [q for q in OUTPUT_QUANTITIES if not q.name.startswith("leg[") or q.name.startswith("leg[1].")]
+
+
+def rows(quantities: Any) -> list[dict[str, str]]:
+    """A row a quantity, all as text: bounds and default in its SI unit."""
+    return [
+        {
+            "name": q.name,
+            "meaning": q.meaning,
+            "unit": q.unit or ("1" if q.kind == "real" else ""),
+            "shown": q.display_unit,
+            "type": q.kind.capitalize(),
+            "start": q.default if isinstance(q.default, str) else f"{q.default:.6g}",
+            "bounds": " | ".join(q.choices) or _bounds(q),
+            "nominal": f"{q.nominal:g}" if q.kind == "real" else "",
+            "source": q.source,
+            "at_once": " ".join(sorted(inputs_of(q.name))),
+        }
+        for q in quantities
+    ]
+
+
+def _bounds(q: Quantity) -> str:
+    """Both bounds, or the one that there is, or nothing."""
+    lo, hi = math.isfinite(q.lo), math.isfinite(q.hi)
+    return f"{q.lo:g} ... {q.hi:g}" if lo and hi else f"at least {q.lo:g}" if lo else f"at most {q.hi:g}" if hi else ""

@@ -1,0 +1,176 @@
+"""A landing as a moving picture: the vehicle beside its force and stroke curves, as the paper's Figs. 12 and 18 in motion."""
+
+from __future__ import annotations
+
+import shutil
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from subprocess import CalledProcessError
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import LandingError
+from ..history import History
+from .moving_figure import WIDTH, MovingFigure
+
+if TYPE_CHECKING:
+    from ..parameters import Parameters
+
+ENDINGS = (".gif", ".mp4")
+MOST_FRAMES = 3000
+# matplotlib cuts a frame's milliseconds to a whole number, so 30 must not come out as 29.999
+BELOW = 1.0 - 1e-12
+# A GIF counts a frame's time in hundredths of a second; most viewers show one of less than two for ten.
+GIF_TICKS, GIF_LEAST = 100.0, 2
+
+
+@dataclass(frozen=True)
+class Film:
+    """How a landing is shown: `fps` frames a second, `slow_motion` times slower than it was, from `start` to `end` [s] (None: all of it).
+
+    `view` is `side`, the symmetric plane, or `3d`; `width` the picture's [pixels].
+    """
+
+    fps: float = 25.0
+    slow_motion: float = 5.0
+    start: float | None = None
+    end: float | None = None
+    view: Literal["side", "3d"] = "side"
+    width: int = 960
+
+
+@dataclass(frozen=True)
+class Filmed:
+    """What was written: how many frames, and how many a second; a GIF's are rounded to what the format can say."""
+
+    frames: int
+    fps: float
+
+
+def save_animation(
+    history: History,
+    parameters: Parameters,
+    path: str | Path,
+    title: str,
+    film: Film = Film(),
+    tell: Callable[[int, int], None] | None = None,
+) -> Filmed:
+    """Write `history` of a vehicle with `parameters` to `path`, `.gif` or `.mp4` by its ending, whole or not at all.
+
+    `tell` is called with the frames done and all frames. Every frame shows the sample nearest to its time; none is made up between.
+
+    Raises:
+        LandingError: another ending, a number that cannot be, nothing lies between start and end, no ffmpeg, the disk refuses.
+    """
+    path = Path(path)
+    if path.suffix not in ENDINGS:
+        raise LandingError(f"{path} must end in {' or '.join(ENDINGS)}")
+    fps = _frames_per_second(film, path.suffix)
+    rows = frame_rows(history, film, fps)
+    figure = MovingFigure(history, parameters, rows, title, film.view)
+    unfinished = path.with_name(f".{path.stem}.part{path.suffix}")
+    try:
+        with _ffmpeg(path.suffix) as writer_class:
+            _write(writer_class(fps=fps * BELOW), figure, unfinished, film.width / WIDTH, tell)
+        unfinished.replace(path)
+    except OSError as e:
+        raise LandingError(f"{path} cannot be written: {e.strerror or e}; make room, or name another file") from None
+    except CalledProcessError as e:
+        said = (e.stderr or b"").decode("utf-8", "replace").strip() if isinstance(e.stderr, bytes) else str(e.stderr or "")
+        raise LandingError(f"{path} cannot be written: ffmpeg ended with {e.returncode} {said[-300:]}; try a .gif") from None
+    finally:
+        with suppress(OSError):
+            unfinished.unlink()
+    return Filmed(len(rows), fps)
+
+
+def frame_rows(history: History, film: Film, fps: float) -> NDArray[np.intp]:
+    """The row of `history` that each frame shows. Raises LandingError: nothing lies there, or too many frames."""
+    time = history.time
+    start = float(time[0]) if film.start is None else film.start
+    end = float(time[-1]) if film.end is None else film.end
+    if not time[0] <= start < end <= time[-1]:
+        raise LandingError(
+            f"start = {start:g} s and end = {end:g} s must lie in {time[0]:g} to {time[-1]:g} s, which the landing has, start before end"
+        )
+    count = int(np.floor((end - start) * film.slow_motion * fps + 1e-9)) + 1
+    if not 2 <= count <= MOST_FRAMES:
+        raise LandingError(f"that makes {count} frames; 2 to {MOST_FRAMES} can be: change fps, slow motion, start or end")
+    wanted = start + np.arange(count) / (fps * film.slow_motion)
+    right = np.clip(np.searchsorted(time, wanted), 1, len(time) - 1)
+    return right - (wanted - time[right - 1] < time[right] - wanted)
+
+
+def _frames_per_second(film: Film, ending: str) -> float:
+    for name, value, low, high in (
+        ("fps", film.fps, 1.0, 120.0),
+        ("slow motion", film.slow_motion, 0.01, 1000.0),
+        ("width", film.width, 320, 3840),
+    ):
+        if not low <= value <= high:
+            raise LandingError(f"{name} = {value:g} is outside [{low:g}, {high:g}]{' pixels' if name == 'width' else ''}")
+    if ending != ".gif":
+        return film.fps
+    return GIF_TICKS / max(GIF_LEAST, round(GIF_TICKS / film.fps))
+
+
+@contextmanager
+def _ffmpeg(ending: str) -> Iterator[Any]:
+    """matplotlib's writer for `ending`; for a film, ffmpeg of the wheel imageio-ffmpeg, else that on the path."""
+    import matplotlib as mpl
+    from matplotlib.animation import FFMpegWriter, PillowWriter
+
+    if ending == ".gif":
+        yield PillowWriter
+        return
+    try:
+        from imageio_ffmpeg import get_ffmpeg_exe
+
+        program = get_ffmpeg_exe()
+    except (ImportError, RuntimeError):
+        program = shutil.which("ffmpeg")
+    if program is None:
+        raise LandingError('mp4 needs ffmpeg; install it with pip install "rlv-landing[video]", or write a .gif')
+
+    with mpl.rc_context({"animation.ffmpeg_path": program, "animation.codec": "h264"}):
+        yield FFMpegWriter
+
+
+@contextmanager
+def _signals_held() -> Iterator[None]:
+    """Signals that end the program wait meanwhile, and never reach the programs that are started here: ffmpeg ends with its input."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _write(writer: Any, figure: MovingFigure, path: Path, dpi: float, tell: Callable[[int, int], None] | None) -> None:
+    stopped: BaseException | None = None
+    try:
+        with ExitStack() as saving:
+            with _signals_held():
+                saving.enter_context(writer.saving(figure.figure, str(path), dpi))
+            try:
+                for i in range(figure.frames):
+                    figure.show(i)
+                    writer.grab_frame()
+                    if tell is not None:
+                        tell(i + 1, figure.frames)
+            except BaseException as e:
+                stopped = e
+    except Exception:
+        # A GIF without a frame cannot be ended.
+        if stopped is None:
+            raise
+    if stopped is not None:
+        raise stopped

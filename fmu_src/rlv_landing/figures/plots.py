@@ -1,0 +1,79 @@
+"""Pictures of a landing, and pictures for a page."""
+
+from __future__ import annotations
+
+import io
+import re
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..history import History
+from ..quantities import MODES
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+COLOURS = ("#0b6e99", "#c8553d", "#5b8c3e")
+
+
+def save_overview(history: History, path: str | Path, title: str) -> None:
+    """Write a PNG of main strut forces, strokes, auxiliary strut forces and the top's acceleration over time.
+
+    Legs that are mirror images share a curve. Dotted lines mark each leg's first contact.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(10.0, 8.0), layout="constrained")
+    axes = figure.subplots(4, 1, sharex=True)
+    groups = _groups(history)
+    for legs, colour in zip(groups, COLOURS):
+        leg = legs[0]
+        label = "leg " + "/".join(map(str, legs))
+        axes[0].plot(history.time, history[f"leg[{leg}].main_strut.force"] / 1e3, color=colour, label=label)
+        axes[1].plot(history.time, history[f"leg[{leg}].main_strut.stroke"] * 1e3, color=colour, label=label)
+        axes[2].plot(history.time, history[f"leg[{leg}].auxiliary_strut.force"] / 1e3, color=colour, label=label)
+        touching = np.flatnonzero(history[f"leg[{leg}].contact.force_y"] > 0.0)
+        if len(touching):
+            for ax in axes:
+                ax.axvline(history.time[touching[0]], color=colour, linestyle=":", linewidth=0.8)
+    axes[3].plot(history.time, history["body.top_axial_acceleration"], color="#333333", linewidth=1.0)
+    labels = ("main strut force [kN]", "main strut stroke [mm]", "auxiliary strut force [kN]", "axial acceleration\nat the top [m/s²]")
+    for ax, label in zip(axes, labels):
+        ax.set_ylabel(label)
+        ax.axhline(0.0, color="#999999", linewidth=0.6)
+        ax.grid(True, linewidth=0.3)
+        ax.margins(x=0.0)
+    axes[0].legend(loc="lower right", frameon=False, ncols=len(groups))
+    axes[0].set_title(title, loc="left")
+    axes[-1].set_xlabel("time [s]   (dotted: first contact; forces negative in compression, strokes positive)")
+    figure.savefig(path, dpi=120)
+
+
+def inline_svg(figure: Figure, prefix: str, label: str, said: dict[str, str] | None = None) -> str:
+    """A figure as SVG to stand in a page: no links, ids of its own by `prefix`, text as text, and what each mark says as its tooltip."""
+    import matplotlib as mpl
+
+    out = io.StringIO()
+    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": prefix}):
+        figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+    svg = out.getvalue()
+    svg = svg[svg.index("<svg") :]
+    svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.S)
+    svg = re.sub(r'\s+xmlns(:\w+)?="[^"]*"', "", svg).replace("xlink:href", "href")
+    svg = re.sub(r'\bid="', f'id="{prefix}-', svg)
+    svg = re.sub(r'href="#', f'href="#{prefix}-', svg)
+    svg = svg.replace("url(#", f"url(#{prefix}-")
+    for name, text in (said or {}).items():
+        opening = f'<g id="{prefix}-mark-{name}">'
+        svg = svg.replace(opening, f"{opening}<title>{escape(text)}</title>", 1)
+    return svg.replace("<svg ", f'<svg role="img" aria-label="{escape(label)}" ', 1)
+
+
+def _groups(history: History) -> list[tuple[int, ...]]:
+    mode = history.parameters.drop.mode if history.parameters is not None else None
+    if mode is None:
+        return [(1,), (2,), (3,)]
+    return [tuple(sorted(leg for leg, _ in g.legs)) for g in MODES[mode]]

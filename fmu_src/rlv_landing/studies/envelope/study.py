@@ -1,0 +1,207 @@
+"""What an envelope is asked for: two axes, families, what counts as lost. Read from TOML, checked before anything lands."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import product
+from math import ceil, log2
+from pathlib import Path
+from typing import Any
+
+from ...choices import choose_parameters
+from ...errors import LandingError, unknown
+from ...parameters import PARAMETER_QUANTITIES, Parameters, check_value
+from ...presets import parse_value, to_toml
+from ...quantities import Quantity
+from .. import toml_keys
+from ..outcome import DEFAULT_SLIDE, LIMITS
+from ..sweep.factors import VARIABLES, variable
+from .boundary import Lattice
+
+# what is lost, by criterion: each counts what is severer, too
+CRITERIA = {
+    "toppled": "the vehicle topples",
+    "bottomed out": "a damper meets its stop, or the vehicle topples",
+    "slid": "a footpad slides too far, a damper meets its stop, or the vehicle topples",
+    "limit": "one of the limits is passed, or the vehicle topples",
+}
+FINEST = 20
+TABLES = ("envelope", "set", "limits", "x", "y", "families")
+NUMBERS = {
+    q.name: q
+    for q in (
+        Quantity("s", "time at which a landing that is neither at rest nor toppled is given up", 0.1, 3600.0, name="until", default=6.0),
+        Quantity("s", "time between samples", 1e-5, 0.1, name="every", default=1e-3),
+        Quantity("", "relative tolerance of the integrator", 1e-12, 1e-2, name="rtol", default=1e-5),
+        Quantity("m", "what a footpad may move and has not slid", 0.0, 1e3, name="slide", default=DEFAULT_SLIDE),
+    )
+}
+KEYS = ("preset", "parameters", "mode", "criterion", "cells", "levels", *NUMBERS)
+AXIS_KEYS = ("name", "low", "high", "tolerance")
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A quantity from `low` to `high`, the boundary found to `tolerance`, all in SI.
+
+    Raises LandingError: an unknown quantity or one without numbers, bounds that are not allowed or not in order, a tolerance that is not
+    above 0, above the range or below 2^-20 of it.
+    """
+
+    name: str
+    low: float
+    high: float
+    tolerance: float
+
+    def __post_init__(self) -> None:
+        q = variable(self.name, "quantity for an axis")
+        if q.choices:
+            raise LandingError(f"{q.name} is one of {', '.join(q.choices)} and cannot be an axis; make it a family")
+        for value in (self.low, self.high):
+            check_value(q, value)
+        if not self.low < self.high:
+            raise LandingError(f"{q.name}: low = {self.low:g} must be below high = {self.high:g} {q.unit}".rstrip())
+        least = (self.high - self.low) / 2**FINEST
+        if not least <= self.tolerance <= self.high - self.low:
+            raise LandingError(
+                f"{q.name}: tolerance = {self.tolerance:g} {q.unit}".rstrip()
+                + f" is outside [{least:g}, {self.high - self.low:g}] {q.unit}".rstrip()
+                + "; give what you need to know it to"
+            )
+
+    @property
+    def quantity(self) -> Quantity:
+        """What is varied."""
+        return VARIABLES[self.name]
+
+
+@dataclass(frozen=True)
+class EnvelopeStudy:
+    """All that decides an envelope; values in SI. The flight before the first contact is left out: the axes are states at first contact.
+
+    `families` are values by name, one boundary each. Raises LandingError: an unknown criterion or limit, `limit` without limits, cells or
+    levels out of bounds, a quantity that is both varied and set, a family that makes no vehicle.
+    """
+
+    parameters: Parameters
+    x: Axis
+    y: Axis
+    families: tuple[Mapping[str, float | str], ...] = ({},)
+    inputs: Mapping[str, float] = field(default_factory=dict)
+    criterion: str = "toppled"
+    limits: Mapping[str, float] = field(default_factory=dict)
+    cells: int = 8
+    levels: int = 2
+    until: float = 6.0
+    every: float = 1e-3
+    rtol: float = 1e-5
+    slide: float = DEFAULT_SLIDE
+
+    def __post_init__(self) -> None:
+        if self.criterion not in CRITERIA:
+            raise unknown("criterion", self.criterion, CRITERIA)
+        if self.criterion == "limit" and not self.limits:
+            raise LandingError('criterion = limit needs limits, for example [limits] main_strut.force = "20 kN"')
+        for name, value, lo, hi in (("cells", self.cells, 2, 256), ("levels", self.levels, 0, 6)):
+            if not lo <= value <= hi:
+                raise LandingError(f"{name} = {value} is outside [{lo}, {hi}]")
+        given = [self.x.name, self.y.name, *(self.families[0] if self.families else ())]
+        for name in given:
+            if given.count(name) > 1:
+                raise LandingError(f"{name} is given twice, as an axis or in families; leave one")
+        for family in self.families:
+            self.parameters_with(family)
+
+    def parameters_with(self, values: Mapping[str, Any]) -> Parameters:
+        """The parameters with those of `values` that are parameters; the landing starts at its first contact."""
+        own = {name: value for name, value in values.items() if name in PARAMETER_QUANTITIES}
+        base = self.parameters.for_mode(str(own.get("drop.mode", self.parameters.drop.mode)))
+        return base.with_values({"drop.contact_time": 0.0, **own})
+
+    @property
+    def lattice(self) -> Lattice:
+        """The fine lattice: a unit along each axis is at most its tolerance."""
+
+        def steps(axis: Axis) -> int:
+            halvings = ceil(log2((axis.high - axis.low) / self.cells / axis.tolerance))
+            return int(2 ** max(self.levels, halvings))
+
+        return Lattice(self.cells, self.levels, (steps(self.x), steps(self.y)))
+
+    def place(self, x: float, y: float) -> tuple[float, float]:
+        """The values at a place on the fine lattice."""
+        width, height = self.lattice.size
+        return self.x.low + (self.x.high - self.x.low) * x / width, self.y.low + (self.y.high - self.y.low) * y / height
+
+    def record(self) -> dict[str, Any]:
+        """All that decides the results, for a file and for comparing studies."""
+        return {
+            "x": vars(self.x), "y": vars(self.y), "families": [dict(f) for f in self.families], "inputs": dict(self.inputs),
+            "criterion": self.criterion, "limits": dict(self.limits), "cells": self.cells, "levels": self.levels, "until": self.until,
+            "every": self.every, "rtol": self.rtol, "slide": self.slide, "parameters": to_toml(self.parameters, comments=False),
+        }  # fmt: skip
+
+
+def study_from(document: Mapping[str, Any], folder: Path = Path()) -> EnvelopeStudy:
+    """A study from its TOML document; `docs/envelope.md` has every key. A parameter file that it names lies in `folder`.
+
+    Raises LandingError: unknown keys or names, wrong units, values out of bounds, no axes, an empty family.
+    """
+    toml_keys.only(document, TABLES, "table")
+    told = toml_keys.table(document, "envelope")
+    toml_keys.only(told, KEYS, "key of [envelope]")
+    fixed = toml_keys.values(toml_keys.table(document, "set"), VARIABLES, "quantity in [set]")
+    families = read_families(toml_keys.flat(toml_keys.table(document, "families")))
+    x, y = _axis(document, "x"), _axis(document, "y")
+    for name in (x.name, y.name, *families[0]):
+        if name in fixed:
+            raise LandingError(f"{name} is both set and varied; leave one")
+    file = folder / toml_keys.text(told, "parameters", "") if "parameters" in told else None
+    preset = toml_keys.text(told, "preset", "") if "preset" in told else None
+    mode = toml_keys.text(told, "mode", "") if "mode" in told else None
+    parameters = choose_parameters(preset, file, mode, {n: v for n, v in fixed.items() if n in PARAMETER_QUANTITIES})
+    limits = toml_keys.values(toml_keys.table(document, "limits"), LIMITS, "limit")
+    numbers = {name: toml_keys.number(told, q) for name, q in NUMBERS.items()}
+    return EnvelopeStudy(
+        parameters, x, y, families,
+        inputs={n: float(v) for n, v in fixed.items() if n not in PARAMETER_QUANTITIES},
+        criterion=toml_keys.text(told, "criterion", "toppled"),
+        limits={name: float(v) for name, v in limits.items()},
+        cells=toml_keys.whole(told, "cells", 8, 2, 256), levels=toml_keys.whole(told, "levels", 2, 0, 6),
+        **numbers,
+    )  # fmt: skip
+
+
+def read_families(told: Mapping[str, Any]) -> tuple[dict[str, float | str], ...]:
+    """Every combination of the values given by name; one empty family where there are none."""
+    toml_keys.only(told, VARIABLES, "quantity in [families]")
+    columns: list[Sequence[float | str]] = []
+    for name, values in told.items():
+        if not isinstance(values, (list, tuple)) or not values:
+            raise LandingError(f'families: {name} = {values!r} must be a list of one value or more, for example ["0 deg", "5 deg"]')
+        column = [parse_value(VARIABLES[name], v) for v in values]
+        if len(set(column)) < len(column):
+            raise LandingError(f"families: {name} = {values} names a value twice")
+        columns.append(column)
+    return tuple(dict(zip(told, chosen)) for chosen in product(*columns))
+
+
+def _axis(document: Mapping[str, Any], key: str) -> Axis:
+    told = toml_keys.table(document, key)
+    toml_keys.only(told, AXIS_KEYS, f"key of [{key}]")
+    for needed in ("name", "low", "high"):
+        if needed not in told:
+            raise LandingError(
+                f'[{key}] has no {needed}; an axis is name = "drop.tilt", low = "-10 deg", high = "10 deg", tolerance = "0.5 deg"'
+            )
+    q = variable(toml_keys.text(told, "name", ""), "quantity for an axis")
+    low, high = (_number(q, told[bound]) for bound in ("low", "high"))
+    default = (high - low) / 128.0
+    return Axis(q.name, low, high, _number(replace(q, lo=0.0, hi=float("inf")), told["tolerance"]) if "tolerance" in told else default)
+
+
+def _number(q: Quantity, value: Any) -> float:
+    if q.choices:
+        raise LandingError(f"{q.name} is one of {', '.join(q.choices)} and cannot be an axis; make it a family")
+    return float(parse_value(q, value))

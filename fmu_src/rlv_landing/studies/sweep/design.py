@@ -1,0 +1,73 @@
+"""A study's points: one row of values a landing, drawn by grid, Latin hypercube or Sobol sequence, the same for the same seed."""
+
+from __future__ import annotations
+
+import hashlib
+import warnings
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import LandingError
+from .factors import Array, Factor
+
+LARGEST = 100_000_000
+
+
+class Design:
+    """Columns of values by quantity name, SI, one row a sample. A column holds floats, or objects where it has texts."""
+
+    def __init__(self, columns: Mapping[str, NDArray[Any]], count: int) -> None:
+        self.columns = dict(columns)
+        self.count = count
+
+    def __len__(self) -> int:
+        return self.count
+
+    def rows(self, first: int, last: int) -> list[dict[str, Any]]:
+        """Values by name of the samples from `first` up to, not including, `last`."""
+        names = list(self.columns)
+        parts = [self.columns[name][first:last].tolist() for name in names]
+        return [dict(zip(names, values)) for values in zip(*parts)] if names else [{} for _ in range(first, last)]
+
+    def digest(self) -> str:
+        """A fingerprint of every value."""
+        told = hashlib.sha256(str(self.count).encode())
+        for name, values in self.columns.items():
+            told.update(name.encode())
+            told.update(repr(values.tolist()).encode() if values.dtype == object else np.ascontiguousarray(values).tobytes())
+        return told.hexdigest()
+
+
+def grid(factors: Sequence[Factor]) -> Design:
+    """Every level with every other; the last factor turns fastest. Raises LandingError for a factor without levels, or too many points."""
+    levels = [f.levels() for f in factors]
+    count = 1
+    for values in levels:
+        count *= len(values)
+    if count > LARGEST:
+        raise LandingError(f'this grid has {count} points, more than {LARGEST}; take fewer levels, or method = "sobol" or "lhs"')
+    places = np.unravel_index(np.arange(count), [len(values) for values in levels]) if levels else ()
+    return Design({f.name: values[i] for f, values, i in zip(factors, levels, places)}, count)
+
+
+def drawn(factors: Sequence[Factor], method: str, count: int, seed: int) -> Design:
+    """`count` samples of the factors by `lhs` or `sobol` (scrambled), by `scipy.stats.qmc`."""
+    places = unit_points(method, count, len(factors), seed)
+    return Design({f.name: f.at(places[:, i]) for i, f in enumerate(factors)}, count)
+
+
+def unit_points(method: str, count: int, dimensions: int, seed: int) -> Array:
+    """`count` points of the unit cube."""
+    from scipy.stats import qmc
+
+    if not dimensions:
+        return np.empty((count, 0))
+    engine = qmc.LatinHypercube(dimensions, seed=seed) if method == "lhs" else qmc.Sobol(dimensions, seed=seed)
+    with warnings.catch_warnings():
+        # scipy warns where the count is no power of 2; the plan says so in our words
+        warnings.simplefilter("ignore", UserWarning)
+        points: Array = engine.random(count)
+    return points

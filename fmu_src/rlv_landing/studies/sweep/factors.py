@@ -1,0 +1,173 @@
+"""A study's factors: what is varied, in which unit, and how a place between 0 and 1 becomes a value."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import LandingError, unknown
+from ...parameters import PARAMETER_QUANTITIES, check_value
+from ...presets import parse_value, unit_scale
+from ...quantities import INPUT_QUANTITIES, Quantity, shown
+from .. import toml_keys
+
+Array = NDArray[np.float64]
+# what a study may vary or set: every parameter, and every input as a constant from the start on
+VARIABLES: dict[str, Quantity] = {**PARAMETER_QUANTITIES, **{q.name: q for q in INPUT_QUANTITIES}}
+DISTRIBUTIONS = {
+    "uniform": ("low", "high", "count"),
+    "normal": ("mean", "deviation", "low", "high"),
+    "choice": ("values",),
+}
+ALL_KEYS = ("name", "unit", "distribution", "low", "high", "count", "mean", "deviation", "values")
+
+
+@dataclass(frozen=True)
+class Factor:
+    """One factor, all numbers in SI. `unit` is the one that the study gave, for printing.
+
+    uniform: evenly between `low` and `high`, in a grid `count` levels, both ends included. normal: `mean` and `deviation`, cut off at `low`
+    and `high`. choice: each of `values` as often.
+    """
+
+    quantity: Quantity
+    unit: str
+    distribution: str
+    low: float = 0.0
+    high: float = 0.0
+    mean: float = 0.0
+    deviation: float = 0.0
+    count: int = 0
+    values: tuple[float | str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The quantity's name."""
+        return self.quantity.name
+
+    def at(self, places: Array) -> NDArray[Any]:
+        """Values at `places` (0 to 1) of the distribution: its quantiles."""
+        if self.distribution == "choice":
+            which = np.minimum((places * len(self.values)).astype(int), len(self.values) - 1)
+            chosen: NDArray[Any] = column(self.values)[which]
+            return chosen
+        if self.distribution == "normal":
+            from scipy.stats import truncnorm
+
+            low, high = (self.low - self.mean) / self.deviation, (self.high - self.mean) / self.deviation
+            drawn: Array = truncnorm.ppf(places, low, high, self.mean, self.deviation)
+            return np.clip(drawn, self.low, self.high)
+        return np.clip(self.low + (self.high - self.low) * places, self.low, self.high)
+
+    def levels(self) -> NDArray[Any]:
+        """The values of a grid. Raises LandingError for a factor that has none."""
+        if self.distribution == "choice":
+            return column(self.values)
+        if self.distribution == "uniform" and self.count:
+            return np.linspace(self.low, self.high, self.count)
+        raise LandingError(f"factor {self.name}: a grid needs values = [...], or low, high and count")
+
+    def record(self) -> dict[str, Any]:
+        """All that decides the values, in SI, for the study's fingerprint and for JSON."""
+        keys = DISTRIBUTIONS[self.distribution]
+        return {"name": self.name, "distribution": self.distribution, **{k: getattr(self, k) for k in keys}}
+
+
+def column(values: Any) -> NDArray[Any]:
+    """Values as an array: of floats, or of objects where a text is among them."""
+    values = list(values)
+    return np.array(values, dtype=object if any(isinstance(v, str) for v in values) else float)
+
+
+def variable(name: Any, what: str) -> Quantity:
+    """The quantity of this name. Raises LandingError, with the nearest name, where there is none that can be varied."""
+    if not isinstance(name, str) or name not in VARIABLES:
+        raise unknown(what, name, VARIABLES)
+    return VARIABLES[name]
+
+
+def read_factor(entry: Mapping[str, Any]) -> Factor:
+    """A factor from a `[[factor]]` table.
+
+    Raises LandingError: no name or an unknown one, unknown keys, a wrong unit, missing or bad numbers, an empty range.
+    """
+    if "name" not in entry:
+        raise LandingError('a [[factor]] has no name; write for example name = "drop.tilt"')
+    q = variable(entry["name"], "factor")
+    where = f"factor {q.name}"
+    toml_keys.only(entry, ALL_KEYS, f"key of {where}")
+    unit = entry.get("unit", q.unit)
+    if not isinstance(unit, str):
+        raise LandingError(f'{where}: unit = {unit!r} must be a text, for example unit = "{q.display_unit or q.unit}"')
+    distribution = entry.get("distribution", "choice" if "values" in entry else "uniform")
+    if distribution not in DISTRIBUTIONS:
+        raise unknown(f"distribution of {where}", distribution, DISTRIBUTIONS)
+    for key in entry:
+        if key not in ("name", "unit", "distribution", *DISTRIBUTIONS[distribution]):
+            raise LandingError(f"{where}: {key} does not belong to {distribution}, which takes {', '.join(DISTRIBUTIONS[distribution])}")
+    if q.choices and distribution != "choice":
+        raise LandingError(f"{where} is one of {', '.join(q.choices)}; give values = [...]")
+    scale = 1.0 if q.choices else unit_scale(q, unit)
+
+    def in_si(key: str, value: Any) -> float | str:
+        if isinstance(value, str):
+            return parse_value(q, value)
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise LandingError(f"{where}: {key} = {value!r} is not a number; give it in {unit or 'plain numbers'}")
+        return scale * value
+
+    def number(key: str) -> float:
+        if key not in entry:
+            raise LandingError(f"{where} has no {key}, which {distribution} needs")
+        return float(in_si(key, entry[key]))
+
+    if distribution == "choice":
+        return Factor(q, unit, distribution, values=_choices(q, [in_si("values", v) for v in _values(where, entry.get("values"))]))
+    if distribution == "normal":
+        mean, deviation = number("mean"), number("deviation")
+        low, high = (number(key) if key in entry else bound for key, bound in (("low", q.lo), ("high", q.hi)))
+        if not (isfinite(mean) and 0.0 < deviation < float("inf")):
+            raise LandingError(f"{where}: mean = {mean:g} and deviation = {deviation:g} {q.unit} must be finite, the deviation above 0")
+    else:
+        mean = deviation = 0.0
+        low, high = number("low"), number("high")
+    if not low < high:
+        raise LandingError(
+            f"{where}: the range from low = {low:g} to high = {high:g} {q.unit}".rstrip() + " is empty; low must be below high"
+        )
+    for bound in (low, high):
+        if isfinite(bound) or distribution == "uniform":
+            check_value(q, bound)
+    return Factor(q, unit, distribution, low, high, mean, deviation, _count(where, entry.get("count", 0)))
+
+
+def _values(where: str, values: Any) -> list[Any]:
+    if not isinstance(values, list) or not values:
+        raise LandingError(f"{where}: values = {values!r} must be a list of one value or more")
+    return values
+
+
+def _choices(q: Quantity, values: list[float | str]) -> tuple[float | str, ...]:
+    checked = tuple(check_value(q, v) for v in values)
+    if len(set(checked)) < len(checked):
+        raise LandingError(f"factor {q.name}: values = {values} name a value twice")
+    return checked
+
+
+def _count(where: str, count: Any) -> int:
+    if isinstance(count, bool) or not isinstance(count, int) or count == 1 or count < 0:
+        raise LandingError(f"{where}: count = {count!r} must be a whole number of 2 or more")
+    return count
+
+
+def value_text(name: str, value: float | str) -> str:
+    """A value as people read it, with its unit."""
+    if isinstance(value, str):
+        return value
+    unit, scale = shown(VARIABLES[name])
+    return f"{value / scale:g} {unit}".rstrip()

@@ -1,0 +1,208 @@
+"""A study's responses: numbers (and a word or two) that say what a landing came to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import LandingError, unknown
+from ...history import History
+from ...quantities import LEG_QUANTITIES, LEGS, MODES, OUTPUT_NAMES, OUTPUT_QUANTITIES, Quantity
+from ...validation.measures import DamperWork, damper_work
+from ..outcome import TOPPLED, Outcome, outcome
+
+Array = NDArray[np.float64]
+Reduction = Callable[[Array, Array], Array]
+# over the samples: columns (n, k) and times (n,) to k numbers
+REDUCTIONS: dict[str, tuple[str, Reduction]] = {
+    "min": ("smallest", lambda a, t: a.min(axis=0)),
+    "max": ("largest", lambda a, t: a.max(axis=0)),
+    "abs_max": ("largest magnitude of", lambda a, t: np.abs(a).max(axis=0)),
+    "final": ("last", lambda a, t: a[-1]),
+    "min_time": ("time of the smallest", lambda a, t: t[a.argmin(axis=0)]),
+    "max_time": ("time of the largest", lambda a, t: t[a.argmax(axis=0)]),
+}
+OVER_LEGS: dict[str, Callable[[Iterable[float]], float]] = {"min": min, "max": max, "abs_max": max}
+WORK = {"absorbed": "J", "dissipated": "J", "efficiency": ""}
+MARGINS = ("stability_min", "stability_end", "stroke_left", "slid", "joint_clearance")
+OUTCOME = (
+    Quantity("", "toppled, bottomed out, slid, moving or settled", name="outcome", kind="string"),
+    Quantity("s", "when it was so", name="outcome.time"),
+    Quantity("", "the leg that bottomed out first", name="outcome.leg", kind="integer"),
+    Quantity("", "the limit of [limits] that was passed first", name="outcome.first_limit", kind="string"),
+    Quantity("s", "when it was passed", name="outcome.first_limit_time"),
+    *(Quantity("m", f"{name.replace('_', ' ')}, see Outcome", name=f"margin.{name}") for name in MARGINS),
+)
+RHS_CALLS = Quantity("", "calls of the right-hand side that the landing took", name="rhs_calls", kind="integer")
+DEFAULT = (
+    "outcome", "outcome.*", "margin.*", "legs.main_strut.force.min", "legs.main_strut.stroke.max", "legs.auxiliary_strut.force.abs_max",
+    "legs.contact.force_y.max", "legs.main_strut.absorbed", "legs.main_strut.dissipated", "leg[*].contact.time",
+    "leg[*].main_strut.force.min", "leg[*].main_strut.force.min_time", "leg[*].main_strut.stroke.max",
+    "leg[*].main_strut.stroke.max_time", "leg[*].main_strut.stroke.final", "leg[*].main_strut.pressure_lower.max",
+    "leg[*].auxiliary_strut.force.min", "leg[*].auxiliary_strut.force.max", "leg[*].contact.force_y.max", "leg[*].main_strut.absorbed",
+    "leg[*].main_strut.dissipated", "leg[*].main_strut.efficiency", "body.top_axial_acceleration.max", "body.pitch.abs_max",
+    "body.pitch.final", "body.x.final", "energy.dissipated.final", "energy.dissipated_orifice.final", "energy.dissipated_seal.final",
+    "energy.dissipated_friction.final", "energy.dissipated_contact.final", "energy.balance.abs_max", "rhs_calls",
+)  # fmt: skip
+
+
+@cache
+def known_responses() -> Mapping[str, Quantity]:
+    """Every response there is, by name.
+
+    `OUTPUT.min`, `.max`, `.abs_max`, `.final`, `.min_time`, `.max_time` of every output; `legs.…` is the extreme over the four legs.
+    `leg[N].main_strut.absorbed`, `.dissipated`, `.efficiency` are of a damper's first compression and rebound, `legs.…` their sum over
+    the legs; `leg[N].contact.time` is when the ground first pushes on a footpad; `outcome`, `outcome.…` and `margin.…` are `Outcome`'s.
+    """
+    found = {q.name: q for q in OUTCOME}
+    for q in OUTPUT_QUANTITIES:
+        for name, (words, _) in REDUCTIONS.items():
+            unit = "s" if name.endswith("time") else q.unit
+            found[f"{q.name}.{name}"] = Quantity(unit, f"{words} {q.meaning}", name=f"{q.name}.{name}")
+    for q in LEG_QUANTITIES:
+        for name in OVER_LEGS:
+            full = f"legs.{q.name}.{name}"
+            found[full] = Quantity(q.unit, f"{REDUCTIONS[name][0]} of all legs: {q.meaning}", name=full)
+    for what, unit in WORK.items():
+        for leg in LEGS:
+            full = f"leg[{leg}].main_strut.{what}"
+            found[full] = Quantity(unit, f"leg {leg}'s damper, first compression and rebound: {what}", name=full)
+        if unit:
+            found[f"legs.main_strut.{what}"] = Quantity(unit, f"{what} by all dampers together", name=f"legs.main_strut.{what}")
+    for leg in LEGS:
+        full = f"leg[{leg}].contact.time"
+        found[full] = Quantity("s", f"leg {leg}: when the ground first pushes on the footpad", name=full)
+    found[RHS_CALLS.name] = RHS_CALLS
+    return found
+
+
+def expand(names: Sequence[str] | None) -> tuple[str, ...]:
+    """Names of responses in the order given, `leg[*]` for each leg, a trailing `.*` for all below; None is the default set.
+
+    Raises LandingError for a response that does not exist, with the nearest, or one named twice.
+    """
+    known = known_responses()
+    found: list[str] = []
+    for name in DEFAULT if names is None else names:
+        if name.endswith(".*"):
+            matching = [k for k in known if k.startswith(name[:-1])]
+        else:
+            matching = [name.replace("[*]", f"[{leg}]") for leg in LEGS] if "[*]" in name else [name]
+        for one in matching or [name]:
+            if one not in known:
+                raise unknown("response", one, known)
+            if one in found:
+                raise LandingError(f"response {one} is named twice; leave one")
+            found.append(one)
+    return tuple(found)
+
+
+class Measure:
+    """Takes the responses `names` off a history. `limits` and `slide` are those of `outcome`."""
+
+    def __init__(self, names: Sequence[str], limits: Mapping[str, float] | None = None, slide: float | None = None) -> None:
+        self.names = tuple(names)
+        self._how = {} if slide is None else {"slide": slide}
+        self._limits = dict(limits or {})
+        self._columns: dict[str, list[int]] = {}
+        self._places: list[tuple[str, list[int]] | None] = [self._place(name) for name in names]
+        self._with_outcome = any(name.partition(".")[0] in ("outcome", "margin") for name in names)
+        self._with_work = any(name.rpartition(".")[2] in WORK and "main_strut" in name for name in names)
+
+    def _place(self, name: str) -> tuple[str, list[int]] | None:
+        """The reduction and where its results hold this response, for one that is a reduction of outputs."""
+        output, _, how = name.rpartition(".")
+        if how not in REDUCTIONS or output.partition(".")[0] in ("outcome", "margin"):
+            return None
+        outputs = [output.replace("legs.", f"leg[{leg}].", 1) for leg in LEGS] if output.startswith("legs.") else [output]
+        columns = self._columns.setdefault(how, [])
+        places = []
+        for one in outputs:
+            index = OUTPUT_NAMES.index(one)
+            if index not in columns:
+                columns.append(index)
+            places.append(columns.index(index))
+        return how, places
+
+    def __call__(self, history: History, rhs_calls: int) -> list[Any]:
+        """The responses in the order of `names`; None where a landing has none: an efficiency without compression, no limit passed.
+
+        What a vehicle does once it has toppled does not count, the stability margins apart.
+        """
+        others: dict[str, Any] = {"rhs_calls": rhs_calls}
+        toppled = history["status.phase"][-1] == TOPPLED
+        if self._with_outcome or toppled:
+            found = outcome(history, self._limits or None, **self._how)
+            others.update(_outcome_values(found))
+            if toppled:
+                end = int(np.searchsorted(history.time, found.time, "right"))
+                history = History(history.time[:end], history.names, history.data[:end], history.parameters)
+        reduced = {how: REDUCTIONS[how][1](history.data[:, columns], history.time).tolist() for how, columns in self._columns.items()}
+        if self._with_work:
+            others.update(_work_values(history))
+        values: list[Any] = []
+        for name, place in zip(self.names, self._places):
+            if place is None:
+                values.append(others[name] if name in others else _contact_time(history, name))
+            else:
+                how, places = place
+                numbers = [reduced[how][i] for i in places]
+                values.append(numbers[0] if len(numbers) == 1 else OVER_LEGS[how](numbers))
+        return values
+
+
+def _outcome_values(found: Outcome) -> dict[str, Any]:
+    limit = found.first_limit
+    leg = "" if limit is None or limit.leg is None else f"leg[{limit.leg}]."
+    return {
+        "outcome": found.name,
+        "outcome.time": found.time,
+        "outcome.leg": found.leg,
+        "outcome.first_limit": None if limit is None else leg + limit.name,
+        "outcome.first_limit_time": None if limit is None else limit.time,
+        **{f"margin.{name}": value for name, value in found.margins.items()},
+    }
+
+
+def _first_push(history: History, leg: int) -> int | None:
+    """The first sample at which the ground pushes on the leg's footpad."""
+    pushed = history[f"leg[{leg}].contact.force_y"] > 0.0
+    first = int(pushed.argmax())
+    return first if pushed[first] else None
+
+
+def _contact_time(history: History, name: str) -> float | None:
+    first = _first_push(history, int(name[4]))
+    return None if first is None else float(history.time[first])
+
+
+def _work_values(history: History) -> dict[str, Any]:
+    """The dampers' work; mirror images carry the same, which is worked out once."""
+    assert history.parameters is not None
+    values: dict[str, Any] = {}
+    total = {f"legs.main_strut.{what}": 0.0 for what, unit in WORK.items() if unit}
+    for group in MODES[history.parameters.drop.mode]:
+        work = _work(history, group.legs[0][0])
+        for leg, _ in group.legs:
+            for what, unit in WORK.items():
+                value = None if work is None else getattr(work, what)
+                values[f"leg[{leg}].main_strut.{what}"] = value
+                if unit and value is not None:
+                    total[f"legs.main_strut.{what}"] += value
+    return {**values, **total}
+
+
+def _work(history: History, leg: int) -> DamperWork | None:
+    """The work of the leg's damper; None where it was not compressed."""
+    first = _first_push(history, leg)
+    if first is None:
+        return None
+    force, stroke = history[f"leg[{leg}].main_strut.force"], history[f"leg[{leg}].main_strut.stroke"]
+    try:
+        return damper_work(history.time, force, stroke, float(history.time[max(first - 1, 0)]))
+    except LandingError:
+        return None

@@ -1,0 +1,148 @@
+"""Sobol indices of a study's responses: how much of their variance each factor brings, alone and with the others.
+
+The points are Saltelli's: two independent samples A and B of all factors, and for each factor a copy of A with B's column of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import LandingError, unknown
+from .design import Design, unit_points
+from .extras import arrow
+from .factors import Array
+from .responses import known_responses
+from .study import Study
+
+LEVEL = 0.95
+RESAMPLES = 999
+LEAST_WHOLE = 0.9
+
+
+@dataclass(frozen=True)
+class Indices:
+    """Sobol indices of one response over the landings of one mode: `first` and `total` (factors, 3), each index with its interval.
+
+    `used` of `samples` had the response in all their landings; the place of another is taken by one of these, drawn at random. All are NaN
+    where that is more than a tenth of them, or the response does not vary.
+    """
+
+    response: str
+    mode: str
+    factors: tuple[str, ...]
+    first: Array
+    total: Array
+    used: int
+    samples: int
+
+    def record(self) -> dict[str, Any]:
+        """The same for JSON; null for NaN."""
+
+        def plain(index: Array) -> dict[str, float | None]:
+            return {key: None if np.isnan(v) else float(v) for key, v in zip(("index", "low", "high"), index)}
+
+        indices = [{"factor": f, "first": plain(a), "total": plain(b)} for f, a, b in zip(self.factors, self.first, self.total)]
+        return {"response": self.response, "mode": self.mode, "used": self.used, "samples": self.samples, "indices": indices}
+
+
+def sobol_design(study: Study) -> Design:
+    """The points of `study.samples` (a power of 2) samples: A, then B, then for each factor A with B's column of it.
+
+    Raises LandingError: the study is a table, has fewer than two factors, or its samples are no power of 2.
+    """
+    if study.method == "table":
+        raise LandingError("the columns of a table are not independent of each other, which Sobol indices need; give factors with ranges")
+    if len(study.factors) < 2:
+        raise LandingError("Sobol indices share variance out between factors; the study needs two [[factor]] or more")
+    n = study.samples
+    if n < 2 or n & (n - 1):
+        told = f"this {study.method} has samples = {n}" if n else f"a {study.method} has none"
+        raise LandingError(f'Sobol indices need samples = a power of 2, for example 256 or 1024, with method = "sobol" or "lhs"; {told}')
+    places = unit_points("sobol", n, 2 * len(study.factors), study.seed)
+    a, b = ([f.at(half[:, i]) for i, f in enumerate(study.factors)] for half in np.hsplit(places, 2))
+    blocks = len(study.factors) + 2
+    columns = {}
+    for i, f in enumerate(study.factors):
+        parts = [a[i]] * blocks
+        parts[1] = parts[2 + i] = b[i]
+        columns[f.name] = np.concatenate(parts)
+    return Design(columns, n * blocks)
+
+
+def sobol_indices(pages: Array, seed: int, level: float = LEVEL, resamples: int = RESAMPLES) -> tuple[Array, Array]:
+    """First-order and total indices with their bootstrap intervals, each (responses, factors, 3): index, low, high.
+
+    `pages` (factors + 2, responses, samples) are responses in the order of `sobol_design`. By `scipy.stats`: Saltelli's estimators (2010),
+    percentile intervals of the confidence `level`. NaN for a response that does not vary.
+    """
+    from scipy.stats import bootstrap
+    from scipy.stats import sobol_indices as estimate
+
+    factors, responses, n = pages.shape[0] - 2, pages.shape[1], pages.shape[2]
+
+    def both(which: NDArray[np.intp]) -> Array:
+        told: Any = {"f_A": pages[0][:, which], "f_B": pages[1][:, which], "f_AB": pages[2:][:, :, which]}
+        found = estimate(func=told, n=n)
+        return np.array([np.reshape(order, (responses, factors)) for order in (found.first_order, found.total_order)])
+
+    drawn: Any = bootstrap(
+        (np.arange(n),), both, vectorized=False, method="percentile", confidence_level=level, n_resamples=resamples,
+        random_state=np.random.default_rng(seed),
+    )  # fmt: skip
+    interval = drawn.confidence_interval
+    indices = np.stack([both(np.arange(n)), interval.low, interval.high], axis=-1)
+    indices[:, np.ptp(pages[:2], axis=(0, 2)) == 0.0] = np.nan
+    return indices[0], indices[1]
+
+
+def indices_of(path: Path, study: Study, responses: Sequence[str], level: float = LEVEL, resamples: int = RESAMPLES) -> list[Indices]:
+    """Indices of these responses, mode by mode, from a results file that was made of `sobol_design`."""
+    _, parquet = arrow()
+    modes = study.modes or ("all",)
+    names = tuple(f.name for f in study.factors)
+    table = parquet.read_table(path, columns=list(responses))
+    found: list[Indices] = []
+    for i, mode in enumerate(modes):
+        filled = [_filled(table[r].to_numpy()[i :: len(modes)].astype(float).reshape(len(names) + 2, -1), study.seed) for r in responses]
+        first, total = sobol_indices(np.stack([pages for pages, _ in filled], axis=1), study.seed, level, resamples)
+        for k, (response, (pages, used)) in enumerate(zip(responses, filled)):
+            found.append(Indices(response, mode, names, first[k], total[k], used, pages.shape[1]))
+    return found
+
+
+def _filled(pages: Array, seed: int) -> tuple[Array, int]:
+    """The responses (factors + 2, samples) with incomplete samples replaced by others, and how many were complete; the same number in all
+    where too few were."""
+    whole = np.flatnonzero(np.isfinite(pages).all(axis=0))
+    n = pages.shape[1]
+    if len(whole) < LEAST_WHOLE * n:
+        return np.zeros_like(pages), len(whole)
+    which = np.arange(n)
+    missing = np.setdiff1d(which, whole)
+    which[missing] = np.random.default_rng(seed).choice(whole, len(missing))
+    return pages[:, which], len(whole)
+
+
+def numeric_responses(study: Study, wanted: Sequence[str]) -> tuple[str, ...]:
+    """The responses to share out: those that are named; else all of the study's that say something of the whole vehicle, if there are any,
+    else all that are numbers.
+
+    Raises LandingError for one that the study does not take, with the nearest, or that is a text, and where there are none.
+    """
+    known = known_responses()
+    for name in wanted:
+        if name not in study.responses:
+            raise unknown("response of this study", name, study.responses)
+        if known[name].kind == "string":
+            raise LandingError(f"{name} is a text; Sobol indices are of numbers: take one of its margins")
+    numbers = [name for name in study.responses if known[name].kind == "real"]
+    whole = [name for name in numbers if not name.startswith(("leg[", "outcome.", "energy.balance"))]
+    if not numbers:
+        raise LandingError("this study takes no response that is a number; add one to responses")
+    return tuple(wanted or whole or numbers)

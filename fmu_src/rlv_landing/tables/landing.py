@@ -1,0 +1,152 @@
+"""Tables as people read them in a terminal."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Iterable
+from typing import Any
+
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from ..history import History
+from ..parameters import PARAMETER_QUANTITIES, Parameters
+from ..quantities import Quantity
+from ..summary import summarise
+from ..validation.paper import Comparison, compare, counts
+
+
+def render(table: Table, width: int = 140) -> str:
+    """A table as plain text."""
+    out = io.StringIO()
+    Console(file=out, width=width).print(table)
+    return out.getvalue()
+
+
+def new_table(title: str, left: Iterable[str], right: Iterable[str], more: Iterable[str] = ()) -> Table:
+    """An empty table: columns set left, set right (numbers), and left again."""
+    table = Table(title=escape(title), title_justify="left", title_style="bold")
+    for name in left:
+        table.add_column(escape(name))
+    for name in right:
+        table.add_column(escape(name), justify="right")
+    for name in more:
+        table.add_column(escape(name))
+    return table
+
+
+def number(value: float | None, unit: str) -> str:
+    """A number as it is read in its unit: N without decimals, s with three, else two; a dash for none."""
+    if value is None or math.isnan(value):
+        return "-"
+    return f"{value:.0f}" if unit == "N" else f"{value:.3f}" if unit == "s" else f"{value:.2f}"
+
+
+def comparison_table(history: History, mode: str) -> str:
+    """Our numbers beside the paper's simulation and tests, a line a printed scalar, and the counts within 5, 10 and 20 %."""
+    comparisons: list[Comparison] = compare(history, mode)
+    table = new_table(
+        f"{mode} drop test: this landing beside Yue, Lin, Zheng, Du (2022), section 5",
+        ("quantity", "leg", "event"),
+        ("ours", "simulation", "test", "unit", "ours - simulation"),
+    )
+    for c in comparisons:
+        s = c.scalar
+        tests = " / ".join(number(v, s.unit) for v in (s.test_a, s.test_b) if not math.isnan(v)) or "-"
+        table.add_row(
+            s.quantity.replace("_", " "),
+            str(s.leg or ""),
+            s.event,
+            number(c.ours, s.unit),
+            number(s.simulation, s.unit),
+            tests,
+            s.unit,
+            percent(c.error) + ("*" if s.near_zero else ""),
+        )
+    return (
+        render(table)
+        + f"within 5 / 10 / 20 % of the paper's simulation: {counts_line(counts(comparisons))}\n"
+        + near_zero_note(comparisons)
+    )
+
+
+def percent(fraction: float) -> str:
+    """A signed fraction in per cent; a dash for none."""
+    return "-" if math.isnan(fraction) else f"{100.0 * fraction:+.1f} %"
+
+
+def counts_line(n: dict[str, int]) -> str:
+    """Counts within 5, 10 and 20 % as text."""
+    return f"{n['within_5']} / {n['within_10']} / {n['within_20']} of {n['of']}"
+
+
+def near_zero_note(comparisons: Iterable[Comparison]) -> str:
+    """What the asterisk behind an error means, with the scales; nothing where no scalar is near zero."""
+    marked = [c.scalar for c in comparisons if c.scalar.near_zero]
+    if not marked:
+        return ""
+    scales = ", ".join(f"{number(s.simulation, s.unit)} on {number(s.scale, s.unit)} {s.unit}" for s in marked)
+    return f"* near zero, so judged on the scale of its curve, the largest that the paper prints of it: {scales}\n"
+
+
+def summary_table(history: History, title: str) -> str:
+    """Peaks of every leg, and the outcome below."""
+    s = summarise(history)
+    table = new_table(
+        title,
+        ("leg",),
+        ("contact at [s]", "main strut force [kN]", "at [s]", "stroke [mm]", "at [s]", "auxiliary strut force [kN]"),
+    )
+    for leg in s["legs"]:
+        table.add_row(
+            str(leg["leg"]),
+            number(leg["contact_time"], "s"),
+            f"{leg['main_strut_force_min'] / 1e3:.2f}",
+            f"{leg['main_strut_force_min_time']:.3f}",
+            f"{leg['main_strut_stroke_max'] * 1e3:.2f}",
+            f"{leg['main_strut_stroke_max_time']:.3f}",
+            f"{leg['auxiliary_strut_force_min'] / 1e3:.2f} ... {leg['auxiliary_strut_force_max'] / 1e3:+.2f}",
+        )
+    lines = [
+        f"after {s['end_time']:.3f} s: {s.get('outcome', 'recorded')}; top acceleration up to {s['top_axial_acceleration_max']:.2f} m/s2"
+    ]
+    if "stability_margin_min" in s:
+        lines.append(
+            f"stability margin at least {s['stability_margin_min']:.3f} m; energy balance within {s['energy_balance_worst']:.1e} J"
+        )
+    if s.get("bottomed_out"):
+        lines.append(f"BOTTOMED OUT: the damper of leg {', '.join(map(str, s['bottomed_out']))} met its compression stop")
+    return render(table) + "\n".join(lines) + "\n"
+
+
+def parameter_table(parameters: Parameters) -> str:
+    """Every parameter with value, unit, bounds, source and meaning."""
+    table = new_table("parameters", ("name",), ("value",), ("unit", "bounds or choices", "source", "meaning"))
+    for name, value in parameters.items():
+        q = PARAMETER_QUANTITIES[name]
+        bounds = " | ".join(q.choices) if q.choices else f"[{q.lo:g}, {q.hi:g}]"
+        table.add_row(name, value if isinstance(value, str) else f"{value:.6g}", q.unit, bounds, parameters.source(name), q.meaning)
+    return render(table, 200)
+
+
+def quantity_table(title: str, quantities: Iterable[Quantity]) -> str:
+    """Names, units and meanings of inputs or outputs."""
+    table = new_table(title, ("name", "unit", "meaning"), ())
+    for q in quantities:
+        table.add_row(q.name.replace("[", r"\["), q.unit, q.meaning)
+    return render(table)
+
+
+def parameter_records(parameters: Parameters) -> list[dict[str, Any]]:
+    """The same as records for JSON; a bound that is not there is null."""
+    records = []
+    for name, value in parameters.items():
+        q = PARAMETER_QUANTITIES[name]
+        lo, hi = (b if math.isfinite(b) else None for b in (q.lo, q.hi))
+        records.append(
+            {"name": name, "value": value, "unit": q.unit, "min": lo, "max": hi, "choices": list(q.choices),
+             "source": parameters.source(name), "meaning": q.meaning}
+        )  # fmt: skip
+    return records

@@ -1,0 +1,170 @@
+"""The commands `rlv-landing log`: what recorded logs hold, whether they can be repeated, rescue, export. They need no ROS 2."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from rlv_landing.commands.options import check_writable
+from rlv_landing.errors import LandingError
+
+from ..logs.libraries import require_log_readers
+
+WIDE: dict[str, Any] = {"max_content_width": 120}
+EXIT_DIFFERS = 1
+EXIT_CUT = 3
+LOG = click.argument("log", type=click.Path(path_type=Path))
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+def log() -> None:
+    """Look into recorded logs, repeat their runs, rescue what is cut, export. Needs no ROS 2.
+
+    LOG is a log's folder or its .mcap file (.mcap.part: not finished by its writer).
+    """
+    require_log_readers()
+
+
+@log.command(context_settings=WIDE)
+@LOG
+@click.option("--json", "as_json", is_flag=True, help="As JSON: times in s, forces in N, strokes in m, accelerations in m/s2.")
+def info(log: Path, as_json: bool) -> None:
+    """What a log holds: topics, parameters, outcome and peaks of the landing. LOG may be cut, or damaged.
+
+    \b
+    Examples:
+      rlv-landing log info logs/20260131T120000Z-2-2
+      rlv-landing log info run1_0.mcap --json
+
+    Exit codes: 0 complete, 2 no such log or not MCAP, 3 read but cut or damaged.
+    """
+    from ..logs.bag_reader import open_log
+    from ..logs.info import log_info
+
+    found = log_info(open_log(log))
+    click.echo(json.dumps(found.as_dict(), indent=2) if as_json else found.text())
+    if not found.complete:
+        tell_cut(log, found.damage)
+
+
+@log.command(context_settings=WIDE)
+@LOG
+@click.option("--fmu", type=click.Path(path_type=Path), metavar="FILE", help="Repeat with this FMU instead of the Python model.")
+@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+def verify(log: Path, fmu: Path | None, as_json: bool) -> None:
+    """Repeat the run from the log's own parameters and compare every field of every sample.
+
+    Bit for bit where model and machine are those that the log was computed by; else within 1 % of each field's largest value, for
+    the smallest difference grows with every contact. What is said tells which applies, and why.
+
+    \b
+    Examples:
+      rlv-landing log verify logs/20260131T120000Z-2-2
+      rlv-landing log verify logs/20260131T120000Z-2-2 --fmu build/RlvLanding.fmu
+
+    Exit codes: 0 the same, 1 differs, 2 the log cannot be repeated.
+    """
+    from ..logs.bag_reader import open_log
+    from ..logs.verify import verify as compare
+
+    found = compare(open_log(log), fmu)
+    click.echo(json.dumps(found.as_dict(), indent=2) if as_json else found.text())
+    if found.cut:
+        click.echo(f"warning: {log} is cut or damaged; what is there was compared", err=True)
+    if not found.same:
+        sys.exit(EXIT_DIFFERS)
+
+
+@log.command(context_settings=WIDE)
+@LOG
+@click.option("--output", type=click.Path(path_type=Path), metavar="FOLDER", help="Default: beside the log, its name with -recovered.")
+@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+def recover(log: Path, output: Path | None, as_json: bool) -> None:
+    """Restore a log whose writer was killed, or that was cut or damaged: all that is whole, into a new log that every reader opens.
+
+    \b
+    Examples:
+      rlv-landing log recover logs/20260131T120000Z-2-2
+      rlv-landing log recover run1_0.mcap.part --output rescued
+
+    Exit codes: 0 recovered, or nothing to recover; 2 nothing whole in it, or the new log cannot be written.
+    """
+    from ..logs.recover import recover as restore
+
+    found = restore(log, output)
+    if as_json:
+        click.echo(json.dumps(found.as_dict(), indent=2))
+    elif not found.folder:
+        click.echo(f"{log} is complete; nothing to recover")
+    else:
+        click.echo(found.text())
+
+
+@log.command(context_settings=WIDE)
+@LOG
+@click.argument("output", type=click.Path(path_type=Path), required=False)
+@click.option("--topics", multiple=True, metavar="NAME[,NAME...]", help="Columns of these topics only, full or relative names. Repeatable.")
+@click.option("--start", type=float, metavar="SECONDS", help="From this simulation time on.")
+@click.option("--end", type=float, metavar="SECONDS", help="Up to this simulation time.")
+@click.option("--every", type=float, metavar="SECONDS", help="Only the first instant in each of these. Default: all.")
+@click.option("--plot", type=click.Path(path_type=Path), metavar="FILE.png", help="Draw forces, strokes and acceleration.")
+@click.option("--force", is_flag=True, help="Overwrite files that exist.")
+def export(
+    log: Path, output: Path | None, topics: tuple[str, ...], start: float | None, end: float | None, every: float | None,
+    plot: Path | None, force: bool,
+) -> None:  # fmt: skip
+    """Write a landing to OUTPUT, .csv or .parquet: a row an instant, columns named as the FMU's variables, SI, the model's axes.
+
+    LOG may also be a rosbag2 recording of the same topics, MCAP or sqlite3; other topics in it are left aside.
+
+    \b
+    Examples:
+      rlv-landing log export logs/20260131T120000Z-2-2 landing.parquet
+      rlv-landing log export logs/20260131T120000Z-2-2 struts.csv --topics struts --every 0.01 --end 0.5
+      rlv-landing log export recording --plot landing.png
+
+    Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged.
+    """
+    from ..logs.bag_reader import open_log
+    from ..logs.export import ENDINGS, part, write_history
+    from ..logs.history import read_history
+
+    if output is None and plot is None:
+        raise LandingError("nothing to write; name a file OUTPUT.csv or OUTPUT.parquet, or --plot FILE.png")
+    if output is not None and output.suffix not in ENDINGS:
+        raise LandingError(f"{output} must end in {' or '.join(ENDINGS)}")
+    check_writable(output, output.suffix if output is not None else "", force)
+    check_writable(plot, ".png", force)
+    if plot is not None and topics:
+        raise LandingError("--plot needs every topic; leave --topics out")
+    reader = open_log(log)
+    history, notes = read_history(reader, [name.strip() for given in topics for name in given.split(",") if name.strip()])
+    history = part(history, start, end, every)
+    if output is not None:
+        write_history(history, output)
+        click.echo(f"{output}: {len(history)} instants from {history.time[0]:g} s to {history.time[-1]:g} s, {len(history.names)} columns")
+    if plot is not None:
+        from rlv_landing.figures.plots import save_overview
+
+        try:
+            save_overview(history, plot, log.name)
+        except OSError as e:
+            raise LandingError(f"{plot} cannot be written: {e.strerror or e}") from None
+        click.echo(f"picture: {plot}")
+    for note in notes:
+        click.echo(note, err=True)
+    if reader.cut:
+        tell_cut(log, reader.damage)
+
+
+def tell_cut(log: Path, damage: list[str] | None = None) -> None:
+    """Warns that not all of the log is there, and ends the command."""
+    if damage:
+        click.echo(f"warning: {log} is damaged ({damage[0]}); what is whole was read, `rlv-landing log recover` saves it", err=True)
+    else:
+        click.echo(f"warning: {log} is cut: its writer did not finish it; all up to there was read", err=True)
+    sys.exit(EXIT_CUT)

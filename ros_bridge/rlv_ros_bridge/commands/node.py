@@ -1,0 +1,121 @@
+"""The bridge's command `node`. What needs ROS 2, FMPy or MCAP is imported when it runs."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from rlv_landing.choices import parse_pairs
+from rlv_landing.errors import LandingError
+from rlv_landing.parameters import PARAMETER_QUANTITIES
+
+from ..ros.arguments import PASS_ON, split_ros_args
+
+EXIT_RECORDING_FAILED = 1
+
+
+@click.command(context_settings=PASS_ON)
+@click.option("--mode", metavar="2-2|1-2-1", help="Landing mode. Default: the parameters' own (2-2).")
+@click.option("--preset", metavar="NAME", help="Preset of parameters. Default: yue2022-figures.")
+@click.option("--parameters", "parameters_file", metavar="FILE.toml", help="Parameters from a TOML file, instead of a preset.")
+@click.option("--set", "changes", metavar="NAME=VALUE", multiple=True, help='Change a parameter (SI, or as "-2 deg"). Repeatable.')
+@click.option("--fmu", metavar="FILE", help="The FMU to step. Default: build/RlvLanding.fmu.")
+@click.option("--realtime-factor", type=float, metavar="X", help="1: real time (default); 0: as fast as possible.")
+@click.option("--step", "step_size", type=float, metavar="SECONDS", help="Communication step and publishing period. Default: 0.001.")
+@click.option("--stop-time", type=float, metavar="SECONDS", help="End of the landing. Default: 1.")
+@click.option("--record", metavar="FOLDER", help="Record to this folder, which must not exist yet.")
+@click.option("--log-root", metavar="FOLDER", default="logs", show_default=True, help="Record below this folder, as UTC time and mode.")
+@click.option("--no-record", is_flag=True, help="Do not record.")
+@click.option("--namespace", metavar="NAME", default="landing", show_default=True, help="Namespace of node and topics.")
+@click.option("--wait-for-subscribers", type=int, metavar="N", help="Start when N subscriptions on `struts` are matched. Default: 0.")
+@click.option("--wait-timeout", type=float, metavar="SECONDS", help="Longest wait for them. Default: 30.")
+@click.option("--managed", is_flag=True, help="Wait for lifecycle transitions by others, and stay, instead of landing at once.")
+@click.option("--report", is_flag=True, help="Afterwards print our peaks beside the paper's, and write landing.png beside the log.")
+@click.argument("ros_args", nargs=-1, type=click.UNPROCESSED)
+def node(
+    changes: tuple[str, ...],
+    record: str | None,
+    log_root: str,
+    no_record: bool,
+    namespace: str,
+    managed: bool,
+    report: bool,
+    ros_args: tuple[str, ...],
+    **given: Any,
+) -> None:
+    """Land once as a ROS 2 node: step the FMU, publish every sample, record to MCAP.
+
+    Topics below the namespace: struts, pose, rpy, twist, odom, accel, top/accel, leg_1..4/contact, markers; and /clock, /diagnostics.
+    SI units; x forward, y left, z up; stamps are simulation time.
+
+    \b
+    Examples:
+      rlv-landing node --mode 2-2 --report
+      rlv-landing node --preset yue2022-table2 --set vehicle.mass=200 --set "drop.tilt=-2 deg"
+      rlv-landing node --realtime-factor 0 --record /data/run1
+      rlv-landing node --no-record --ros-args --log-level warn
+      rlv-landing node --managed --ros-args --params-file landing.yaml
+
+    Exit codes: 0 landed, 1 recording failed on the way, 2 bad input, 130 or 143 after SIGINT or SIGTERM (the log is complete all the same).
+    """
+    from ..ros.setup import StopFlag, require_ros
+
+    with StopFlag() as stop:
+        passed_on = split_ros_args(ros_args)
+        if no_record and (record or report):
+            raise LandingError(f"--no-record and {'--record' if record else '--report'} contradict each other; leave one out")
+        where = {} if no_record else {"record": record} if record else {"log_root": log_root}
+        chosen = {name: value for name, value in given.items() if value is not None}
+        changed = parse_pairs(changes, PARAMETER_QUANTITIES, "parameter")
+        require_ros()
+        from ..node.land import land
+
+        if managed:
+            chosen["autostart"] = False
+        summary = land({**chosen, **where, **changed}, passed_on, stop, namespace)
+    if summary is None:
+        sys.exit(128 + stop.number if stop.number else 0)
+    _tell_landing(summary)
+    if report and summary.folder is not None:
+        _report(summary.folder)
+    if summary.signal:
+        sys.exit(128 + summary.signal)
+    if summary.recording_error:
+        sys.exit(EXIT_RECORDING_FAILED)
+
+
+def _tell_landing(summary: Any) -> None:
+    click.echo(
+        f"{summary.end}: {summary.samples} samples, {summary.simulated:g} s in {summary.wall:.2f} s (real-time factor "
+        f"{summary.realtime_factor:.2f}); {summary.late_steps} steps late; lateness {summary.median_lateness * 1e6:.0f} us in the median, "
+        f"{summary.p99_lateness * 1e6:.0f} us in 99 % of samples, {summary.largest_lateness * 1e3:.2f} ms at most"
+    )
+    if summary.lost:
+        click.echo(f"warning: {summary.lost:.2f} s of wall time were lost to stalls and not made good", err=True)
+    if summary.dropped:
+        click.echo(f"warning: {summary.dropped} messages were not published in time, and dropped; the log has them", err=True)
+    if not summary.acknowledged:
+        click.echo("warning: not every reliable subscriber has acknowledged all samples", err=True)
+    if summary.folder is not None:
+        click.echo(f"log: {summary.folder}")
+    if summary.recording_error:
+        click.echo(f"error: {summary.recording_error}; what was written can be read with `rlv-landing log info {summary.folder}`", err=True)
+
+
+def _report(folder: Path) -> None:
+    from rlv_landing.figures.plots import save_overview
+    from rlv_landing.tables.landing import comparison_table
+
+    from ..logs.history import history_of
+    from ..logs.reader import LogReader
+
+    reader = LogReader(folder)
+    history = history_of(reader)
+    mode = reader.metadata["mode"]
+    click.echo(comparison_table(history, mode))
+    picture = folder / "landing.png"
+    save_overview(history, picture, f"{reader.metadata.get('preset', '')}, mode {mode}")
+    click.echo(f"picture: {picture}")

@@ -1,0 +1,233 @@
+"""Steps the landing's FMU through FMPy: parameters in, all outputs out, cleaned up whatever happens."""
+
+from __future__ import annotations
+
+import ctypes
+import zipfile
+from collections.abc import Mapping, Sequence
+from operator import itemgetter
+from pathlib import Path
+from types import TracebackType
+from typing import Any, NoReturn
+
+from rlv_landing.errors import LandingError, unknown
+from rlv_landing.parameters import PARAMETER_QUANTITIES
+from rlv_landing.quantities import INPUT_NAMES, OUTPUT_NAMES, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES
+
+from .folder import FmuFolder
+
+MODEL_NAME = "RlvLanding"
+WARNING, FATAL = 1, 4
+# Arguments of the functions that are called at every step: component, then as FMI has them; arrays by their address.
+DO_STEP = (ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int)
+GET = (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
+
+
+class FmuRunner:
+    """One instance of the FMU at time 0, ready to step.
+
+    Args:
+        fmu_path: the `.fmu` file.
+        values: parameters by name, SI; those not given keep the FMU's defaults.
+
+    Raises:
+        LandingError: no such file, not an FMU, not this model's, an unknown parameter, or one that the FMU refuses (with its reason).
+    """
+
+    def __init__(self, fmu_path: str | Path, values: Mapping[str, float | str]) -> None:
+        self.path = Path(fmu_path)
+        self._messages: list[tuple[int, str]] = []
+        self._slave: Any = None
+        self._component: int | None = None
+        # Of each type of output: the getter's name, the getter, and its arguments, among them addresses of value references and of values.
+        self._reads: list[tuple[str, Any, tuple[Any, ...]]] = []
+        self._asked: list[Any] = []
+        self._reals: Any = None
+        # Outputs that are not real: where they belong in a sample, and where they are read to.
+        self._others: list[tuple[int, Any, int]] = []
+        self._folder: FmuFolder | None = None
+        description = read_description(self.path)
+        self.guid: str = description.guid
+        self.version: str = description.version or ""
+        self.made_by: str = description.generationTool or ""
+        references = {v.name: v.valueReference for v in description.modelVariables}
+        needed = (*OUTPUT_NAMES, *INPUT_NAMES, *PARAMETER_QUANTITIES, *(q.name for q in STATISTIC_QUANTITIES))
+        missing = [n for n in needed if n not in references]
+        if missing:
+            raise LandingError(f"{self.path} (version {self.version}) has no variable {missing[0]!r}; build it again with ./build_fmu.sh")
+        for name in values:
+            if name not in PARAMETER_QUANTITIES:
+                raise unknown("parameter", name, PARAMETER_QUANTITIES)
+        self._references = references
+        try:
+            self._instantiate(description, values)
+            self._prepare_outputs(references)
+        except BaseException:
+            self.close()
+            raise
+
+    def _instantiate(self, description: Any, values: Mapping[str, float | str]) -> None:
+        from fmpy import extract
+        from fmpy.fmi2 import FMU2Slave
+
+        self._folder = FmuFolder()
+        unpacked = str(self._folder.path)
+        extract(str(self.path), unzipdir=unpacked)
+        try:
+            slave = FMU2Slave(
+                guid=description.guid,
+                modelIdentifier=description.coSimulation.modelIdentifier,
+                unzipDirectory=unpacked,
+                instanceName=MODEL_NAME,
+            )
+            slave.instantiate(callbacks=self._make_callbacks(), loggingOn=True)
+        except Exception as e:
+            raise LandingError(f"{self.path} does not load here: {self._reason(str(e))}") from None
+        self._slave, self._component = slave, slave.component
+        self._do_step = self._function("fmi2DoStep", DO_STEP)
+        self._call("setupExperiment", startTime=0.0)
+        self._call("enterInitializationMode")
+        reals = {n: float(v) for n, v in values.items() if not isinstance(v, str)}
+        texts = {n: v for n, v in values.items() if isinstance(v, str)}
+        self._call("setReal", [self._references[n] for n in reals], list(reals.values()))
+        self._call("setString", [self._references[n] for n in texts], list(texts.values()))
+        self._call("exitInitializationMode")
+
+    def _function(self, name: str, arguments: Sequence[Any]) -> Any:
+        """The FMU's own function: FMPy's wrapper of it takes as long as reading twenty values."""
+        function = self._slave.dll[name]
+        function.argtypes, function.restype = arguments, ctypes.c_int
+        return function
+
+    def _prepare_outputs(self, references: Mapping[str, int]) -> None:
+        for kind, getter, c_type in (
+            ("real", "fmi2GetReal", ctypes.c_double),
+            ("integer", "fmi2GetInteger", ctypes.c_int),
+            ("boolean", "fmi2GetBoolean", ctypes.c_int),
+        ):
+            where = [i for i, q in enumerate(OUTPUT_QUANTITIES) if q.kind == kind]
+            asked = (ctypes.c_uint * len(where))(*(references[OUTPUT_NAMES[i]] for i in where))
+            got = (c_type * len(where))()
+            arguments = (self._component, ctypes.addressof(asked), len(where), ctypes.addressof(got))
+            self._reads.append((getter, self._function(getter, GET), arguments))
+            self._asked.append(asked)
+            if kind == "real":
+                self._reals = got
+            else:
+                self._others += [(i, got, j) for j, i in enumerate(where)]
+        self._others.sort(key=itemgetter(0))
+
+    def _make_callbacks(self) -> Any:
+        from fmpy import calloc, fmi2, free
+        from fmpy.logging import addLoggerProxy
+
+        def logger(_environment: Any, _instance: bytes, status: int, _category: bytes, message: bytes) -> None:
+            self._messages.append((status, (message or b"").decode("utf-8", "replace").strip()))
+
+        callbacks = fmi2.fmi2CallbackFunctions()
+        callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(logger)
+        callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(calloc)
+        callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
+        # FMI's logger is variadic, which ctypes cannot be: the proxy formats the message first.
+        addLoggerProxy(ctypes.byref(callbacks))
+        self._callbacks = callbacks
+        return callbacks
+
+    def _call(self, function: str, *args: Any, **kwargs: Any) -> None:
+        from fmpy.fmi1 import FMICallException
+
+        try:
+            getattr(self._slave, function)(*args, **kwargs)
+        except FMICallException as e:
+            self._fail(function, e.status, str(e))
+
+    def _fail(self, function: str, status: int, text: str = "") -> NoReturn:
+        if status == FATAL:
+            # After Fatal the instance must not be touched again, not even to be freed.
+            self._let_go()
+        raise LandingError(f"{self.path}: {function} failed: {self._reason(text or f'status {status}')}") from None
+
+    def _let_go(self) -> Any:
+        slave, self._slave = self._slave, None
+        self._component, self._reads, self._reals = None, [], None
+        return slave
+
+    def _reason(self, otherwise: str) -> str:
+        texts = list(dict.fromkeys(text for _, text in self._messages if text))
+        return " ".join("; ".join(texts or [otherwise]).split())
+
+    def step(self, k: int, h: float) -> None:
+        """Go from k*h to (k+1)*h [s]. The difference of the two, not h, is asked for, so that the time reached is (k+1)*h to the bit.
+
+        Raises LandingError, with the FMU's reason, where the step is refused.
+        """
+        now = k * h
+        self._messages.clear()
+        status = self._do_step(self._component, now, (k + 1) * h - now, True)
+        if status > WARNING:
+            self._fail("doStep", status)
+
+    def values(self) -> list[float]:
+        """All outputs at the present time, in the order of `OUTPUT_NAMES`. Raises LandingError where the FMU refuses."""
+        for name, get, arguments in self._reads:
+            status = get(*arguments)
+            if status > WARNING:
+                self._fail(name, status)
+        values: list[float] = self._reals[:]
+        # In ascending order, so that each comes to stand in its place.
+        for i, got, j in self._others:
+            values.insert(i, got[j])
+        return values
+
+    def statistics(self) -> dict[str, int]:
+        """What the integrator has done so far, by the FMU's names."""
+        names = [q.name for q in STATISTIC_QUANTITIES]
+        return dict(zip(names, self._slave.getInteger([self._references[name] for name in names])))
+
+    def set_inputs(self, inputs: Mapping[str, float]) -> None:
+        """Inputs by name, SI, from now on; others go on as they were. Raises LandingError for an unknown name."""
+        for name in inputs:
+            if name not in INPUT_NAMES:
+                raise unknown("input", name, INPUT_NAMES)
+        self._call("setReal", [self._references[name] for name in inputs], list(inputs.values()))
+
+    def close(self) -> None:
+        """Terminate and free the instance, and remove the folder that it was unpacked to. May be called again."""
+        slave = self._let_go()
+        folder, self._folder = self._folder, None
+        try:
+            if slave is not None:
+                try:
+                    slave.terminate()
+                finally:
+                    slave.freeInstance()
+        finally:
+            if folder is not None:
+                folder.remove()
+
+    def __enter__(self) -> FmuRunner:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+
+def read_description(path: Path) -> Any:
+    """FMPy's description of the FMU at `path`. Raises LandingError: no such file, not an FMU, not this model's, FMPy missing."""
+    if not path.is_file():
+        raise LandingError(f"there is no FMU {path}; build it with ./build_fmu.sh or name one by --fmu")
+    try:
+        from fmpy import read_model_description
+    except ImportError:
+        raise LandingError('FMPy is missing; install it with pip install "rlv-landing[ros]"') from None
+    try:
+        description = read_model_description(str(path))
+    except (zipfile.BadZipFile, KeyError):
+        raise LandingError(f"{path} is not an FMU: it is no zip archive with a modelDescription.xml in it") from None
+    except Exception as e:
+        raise LandingError(f"{path} is not an FMU that can be read: {' '.join(str(e).split())}") from None
+    if description.modelName != MODEL_NAME:
+        raise LandingError(f"{path} holds the model {description.modelName!r}, not {MODEL_NAME!r}; build ours with ./build_fmu.sh")
+    if description.fmiVersion != "2.0" or description.coSimulation is None:
+        raise LandingError(f"{path} is not an FMU for FMI 2.0 co-simulation; build ours with ./build_fmu.sh")
+    return description

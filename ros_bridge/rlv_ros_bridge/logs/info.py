@@ -1,0 +1,173 @@
+"""What a log holds, in a few lines."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from rlv_landing.core import Phase
+from rlv_landing.errors import LandingError
+from rlv_landing.history import History
+from rlv_landing.summary import OUTCOMES, summarise
+from rlv_landing.validation.reading import Reading
+
+from ..messages.topics import DIAGNOSTICS
+from .history import read_history
+from .reader import Decoder, LogReader
+
+# What `/diagnostics` calls the phases whose outcome `rlv_landing.summary` has words for.
+PHASES = tuple(phase.name.lower() for phase in Phase)
+
+
+@dataclass
+class TopicInfo:
+    """A topic's name, type, number of messages, and rate [Hz]."""
+
+    name: str
+    type: str
+    messages: int
+    rate: float
+
+
+@dataclass
+class LogInfo:
+    """A log's contents. Times in s, size in bytes, forces in N (negative: compression), strokes in m.
+
+    `landing` is what `rlv_landing.summary` makes of it, with `acceleration_peak` [m/s2], the largest at the top within 12 ms after each
+    leg's contact, where the log is long enough to tell; empty where the log holds no landing, for the reason `no_landing`.
+    """
+
+    path: str
+    size: int
+    complete: bool
+    damage: list[str]
+    start: float
+    duration: float
+    messages: int
+    topics: list[TopicInfo]
+    metadata: dict[str, str]
+    attachments: dict[str, int]
+    landing: dict[str, Any] = field(default_factory=dict)
+    no_landing: str = ""
+
+    def as_dict(self) -> dict[str, Any]:
+        """As plain values, for JSON."""
+        return asdict(self)
+
+    def text(self) -> str:
+        """As lines for people."""
+        m = self.metadata
+        state = "complete" if self.complete else "damaged" if self.damage else "cut: its writer did not finish it"
+        lines = [
+            f"log        {self.path}",
+            f"state      {state}",
+            f"size       {self.size / 1024:.0f} KiB",
+            f"start      {self.start:g} s (simulation time)",
+            f"duration   {self.duration:g} s",
+            f"messages   {self.messages}",
+        ]
+        known = {
+            "mode": m.get("mode"),
+            "preset": m.get("preset"),
+            "step": f"{m['step_size']} s" if "step_size" in m else None,
+            "recorded": m.get("recorded"),
+            "versions": ", ".join(f"{k.removeprefix('version_')} {v}" for k, v in m.items() if k.startswith("version_")),
+            "fmu": m.get("fmu_guid"),
+            "recovered": f"from {m['recovered_from']}" if "recovered_from" in m else None,
+            "outcome": self.landing.get("outcome"),
+        }
+        lines += [f"{key:<10} {value}" for key, value in known.items() if value]
+        lines += [f"{'carries' if i == 0 else '':<10} {n} ({size} bytes)" for i, (n, size) in enumerate(self.attachments.items())]
+        lines += [f"landing    {self.no_landing}"] if self.no_landing else []
+        lines += [f"{'damage' if i == 0 else '':<10} {text}" for i, text in enumerate(self.damage)]
+        if self.topics:
+            width = max(len(t.name) for t in self.topics)
+            lines += ["", f"{'topic':<{width}}  {'messages':>8}  {'Hz':>7}  type"]
+            lines += [f"{t.name:<{width}}  {t.messages:>8}  {t.rate:>7.1f}  {t.type}" for t in self.topics]
+        return "\n".join([*lines, *(self._peaks() if self.landing else [])])
+
+    def _peaks(self) -> list[str]:
+        head = ("leg", "contact", "main strut", "stroke", "auxiliary strut", "acceleration")
+        widths = (3, 8, 10, 9, 20, 13)
+        second = ("", "", "lowest", "largest", "lowest, highest", "after contact")
+        rows: list[tuple[str, ...]] = [head, second, *(_row(leg) for leg in self.landing["legs"])]
+        bottomed = ", ".join(map(str, self.landing.get("bottomed_out", [])))
+        return [
+            "",
+            *("  ".join(cell.rjust(width) for cell, width in zip(row, widths)) for row in rows),
+            f"largest axial acceleration at the top: {self.landing['top_axial_acceleration_max']:.1f} m/s2",
+            *([f"bottomed out: main strut of leg {bottomed}"] if bottomed else []),
+        ]
+
+
+def _row(leg: Mapping[str, Any]) -> tuple[str, ...]:
+    peak = leg.get("acceleration_peak")
+    return (
+        str(leg["leg"]),
+        "never" if leg["contact_time"] is None else f"{leg['contact_time']:.3f} s",
+        f"{leg['main_strut_force_min'] / 1e3:.2f} kN",
+        f"{leg['main_strut_stroke_max'] * 1e3:.1f} mm",
+        f"{leg['auxiliary_strut_force_min'] / 1e3:.2f}, {leg['auxiliary_strut_force_max'] / 1e3:.2f} kN",
+        "-" if peak is None else f"{peak:.1f} m/s2",
+    )
+
+
+def log_info(reader: LogReader) -> LogInfo:
+    """Reads the whole log and sums it up."""
+    counts: dict[str, int] = {}
+    first, last = None, 0
+    phase = ""
+    decode = Decoder(reader)
+    for message in reader.messages():
+        counts[message.topic] = counts.get(message.topic, 0) + 1
+        first = message.log_time if first is None else min(first, message.log_time)
+        last = max(last, message.log_time)
+        if message.topic == DIAGNOSTICS.name and reader.channels[message.topic].type_name == DIAGNOSTICS.type_name:
+            # Somebody else's may come without a definition.
+            with suppress(LandingError):
+                phase = _phase(decode(message)) or phase
+    start = first or 0
+    duration = (last - start) / 1e9
+    topics = [
+        TopicInfo(c.topic, c.type_name, counts.get(c.topic, 0), max(0, counts.get(c.topic, 0) - 1) / duration if duration > 0.0 else 0.0)
+        for c in reader.channels.values()
+    ]
+    found = LogInfo(
+        path=str(reader.path),
+        size=reader.size,
+        complete=not reader.cut,
+        damage=list(reader.damage),
+        start=start / 1e9,
+        duration=duration,
+        messages=sum(counts.values()),
+        topics=topics,
+        metadata=dict(reader.metadata),
+        attachments={name: len(data) for name, data in reader.attachments.items()},
+    )
+    try:
+        found.landing = _landing(read_history(reader)[0], phase)
+    except LandingError as e:
+        found.no_landing = str(e)
+    return found
+
+
+def _landing(history: History, phase: str) -> dict[str, Any]:
+    landing = summarise(history)
+    if phase in PHASES:
+        landing["outcome"] = OUTCOMES[PHASES.index(phase)]
+    try:
+        reading = Reading(history)
+    except LandingError:
+        return landing
+    for leg in landing["legs"]:
+        peak = reading.acceleration_peak(leg["leg"])
+        leg["acceleration_peak"] = peak if peak == peak else None
+    return landing
+
+
+def _phase(message: Any) -> str:
+    """The landing's phase among what a message of `/diagnostics` tells; nothing where it comes from somebody else."""
+    values = [pair for status in message.status if status.hardware_id.startswith("rlv-landing") for pair in status.values]
+    return next((str(pair.value) for pair in values if pair.key == "phase"), "")

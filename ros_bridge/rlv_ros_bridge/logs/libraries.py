@@ -1,0 +1,15 @@
+"""The libraries that reading logs needs."""
+
+from __future__ import annotations
+
+from rlv_landing.errors import LandingError
+
+
+def require_log_readers() -> None:
+    """Raises LandingError, saying what to install, unless the libraries that read logs are there."""
+    try:
+        import mcap  # noqa: F401
+        import mcap_ros2  # noqa: F401
+        import rosbags  # noqa: F401
+    except ImportError as e:
+        raise LandingError(f'reading logs needs mcap and rosbags ({e}); install them with pip install "rlv-landing[mcap]"') from None

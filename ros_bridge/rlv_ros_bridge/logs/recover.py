@@ -1,0 +1,198 @@
+"""Restores what is whole of a cut or damaged log into a new one that every reader opens."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from rlv_landing.errors import LandingError
+
+from .bag_writer import BagTopic, BagWriter
+from .mcap_stream import RecordStream
+from .reader import Definitions, bare_name, check_file, find_files
+
+# Our writer makes these anew.
+REMADE = "rosbag2"
+
+
+@dataclass
+class Recovery:
+    """What was saved: messages, and their first and last time [s]; what was not: bytes that could not be read, messages whose topic is
+    not known any more, `stop_time` [s] up to which the run was to go (if the log says so), and what was wrong, a sentence each.
+    """
+
+    path: str
+    folder: str = ""
+    messages: int = 0
+    start: float = 0.0
+    end: float = 0.0
+    stop_time: float | None = None
+    lost_bytes: int = 0
+    unknown_topic: int = 0
+    finished: bool = True
+    damage: list[str] = field(default_factory=list)
+
+    @property
+    def complete(self) -> bool:
+        """Whether nothing was wrong with the log."""
+        return self.finished and not self.damage and not self.unknown_topic
+
+    def as_dict(self) -> dict[str, Any]:
+        """As plain values, for JSON."""
+        return asdict(self)
+
+    def text(self) -> str:
+        """As lines for people."""
+        lines = [f"saved    {self.messages} messages from {self.start:g} s to {self.end:g} s, all that is whole: {self.folder}"]
+        lines += [f"damage   {text}" for text in self.damage]
+        if self.unknown_topic:
+            lines.append(f"missing  {self.unknown_topic} messages whose topic is not known any more")
+        if self.lost_bytes:
+            lines.append(f"missing  {self.lost_bytes} bytes that make no whole chunk")
+        if not self.finished and self.stop_time is not None and self.end < self.stop_time:
+            lines.append(f"missing  the span from {self.end:g} s on, at most to the stop time of {self.stop_time:g} s")
+        elif not self.finished:
+            lines.append(f"missing  what was recorded after {self.end:g} s, if anything")
+        return "\n".join(lines)
+
+
+def recovered_folder(path: Path) -> Path:
+    """Where a log is recovered to if nothing else is said: beside it, with `-recovered` added."""
+    path = path.absolute()
+    return path.with_name((bare_name(path) if path.is_file() else path.name) + "-recovered")
+
+
+def recover(path: Path, folder: Path | None = None) -> Recovery:
+    """Copies every whole, checked record of the log at `path` into a new log `folder` (default: `recovered_folder`).
+
+    A log that is complete, `metadata.yaml` included, is left as it is: `folder` is empty in what is returned.
+    Raises LandingError: no log, nothing whole in it, the folder exists, or it cannot be written (nothing is left behind then).
+    """
+    files = find_files(path)
+    for file in files:
+        check_file(file)
+    found = Recovery(str(path))
+    if _is_complete(path, files):
+        return found
+    target = folder if folder is not None else recovered_folder(path)
+    try:
+        writer = BagWriter(target)
+    except OSError as e:
+        raise LandingError(f"log folder {target} cannot be written: {e.strerror or e}; name another") from None
+    try:
+        copy = _Copy(writer, found)
+        for file in files:
+            copy.file(file)
+        if not found.messages:
+            raise LandingError(f"{path} holds no whole chunk; there is nothing to recover")
+        copy.finish()
+    except BaseException as e:
+        writer.discard()
+        if isinstance(e, OSError):
+            raise LandingError(f"log folder {target} cannot be written: {e.strerror or e}; make room, or name another") from None
+        raise
+    found.folder = str(target)
+    return found
+
+
+def _is_complete(path: Path, files: list[Path]) -> bool:
+    if not (path.is_dir() and (path / "metadata.yaml").is_file()):
+        return False
+    for file in files:
+        stream = RecordStream(file)
+        for _ in stream:
+            pass
+        if not stream.finished or stream.damage:
+            return False
+    return True
+
+
+class _Copy:
+    """Copies the records of one log's files through one writer, numbering schemas and channels anew."""
+
+    def __init__(self, writer: BagWriter, found: Recovery) -> None:
+        self._writer = writer
+        self._found = found
+        self._schemas: dict[tuple[str, str, bytes], int] = {}
+        self._channels: dict[tuple[str, int], tuple[int, BagTopic]] = {}
+        self._ours: dict[str, str] = {}
+
+    def file(self, file: Path) -> None:
+        """Copies what is whole in `file`."""
+        from mcap.records import Attachment, Message, Metadata
+
+        stream = RecordStream(file)
+        definitions = Definitions(file)
+        known: dict[int, tuple[int, BagTopic]] = {}
+        mcap = self._writer.mcap
+        for record in stream:
+            if isinstance(record, Message):
+                if record.channel_id not in known:
+                    channel, schema = definitions.of(record.channel_id)
+                    if channel is None:
+                        self._found.unknown_topic += 1
+                        continue
+                    known[record.channel_id] = self._channel(channel, schema)
+                number, topic = known[record.channel_id]
+                mcap.add_message(number, record.log_time, record.data, record.publish_time, record.sequence)
+                topic.count += 1
+                self._writer.bag.span.add(record.log_time)
+            elif isinstance(record, Attachment):
+                mcap.add_attachment(record.create_time, record.log_time, record.name, record.media_type, record.data)
+            elif isinstance(record, Metadata):
+                if record.name == "rlv_landing":
+                    self._ours.update(record.metadata)
+                elif record.name != REMADE:
+                    mcap.add_metadata(record.name, record.metadata)
+            elif definitions.add(record):
+                known.setdefault(record.id, self._channel(*definitions.of(record.id)))
+        self._found.finished = self._found.finished and stream.finished
+        self._found.lost_bytes += stream.lost
+        self._found.damage += [f"{file.name}, {text}" for text in stream.damage]
+        self._found.messages = sum(t.count for t in self._writer.bag.topics)
+
+    def finish(self) -> None:
+        """Writes metadata and the end."""
+        found, span = self._found, self._writer.bag.span
+        found.start, found.end = (span.first or 0) / 1e9, span.last / 1e9
+        try:
+            found.stop_time = float(self._ours["stop_time"])
+        except (KeyError, ValueError):
+            found.stop_time = None
+        whole = "" if found.complete else found.text().split("\n", 1)[-1]
+        self._writer.mcap.add_metadata("rlv_landing", {**self._ours, "recovered_from": Path(found.path).name, "recovery": whole})
+        self._writer.finish()
+
+    def _channel(self, channel: Any, schema: Any) -> tuple[int, BagTopic]:
+        number = self._schema(schema)
+        key = (channel.topic, number)
+        if key not in self._channels:
+            metadata = channel.metadata
+            made = self._writer.mcap.register_channel(channel.topic, channel.message_encoding, number, metadata)
+            qos = _profiles(metadata.get("offered_qos_profiles", ""))
+            topic = BagTopic(channel.topic, schema.name if schema is not None else "", qos, metadata.get("topic_type_hash", ""))
+            self._writer.bag.topics.append(topic)
+            self._channels[key] = (made, topic)
+        return self._channels[key]
+
+    def _schema(self, schema: Any) -> int:
+        if schema is None:
+            return 0
+        key = (schema.name, schema.encoding, schema.data)
+        if key not in self._schemas:
+            self._schemas[key] = self._writer.mcap.register_schema(*key)
+        return self._schemas[key]
+
+
+@cache
+def _profiles(text: str) -> list[dict[str, Any]]:
+    """The QoS profiles that a channel's metadata hold; none where they cannot be read."""
+    import yaml
+
+    try:
+        found = yaml.safe_load(text)
+    except yaml.YAMLError:
+        return []
+    return [dict(p) for p in found] if isinstance(found, list) and all(isinstance(p, dict) for p in found) else []

@@ -1,0 +1,96 @@
+"""The vehicle's wireframe as markers: body line, struts, footpads, in the frame `map`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import cos, sin
+from typing import Any
+
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import Point
+from rclpy.serialization import serialize_message
+from std_msgs.msg import ColorRGBA
+from visualization_msgs.msg import Marker, MarkerArray
+
+from rlv_landing.parameters import Parameters
+from rlv_landing.quantities import LEGS, OUTPUT_NAMES
+
+from .axes import from_ros, to_ros
+from .legs import around
+from .samples import columns, set_stamp, set_vector
+from .topics import WORLD_FRAME
+from .wire import PROBE_STAMP, WireFrame, probe_numbers
+
+# name, marker type, width [m], colour
+STYLES = (
+    ("body", Marker.LINE_LIST, 0.08, (0.75, 0.75, 0.80)),
+    ("main_struts", Marker.LINE_LIST, 0.05, (0.95, 0.55, 0.15)),
+    ("auxiliary_struts", Marker.LINE_LIST, 0.03, (0.25, 0.55, 0.90)),
+    ("footpads", Marker.SPHERE_LIST, 0.12, (0.30, 0.75, 0.35)),
+)
+
+
+class Wireframe:
+    """The vehicle's lines and footpads, made once and moved with each sample."""
+
+    def __init__(self, parameters: Parameters) -> None:
+        vehicle, main, auxiliary = parameters.vehicle, parameters.main_strut, parameters.auxiliary_strut
+        self._top = (0.0, vehicle.top_height, 0.0)
+        self._bottom = (0.0, -max(main.joint_depth, auxiliary.joint_depth), 0.0)
+        # The paper's axes, as the sample's.
+        self._main = [from_ros(*j) for j in around(parameters.drop.mode, main.joint_radius, -main.joint_depth)]
+        self._auxiliary = [from_ros(*j) for j in around(parameters.drop.mode, auxiliary.joint_radius, -auxiliary.joint_depth)]
+        self._body = columns("body.x", "body.y", "body.pitch")
+        self._feet = [columns(*(f"leg[{leg}].footpad.{axis}" for axis in "xyz")) for leg in LEGS]
+        self._stamp = Time()
+        self._points: list[list[Point]] = []
+        self._frame: WireFrame | None = None
+        self.message = MarkerArray()
+        for i, (name, kind, width, colour) in enumerate(STYLES):
+            self.message.markers.append(self._marker(i, name, kind, width, colour))
+
+    def _marker(self, i: int, name: str, kind: int, width: float, colour: tuple[float, float, float]) -> Any:
+        marker = Marker(ns=name, id=i, type=kind, action=Marker.ADD, color=ColorRGBA(r=colour[0], g=colour[1], b=colour[2], a=1.0))
+        marker.header.frame_id = WORLD_FRAME
+        marker.header.stamp = self._stamp
+        set_vector(marker.scale, (width, width, width) if kind == Marker.SPHERE_LIST else (width, 0.0, 0.0))
+        count = 2 if name == "body" else len(LEGS) if kind == Marker.SPHERE_LIST else 2 * len(LEGS)
+        points = [Point() for _ in range(count)]
+        marker.points = points
+        self._points.append(points)
+        return marker
+
+    def numbers(self, values: Sequence[float]) -> list[float]:
+        """The points of the sample `values` in the frame `map`, x, y, z after each other: body, main and auxiliary joints, footpads."""
+        x, y, pitch = (values[i] for i in self._body)
+        s, c = sin(pitch), cos(pitch)
+        found: list[float] = []
+        for bx, by, bz in (self._bottom, self._top, *self._main, *self._auxiliary):
+            found += to_ros(x + c * bx + s * by, y - s * bx + c * by, bz)
+        for foot in self._feet:
+            found += to_ros(*(values[i] for i in foot))
+        return found
+
+    def fill(self, nanoseconds: int, values: Sequence[float]) -> MarkerArray:
+        """The markers of the sample `values` at the simulation time `nanoseconds`."""
+        set_stamp(self._stamp, nanoseconds)
+        numbers = iter(self.numbers(values))
+        points = list(zip(numbers, numbers, numbers))
+        legs = len(LEGS)
+        body, main, auxiliary, feet = self._points
+        joints, footpads = points[len(body) :], points[-legs:]
+        for point, place in zip(body, points):
+            set_vector(point, place)
+        for leg, foot in enumerate(footpads):
+            set_vector(main[2 * leg], joints[leg])
+            set_vector(auxiliary[2 * leg], joints[legs + leg])
+            for point in (main[2 * leg + 1], auxiliary[2 * leg + 1], feet[leg]):
+                set_vector(point, foot)
+        return self.message
+
+    def pack(self, nanoseconds: int, values: Sequence[float]) -> bytes:
+        """The message of `fill`, serialised: the same bytes, at a fraction of the cost."""
+        if self._frame is None:
+            probe = probe_numbers(len(OUTPUT_NAMES))
+            self._frame = WireFrame([serialize_message(self.fill(PROBE_STAMP, probe))], self.numbers(probe))
+        return self._frame.pack(nanoseconds, self.numbers(values))

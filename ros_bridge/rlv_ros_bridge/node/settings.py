@@ -1,0 +1,170 @@
+"""The node's settings: one table of what they are called, what they mean and what they may be. Needs no ROS 2."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import datetime, timezone
+from itertools import count
+from math import inf, isfinite
+from pathlib import Path
+from typing import Any, Literal
+
+from rlv_landing import Parameters
+from rlv_landing.errors import LandingError
+from rlv_landing.presets import DEFAULT_PRESET
+
+from ..messages.qos import PROFILES
+from ..messages.topics import CLOCK, OCCASIONAL, SAMPLED, Topic
+
+# When a setting may be changed: at the start only, while the node does not land, or at any time.
+When = Literal["start", "paused", "always"]
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A setting of the node: its default (whose type is its own), meaning, bounds or choices, and when it may be changed."""
+
+    default: Any
+    meaning: str
+    lo: float = 0.0
+    hi: float = 0.0
+    when: When = "paused"
+    choices: tuple[str, ...] = ()
+
+
+def downsampling(topic: Topic) -> str:
+    """The setting that thins out `topic`."""
+    return f"publish_every.{topic.name.strip('/').replace('/', '_')}"
+
+
+PUBLISHED: tuple[Topic, ...] = (*SAMPLED, *OCCASIONAL, CLOCK)
+SETTINGS: dict[str, Setting] = {
+    "fmu": Setting("build/RlvLanding.fmu", "the FMU to step"),
+    "preset": Setting("", f"preset of parameters; empty: {DEFAULT_PRESET}", when="start"),
+    "mode": Setting("", "landing mode 2-2 or 1-2-1; empty: the parameters' own", when="start"),
+    "parameters_file": Setting("", "TOML file of parameters, instead of a preset", when="start"),
+    "realtime_factor": Setting(1.0, "simulated seconds per second of wall time; 1 is real time, 0 as fast as possible", 0.0, 1e3, "always"),
+    "step_size": Setting(1e-3, "communication step and publishing period [s], a whole number of nanoseconds", 1e-6, 1.0),
+    "stop_time": Setting(1.0, "end of the landing [s]", 0.0, 3600.0),
+    "step_count": Setting(1, "steps that one call of ~/step does", 1.0, 1e6, "always"),
+    "input_timeout": Setting(
+        0.5,
+        "wall time [s] after which a silent external_wrench is taken back to 0 and a silent ground stands still; 0: never",
+        0.0,
+        3600.0,
+        "always",
+    ),
+    "qos": Setting("telemetry", "quality of service of what is published at every step", when="start", choices=tuple(PROFILES)),
+    "clock": Setting(True, "whether /clock is published; of several nodes in one ROS domain one should", when="start"),
+    "autostart": Setting(True, "land at once and end afterwards; else wait for lifecycle transitions, and stay", when="start"),
+    "record": Setting("", "folder to record to, which must not exist; empty: no recording"),
+    "log_root": Setting("", "record to a new folder below this one, named by UTC time and mode, where `record` is empty"),
+    "wait_for_subscribers": Setting(0, "subscriptions on `struts` to wait for before the landing starts", 0.0, 1000.0),
+    "wait_timeout": Setting(30.0, "longest wait for them [s]", 0.0, 86400.0),
+    **{
+        downsampling(t): Setting(0, f"publish one sample of so many on {t.name}; 0: {'its own rate' if t.period else 'each'}", 0.0, 1e9)
+        for t in PUBLISHED
+    },
+}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a landing is done with. Times in s; `step_ns` is the step in nanoseconds, from which all stamps are counted.
+
+    `every` says of how many samples one is published, by topic.
+    """
+
+    fmu: Path
+    parameters: Parameters
+    preset: str
+    realtime_factor: float
+    step_size: float
+    step_ns: int
+    stop_time: float
+    record: str
+    log_root: str
+    wait_for_subscribers: int
+    wait_timeout: float
+    every: Mapping[Topic, int] = field(default_factory=dict)
+
+    @property
+    def mode(self) -> str:
+        """The landing mode."""
+        return self.parameters.drop.mode
+
+    @property
+    def steps(self) -> int:
+        """Steps from 0 to the stop time; one more sample than steps is published."""
+        return int(self.stop_time / self.step_size * (1.0 + 1e-12) + 1e-9)
+
+    def folder(self) -> Path | None:
+        """A folder to record to that does not exist yet, or None. A second landing into `record` gets a number of its own."""
+        if self.record:
+            return Path(self.record)
+        if not self.log_root:
+            return None
+        return unused(Path(self.log_root) / f"{datetime.now(timezone.utc):%Y%m%dT%H%M%SZ}-{self.mode}")
+
+
+def unused(folder: Path) -> Path:
+    """`folder`, or the first of `folder`-2, -3, ... that does not exist."""
+    names = (folder if n == 1 else folder.with_name(f"{folder.name}-{n}") for n in count(1))
+    return next(f for f in names if not f.exists())
+
+
+def make_settings(values: Mapping[str, Any], parameters: Parameters) -> Settings:
+    """The settings from `values` by name, each checked. Raises LandingError where two of them do not go together."""
+    step_ns = whole_nanoseconds(values["step_size"])
+    if values["stop_time"] < values["step_size"]:
+        raise LandingError(f"stop_time = {values['stop_time']:g} s is below the step of {values['step_size']:g} s; land for longer")
+    own = {t: max(1, round(t.period / values["step_size"])) for t in PUBLISHED}
+    return Settings(
+        fmu=Path(values["fmu"]),
+        parameters=parameters,
+        preset=values["parameters_file"] or values["preset"] or DEFAULT_PRESET,
+        realtime_factor=values["realtime_factor"],
+        step_size=values["step_size"],
+        step_ns=step_ns,
+        stop_time=values["stop_time"],
+        record=values["record"],
+        log_root=values["log_root"],
+        wait_for_subscribers=values["wait_for_subscribers"],
+        wait_timeout=values["wait_timeout"],
+        every={t: values[downsampling(t)] or own[t] for t in PUBLISHED},
+    )
+
+
+def check_setting(name: str, value: Any) -> Any:
+    """`value` as the setting `name` takes it. Raises LandingError: wrong type, not finite, out of bounds, not one of its choices."""
+    s = SETTINGS[name]
+    if isinstance(s.default, bool):
+        if not isinstance(value, bool):
+            raise LandingError(f"{name} = {value!r} is neither true nor false ({s.meaning})")
+        return value
+    if isinstance(s.default, str):
+        if not isinstance(value, str):
+            raise LandingError(f"{name} = {value!r} is not a text ({s.meaning}); put it in quotes")
+        if s.choices and value not in s.choices:
+            raise LandingError(f"{name} = {value!r} is not one of {', '.join(s.choices)} ({s.meaning})")
+        return value
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise LandingError(f"{name} = {value!r} is not a number ({s.meaning})")
+    if not (isfinite(value) and s.lo <= value <= s.hi):
+        raise LandingError(f"{name} = {value:g} is outside [{s.lo:g}, {s.hi:g}] ({s.meaning})")
+    if isinstance(s.default, int) and value != int(value):
+        raise LandingError(f"{name} = {value:g} is not a whole number ({s.meaning})")
+    if name == "step_size":
+        whole_nanoseconds(value)
+    return type(s.default)(value)
+
+
+def whole_nanoseconds(step: float) -> int:
+    """The step in nanoseconds. Raises LandingError unless it is above 0 and a whole number of them: stamps are counted."""
+    if not 0.0 < step < inf:
+        raise LandingError(f"step_size = {step:g} s must be finite and above 0 s")
+    nanoseconds = round(step * 1e9)
+    if nanoseconds < 1 or nanoseconds / 1e9 != step:
+        raise LandingError(f"step_size = {step!r} s is not a whole number of nanoseconds, which stamps are counted in; round it to 1e-9 s")
+    return nanoseconds
