@@ -1,4 +1,6 @@
-"""The landing by hand in C (`yardstick.c`), compiled here by gcc: how fast the machine does what the compiled core does."""
+"""The landing by hand in C (`yardstick.c`), compiled here by gcc: how fast the machine does what
+the compiled core does.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,8 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent / "fmu_src"))
 from fmu_build.core_source import COMPILE_ARGS  # noqa: E402
 
-# of the core's `BodyModel` and `LegModel`, which are the same for all legs here, in the order of the C struct that is made from them
+# of the core's `BodyModel` and `LegModel`, which are the same for all legs here, in the order of
+# the C struct that is made from them
 PARAMETERS = (
     "m_u", "I_u", "m_d", "at_joint", "La", "Lb", "Lm0", "A1", "A2", "V10", "V20", "Pa", "rho0", "x_air", "n_air", "B0", "kB",
     "CdAo_c", "CdAo_r", "dP_lam", "Fc", "kp", "Fs", "v_str", "v_sm", "s_max", "K_stop", "c_stop", "Lc", "Ld", "Ls0", "Ka", "ek", "Ca",
@@ -40,7 +43,19 @@ def library(options: tuple[str, ...]) -> CDLL:
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as folder:
         target = Path(folder) / "yardstick.so"
         names = f"-DPARAMETERS={','.join(PARAMETERS)}"
-        command = ["gcc", "-std=gnu11", "-Wall", "-Wextra", "-Werror", *options, names, "-shared", "-fPIC", "-o", str(target)]
+        command = [
+            "gcc",
+            "-std=gnu11",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            *options,
+            names,
+            "-shared",
+            "-fPIC",
+            "-o",
+            str(target),
+        ]
         subprocess.run([*command, str(HERE / "yardstick.c"), "-lm"], check=True)
         loaded = CDLL(str(target))
     doubles = POINTER(c_double)
@@ -62,7 +77,8 @@ def doubles(values: Any) -> Any:
 
 
 class Yardstick:
-    """One landing in C, from the start of a landing with the same parameters; `inputs` by name go on at the rates `rates` [unit/s].
+    """One landing in C, from the start of a landing with the same parameters; `inputs` by name go
+    on at the rates `rates` [unit/s].
 
     Raises MemoryError without memory, ArithmeticError where the step size has collapsed.
     """
@@ -75,7 +91,12 @@ class Yardstick:
         inputs: Mapping[str, float] | None = None,
         rates: Mapping[str, float] | None = None,
     ) -> None:
-        solver, body, legs, places = new_solver(parameters, rtol), body_model(parameters), leg_models(parameters), leg_places(parameters)
+        solver, body, legs, places = (
+            new_solver(parameters, rtol),
+            body_model(parameters),
+            leg_models(parameters),
+            leg_places(parameters),
+        )
         groups = [x for place, leg in zip(places, legs) for x in (*place, leg.share_1)]
         numbers = {**legs[0]._asdict(), **body._asdict()}
         self.n, self.controlled = solver.n, solver.system.controlled
@@ -83,9 +104,20 @@ class Yardstick:
         self._landing = self._library.landing(
             doubles([numbers[name] for name in PARAMETERS]),
             len(legs),
-            *(doubles(a) for a in (groups, list(solver.y), list(solver.system.scale), list(solver.system.relative))),
+            *(
+                doubles(a)
+                for a in (
+                    groups,
+                    list(solver.y),
+                    list(solver.system.scale),
+                    list(solver.system.relative),
+                )
+            ),
             rtol,
-            *(doubles([(values or {}).get(name, 0.0) for name in INPUT_NAMES]) for values in (inputs, rates)),
+            *(
+                doubles([(values or {}).get(name, 0.0) for name in INPUT_NAMES])
+                for values in (inputs, rates)
+            ),
         )
         if not self._landing:
             raise MemoryError("no memory for a landing in C")
@@ -116,7 +148,10 @@ class Yardstick:
 
 
 def core_states(solver: Solver, times: Any) -> np.ndarray:
-    """The states of the core at `times` [s], one a row. Raises ArithmeticError where the step size has collapsed."""
+    """The states of the core at `times` [s], one a row.
+
+    Raises ArithmeticError where the step size has collapsed.
+    """
     rows, one = np.empty((len(times), solver.n)), array("d", bytes(8 * solver.n))
     for row, t in zip(rows, times):
         if not solver.advance(t):
@@ -127,8 +162,10 @@ def core_states(solver: Solver, times: Any) -> np.ndarray:
 
 
 def disagreement(solver: Solver, yardstick: Yardstick, until: float) -> float:
-    """Largest difference of any state, less the energy integrals, every millisecond up to `until` [s], relative to that state's largest
-    value; infinite where the two have not taken the same numbers of steps, rejected steps and right-hand sides."""
+    """Largest difference of any state, less the energy integrals, every millisecond up to `until`
+    [s], relative to that state's largest value; infinite where the two have not taken the same
+    numbers of steps, rejected steps and right-hand sides.
+    """
     times = 1e-3 * np.arange(round(until / 1e-3) + 1)
     n = yardstick.controlled
     core, c = (states[:, :n] for states in (core_states(solver, times), yardstick.states(times)))

@@ -1,7 +1,9 @@
-"""What is C in the compiled core: the declarations that Cython reads, made from the kernels' annotations.
+"""What is C in the compiled core: the declarations that Cython reads, made from the kernels'
+annotations.
 
-A record becomes a struct, an annotated function a C function. A method is for C alone where its name begins with `_`, or where it takes or
-gives an address or a record; the others can be called from Python, too.
+A record becomes a struct, an annotated function a C function. A method is for C alone where its
+name begins with `_`, or where it takes or gives an address or a record; the others can be called
+from Python, too.
 """
 
 from __future__ import annotations
@@ -18,17 +20,32 @@ DATA = """
 cdef inline double* data(double[::1] numbers) noexcept nogil:
     return &numbers[0]
 """
-TYPES = {"float": "double", "int": "int", "bool": "bint", "None": "void", "Doubles": "double*", "Buffer": "double[::1]"}
+TYPES = {
+    "float": "double",
+    "int": "int",
+    "bool": "bint",
+    "None": "void",
+    "Doubles": "double*",
+    "Buffer": "double[::1]",
+}
 
 
 def declarations(core: Path, sources: list[Path]) -> str:
     """The `.pxd` of the joined kernels `sources` of the `core`."""
     records = ast.parse((core / "records.py").read_text())
     access = ast.parse((core / "access.py").read_text())
-    names = {node.name for node in records.body if isinstance(node, ast.ClassDef) and is_record(node)}
+    names = {
+        node.name for node in records.body if isinstance(node, ast.ClassDef) and is_record(node)
+    }
     modules = [ast.parse(path.read_text()) for path in sources]
     types = Types(names, _accessed(access), _overridden(modules))
-    parts = [MATH, *_records(records, types), DATA, *_constants(records, access), *_access(access, types)]
+    parts = [
+        MATH,
+        *_records(records, types),
+        DATA,
+        *_constants(records, access),
+        *_access(access, types),
+    ]
     for module in modules:
         parts += types.module(module)
     return "".join(parts)
@@ -52,19 +69,26 @@ def defined_names(tree: ast.Module) -> Iterator[str]:
 
 def _accessed(access: ast.Module) -> set[str]:
     """The records that `access.py` reads from arrays."""
-    return {ast.unparse(node.returns) for node in access.body if isinstance(node, ast.FunctionDef) and node.returns}
+    return {
+        ast.unparse(node.returns)
+        for node in access.body
+        if isinstance(node, ast.FunctionDef) and node.returns
+    }
 
 
 def _overridden(modules: list[ast.Module]) -> set[str]:
     """The names of methods that more than one class has."""
     owners = [node for module in modules for node in module.body if isinstance(node, ast.ClassDef)]
-    counted = Counter(node.name for owner in owners for node in owner.body if isinstance(node, ast.FunctionDef))
+    counted = Counter(
+        node.name for owner in owners for node in owner.body if isinstance(node, ast.FunctionDef)
+    )
     return {name for name, count in counted.items() if count > 1}
 
 
 class Types:
-    """C's names for the kernels' annotations; `records` are the names of the records, `accessed` of those that stand in arrays,
-    `overridden` those of methods that a subclass may replace."""
+    """C's names for the kernels' annotations; `records` are the names of the records, `accessed` of
+    those that stand in arrays, `overridden` those of methods that a subclass may replace.
+    """
 
     def __init__(self, records: set[str], accessed: set[str], overridden: set[str]) -> None:
         self.records = records
@@ -72,25 +96,37 @@ class Types:
         self.overridden = overridden
 
     def name(self, annotation: ast.expr | None) -> str:
-        """C's name of the type that `annotation` means. Raises ValueError where there is no annotation."""
+        """C's name of the type that `annotation` means.
+
+        Raises ValueError where there is no annotation.
+        """
         if annotation is None:
             raise ValueError("a kernel's parameter or result has no annotation; give it one")
         text = ast.unparse(annotation)
         if isinstance(annotation, ast.Subscript):
             if text.startswith("Records["):
                 return TYPES["Buffer"]
-            elements = annotation.slice.elts if isinstance(annotation.slice, ast.Tuple) else [annotation.slice]
+            elements = (
+                annotation.slice.elts
+                if isinstance(annotation.slice, ast.Tuple)
+                else [annotation.slice]
+            )
             return f"({', '.join(map(self.name, elements))})"
         return TYPES.get(text, text)
 
     def parameter(self, annotation: ast.expr | None) -> str:
-        """C's name of a parameter's type: as `name`, and the address of a record that stands in an array."""
+        """C's name of a parameter's type: as `name`, and the address of a record that stands in an
+        array.
+        """
         found = self.name(annotation)
         return f"{found}*" if found in self.accessed & self.records else found
 
     def signature(self, function: ast.FunctionDef) -> str:
         """C's result, name and parameters of a function or method."""
-        parameters = [a.arg if a.arg == "self" else f"{self.parameter(a.annotation)} {a.arg}" for a in function.args.args]
+        parameters = [
+            a.arg if a.arg == "self" else f"{self.parameter(a.annotation)} {a.arg}"
+            for a in function.args.args
+        ]
         return f"{self.name(function.returns)} {function.name}({', '.join(parameters)})"
 
     def is_for_c(self, method: ast.FunctionDef) -> bool:
@@ -125,7 +161,12 @@ class Types:
 
 
 def _targets(node: ast.Assign) -> list[str]:
-    return [name.id for target in node.targets for name in ast.walk(target) if isinstance(name, ast.Name)]
+    return [
+        name.id
+        for target in node.targets
+        for name in ast.walk(target)
+        if isinstance(name, ast.Name)
+    ]
 
 
 def _kind(value: ast.expr) -> str:
@@ -135,42 +176,68 @@ def _kind(value: ast.expr) -> str:
 
 
 def _fields(owner: ast.ClassDef) -> list[tuple[str, ast.expr]]:
-    return [(n.target.id, n.annotation) for n in owner.body if isinstance(n, ast.AnnAssign) and isinstance(n.target, ast.Name)]
+    return [
+        (n.target.id, n.annotation)
+        for n in owner.body
+        if isinstance(n, ast.AnnAssign) and isinstance(n.target, ast.Name)
+    ]
 
 
 def _records(tree: ast.Module, types: Types) -> Iterator[str]:
     """An enum or a struct for each class."""
     for owner in tree.body:
         if isinstance(owner, ast.ClassDef) and owner.name in types.records:
-            yield f"cdef struct {owner.name}:\n" + "".join(f"    {types.name(hint)} {name}\n" for name, hint in _fields(owner))
+            yield f"cdef struct {owner.name}:\n" + "".join(
+                f"    {types.name(hint)} {name}\n" for name, hint in _fields(owner)
+            )
         elif isinstance(owner, ast.ClassDef):
             yield f"cdef enum {owner.name}:\n"
-            yield "".join(f"    {ast.unparse(node)}\n" for node in owner.body if isinstance(node, ast.Assign))
+            yield "".join(
+                f"    {ast.unparse(node)}\n" for node in owner.body if isinstance(node, ast.Assign)
+            )
 
 
 def _constants(records: ast.Module, access: ast.Module) -> Iterator[str]:
     """An enum of the numbers that `access.py` works out from the records' fields."""
-    fields = {n.name: [name for name, _ in _fields(n)] for n in records.body if isinstance(n, ast.ClassDef)}
+    fields = {
+        n.name: [name for name, _ in _fields(n)]
+        for n in records.body
+        if isinstance(n, ast.ClassDef)
+    }
     yield "cdef enum:\n"
     for node in access.body:
         if isinstance(node, ast.Assign):
             text = ast.unparse(node.value)
             owner = text.removeprefix("len(").split(".")[0]
-            value = len(fields[owner]) if text.startswith("len(") else fields[owner].index(ast.literal_eval(node.value.args[0]))
+            value = (
+                len(fields[owner])
+                if text.startswith("len(")
+                else fields[owner].index(ast.literal_eval(node.value.args[0]))
+            )
             yield f"    {_targets(node)[0]} = {value}\n"
 
 
 def _access(tree: ast.Module, types: Types) -> Iterator[str]:
-    """The functions of `access.py`: of records that stand at `y[at:]`, and of the i-th of kept records."""
+    """The functions of `access.py`: of records that stand at `y[at:]`, and of the i-th of kept
+    records.
+    """
     written = ", ".join
-    yield "ctypedef fused AnyRecord:\n" + "".join(f"    {name}\n" for name in sorted(_used(tree, types.records)))
+    yield "ctypedef fused AnyRecord:\n" + "".join(
+        f"    {name}\n" for name in sorted(_used(tree, types.records))
+    )
     for node in tree.body:
         if not isinstance(node, ast.FunctionDef):
             continue
         record = ast.unparse(node.returns) if node.returns else ""
         first, *_, last = (a.arg for a in node.args.args)
-        kept = any(a.annotation and ast.unparse(a.annotation).startswith("Records") for a in node.args.args)
-        array = next(a.arg for a in node.args.args if a.annotation and ast.unparse(a.annotation).startswith(("Records", "Doubles")))
+        kept = any(
+            a.annotation and ast.unparse(a.annotation).startswith("Records") for a in node.args.args
+        )
+        array = next(
+            a.arg
+            for a in node.args.args
+            if a.annotation and ast.unparse(a.annotation).startswith(("Records", "Doubles"))
+        )
         kind = "AnyRecord" if record == "None" else record
         place = f"(<{kind}*>&{array}[0]) + {last}" if kept else f"<{kind}*>({array} + {last})"
         buffer = "double[::1]" if kept else "double*"

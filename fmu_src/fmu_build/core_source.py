@@ -1,8 +1,11 @@
-"""Joins the kernels of `rlv_landing/core` to one Cython module, so that one small binary holds the compiled core.
+"""Joins the kernels of `rlv_landing/core` to one Cython module, so that one small binary holds the
+compiled core.
 
-The kernels are plain Python and import each other and `math`. Compiled, they call each other and libm directly: this drops their
-imports and tables of laws, puts the files in the order of their imports, and lets a function that chooses a law branch on its number.
-Nothing else of the text changes, so compiled and pure core compute the same digits. What is C in it, `core_declarations` says.
+The kernels are plain Python and import each other and `math`. Compiled, they call each other and
+libm directly: this drops their imports and tables of laws, puts the files in the order of their
+imports, and lets a function that chooses a law branch on its number. Nothing else of the text
+changes, so compiled and pure core compute the same digits. What is C in it, `core_declarations`
+says.
 """
 
 from __future__ import annotations
@@ -39,7 +42,8 @@ def room(count, size):
 """
 # the first version whose limited API has buffers
 LIMITED_API = "0x030B0000"
-# records go from function to function by value: the compiler puts one function into the other, so that no copy is left
+# records go from function to function by value: the compiler puts one function into the other, so
+# that no copy is left
 COMPILE_ARGS = ["-O3", "-ffp-contract=off", "-fno-math-errno", "-g0", "-finline-limit=1000"]
 
 
@@ -51,20 +55,26 @@ def files(core: Path = CORE) -> list[Path]:
 def kernels(core: Path = CORE) -> list[Path]:
     """The kernel files, each after those that it imports."""
     imports = {path: set(_siblings(path)) for path in files(core) if path.stem not in TRANSLATED}
-    return list(TopologicalSorter({path: sorted(needed) for path, needed in imports.items()}).static_order())
+    return list(
+        TopologicalSorter({path: sorted(needed) for path, needed in imports.items()}).static_order()
+    )
 
 
 def _siblings(path: Path) -> Iterator[Path]:
     """The kernel files that `path` imports."""
     for node in ast.parse(path.read_text()).body:
         if isinstance(node, ast.ImportFrom) and node.level and node.module:
-            found = path.parents[node.level - 1].joinpath(*node.module.split(".")).with_suffix(".py")
+            found = (
+                path.parents[node.level - 1].joinpath(*node.module.split(".")).with_suffix(".py")
+            )
             if found.stem not in TRANSLATED:
                 yield found
 
 
 def translated(text: str) -> str:
-    """`text` with its imports and tables of laws blanked, and the choices of laws as branches on their numbers."""
+    """`text` with its imports and tables of laws blanked, and the choices of laws as branches on
+    their numbers.
+    """
     lines = text.splitlines()
     tree = ast.parse(text)
     laws = tables(tree)
@@ -81,22 +91,38 @@ def translated(text: str) -> str:
 def tables(tree: ast.Module) -> dict[str, list[dict[str, str]]]:
     """The tables of laws in a module: of each law, which function it has under which name."""
     members = {
-        node.name: [field.target.id for field in node.body if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name)]
+        node.name: [
+            field.target.id
+            for field in node.body
+            if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name)
+        ]
         for node in tree.body
         if isinstance(node, ast.ClassDef)
     }
     found = {}
     for node in tree.body:
-        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name) and isinstance(node.value, ast.Dict):
+        if (
+            isinstance(node, ast.AnnAssign)
+            and isinstance(node.target, ast.Name)
+            and isinstance(node.value, ast.Dict)
+        ):
             calls = [law for law in node.value.values if isinstance(law, ast.Call)]
-            found[node.target.id] = [dict(zip(members[ast.unparse(c.func)], map(ast.unparse, c.args))) for c in calls]
+            found[node.target.id] = [
+                dict(zip(members[ast.unparse(c.func)], map(ast.unparse, c.args))) for c in calls
+            ]
     return found
 
 
 def _branches(function: ast.FunctionDef, laws: dict[str, list[dict[str, str]]]) -> list[str]:
-    """The lines that stand for `return chosen(TABLE, kind).member(arguments)`; none where a function chooses no law."""
+    """The lines that stand for `return chosen(TABLE, kind).member(arguments)`; none where a
+    function chooses no law.
+    """
     last = function.body[-1]
-    if not (isinstance(last, ast.Return) and isinstance(last.value, ast.Call) and isinstance(last.value.func, ast.Attribute)):
+    if not (
+        isinstance(last, ast.Return)
+        and isinstance(last.value, ast.Call)
+        and isinstance(last.value.func, ast.Attribute)
+    ):
         return []
     choice = last.value.func.value
     if not (isinstance(choice, ast.Call) and ast.unparse(choice.func) == "chosen"):
@@ -104,22 +130,35 @@ def _branches(function: ast.FunctionDef, laws: dict[str, list[dict[str, str]]]) 
     table, kind = map(ast.unparse, choice.args)
     arguments = ", ".join(map(ast.unparse, last.value.args))
     calls = [f"return {law[last.value.func.attr]}({arguments})" for law in laws[table]]
-    branched = [line for i, call in enumerate(calls[:-1]) for line in (f"    if {kind} == {i}.0:", f"        {call}")]
+    branched = [
+        line
+        for i, call in enumerate(calls[:-1])
+        for line in (f"    if {kind} == {i}.0:", f"        {call}")
+    ]
     return [*branched, f"    {calls[-1]}"]
 
 
 def check_names(sources: list[Path]) -> None:
-    """Raise ValueError where two kernel files give the same name to different things: joined, they share one module."""
+    """Raise ValueError where two kernel files give the same name to different things: joined, they
+    share one module.
+    """
     owners: dict[str, Path] = {}
     for path in sources:
         for name in defined_names(ast.parse(path.read_text())):
             if owners.setdefault(name, path) != path:
-                raise ValueError(f"{name} is defined in {owners[name].name} and in {path.name}; give one of them another name")
+                raise ValueError(
+                    f"{name} is defined in {owners[name].name} and in {path.name}; give one of them another name"
+                )
 
 
 def digest(core: Path = CORE) -> str:
-    """A fingerprint of the kernels' texts; the compiled core carries that of the texts that it was made from."""
-    texts = [path.relative_to(core).as_posix().encode() + b"\0" + path.read_bytes() for path in files(core)]
+    """A fingerprint of the kernels' texts; the compiled core carries that of the texts that it was
+    made from.
+    """
+    texts = [
+        path.relative_to(core).as_posix().encode() + b"\0" + path.read_bytes()
+        for path in files(core)
+    ]
     return hashlib.sha256(b"".join(texts)).hexdigest()
 
 
@@ -129,16 +168,20 @@ def package_name(core: Path = CORE) -> str:
 
 
 def write_source(folder: Path, core: Path = CORE) -> Path:
-    """Write `compiled.py` and `compiled.pxd` below `folder`, only where they change; return the former.
+    """Write `compiled.py` and `compiled.pxd` below `folder`, only where they change; return the
+    former.
 
-    Their package is named after their digest. A compiled module enters itself in `sys.modules` under the name it was compiled with,
-    and an FMU's core must never be found there by another version of the package in the same process.
+    Their package is named after their digest. A compiled module enters itself in `sys.modules`
+    under the name it was compiled with, and an FMU's core must never be found there by another
+    version of the package in the same process.
 
     Raises ValueError where two kernel files use the same name.
     """
     sources = kernels(core)
     check_names(sources)
-    texts = "".join(f"# {p.relative_to(core).as_posix()}\n{translated(p.read_text())}" for p in sources)
+    texts = "".join(
+        f"# {p.relative_to(core).as_posix()}\n{translated(p.read_text())}" for p in sources
+    )
     python = f'from array import array\n\nfrom cython import nogil\n\n{MEMORY}\n{texts}SOURCE_DIGEST = "{digest(core)}"\n'
     package = folder / package_name(core)
     package.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,6 @@
-"""Nothing inside a step calls Python: every kernel is declared for C, and Cython's annotation finds no Python in it."""
+"""Nothing inside a step calls Python: every kernel is declared for C, and Cython's annotation finds
+no Python in it.
+"""
 
 import ast
 import re
@@ -16,7 +18,17 @@ from fmu_build.core_declarations import declarations
 from fmu_build.core_source import CORE, kernels
 
 # called from Python once a step of the caller's, or once at all; what they call is compiled
-ENTRIES = {"inputs_at", "derivatives", "restart", "recompute_derived", "advance", "interpolate", "outputs_at", "record", "add_ground_work"}
+ENTRIES = {
+    "inputs_at",
+    "derivatives",
+    "restart",
+    "recompute_derived",
+    "advance",
+    "interpolate",
+    "outputs_at",
+    "record",
+    "add_ground_work",
+}
 SETTING_UP = {"__init__"}
 KERNELS = kernels()
 
@@ -44,7 +56,9 @@ def test_no_line_of_a_kernel_calls_python(tmp_path):
         for number in range(function.lineno, function.end_lineno + 1):
             where[number] = (function.name, number == function.lineno)
     ours = SETTING_UP | {"stored", "room"}
-    inside = [line for line in lines(html) if line.number in where and where[line.number][0] not in ours]
+    inside = [
+        line for line in lines(html) if line.number in where and where[line.number][0] not in ours
+    ]
     # once a call: one lets other threads run
     allowed = {"record": 14}
     assert len(inside) > 400

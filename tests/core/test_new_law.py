@@ -1,4 +1,6 @@
-"""A new law of the main strut is one file, and its import and its line in `struts/kinds.py`: in a copy of the core, pure and compiled."""
+"""A new law of the main strut is one file, and its import and its line in `struts/kinds.py`: in a
+copy of the core, pure and compiled.
+"""
 
 import importlib
 import shutil
@@ -42,7 +44,10 @@ def linear_spring_status(s: float, z1: float, z2: float, p: LegModel) -> StrutSt
 '''
 IMPORT = "from .linear_spring import linear_spring, linear_spring_status\n"
 LINE = '    "linear-spring": MainStrutLaw(linear_spring, linear_spring_status),\n'
-STROKE, RATE, FORCE = ([q.name for q in LEG_QUANTITIES].index(f"main_strut.{name}") for name in ("stroke", "stroke_rate", "force"))
+STROKE, RATE, FORCE = (
+    [q.name for q in LEG_QUANTITIES].index(f"main_strut.{name}")
+    for name in ("stroke", "stroke_rate", "force")
+)
 
 
 def extended(folder: Path) -> Path:
@@ -53,7 +58,10 @@ def extended(folder: Path) -> Path:
     kinds = core / "struts" / "kinds.py"
     text = kinds.read_text()
     changed = text
-    for neighbour, added in (("from .liquid_spring import", IMPORT), ('    "liquid-spring": MainStrutLaw(', LINE)):
+    for neighbour, added in (
+        ("from .liquid_spring import", IMPORT),
+        ('    "liquid-spring": MainStrutLaw(', LINE),
+    ):
         (line,) = (line for line in text.splitlines(keepends=True) if line.startswith(neighbour))
         changed = changed.replace(line, line + added)
     kinds.write_text(changed)
@@ -61,10 +69,21 @@ def extended(folder: Path) -> Path:
 
 
 def compiled(core: Path, folder: Path) -> Path:
-    """Compile the `core` below `folder`; return the folder of the package. Unoptimised, which changes no digit and takes less time."""
+    """Compile the `core` below `folder`; return the folder of the package.
+
+    Unoptimised, which changes no digit and takes less time.
+    """
     source = write_source(folder / "source", core)
-    extension = Extension(f"{source.parent.name}.{MODULE}", [str(source)], extra_compile_args=["-O0", "-ffp-contract=off"])
-    command = build_ext(Distribution({"ext_modules": cythonize([extension], compiler_directives=DIRECTIVES, quiet=True)}))
+    extension = Extension(
+        f"{source.parent.name}.{MODULE}",
+        [str(source)],
+        extra_compile_args=["-O0", "-ffp-contract=off"],
+    )
+    command = build_ext(
+        Distribution(
+            {"ext_modules": cythonize([extension], compiler_directives=DIRECTIVES, quiet=True)}
+        )
+    )
     command.build_lib, command.build_temp = str(folder / "built"), str(folder / "temporary")
     command.ensure_finalized()
     command.run()
@@ -72,12 +91,22 @@ def compiled(core: Path, folder: Path) -> Path:
 
 
 def land(planar, exponential, kind: float) -> np.ndarray:
-    """The outputs of a landing, a row every millisecond, with a mixed vehicle: the first leg group keeps its liquid spring."""
-    parameters = load_preset("yue2022-figures", "2-2").with_values({"vehicle.transverse_load_at": "footpad"})
+    """The outputs of a landing, a row every millisecond, with a mixed vehicle: the first leg group
+    keeps its liquid spring.
+    """
+    parameters = load_preset("yue2022-figures", "2-2").with_values(
+        {"vehicle.transverse_load_at": "footpad"}
+    )
     like = build_system(parameters)
     first, second = leg_models(parameters)
     legs = [first, second._replace(main_kind=kind)]
-    system = planar(body_model(parameters), legs, leg_places(parameters), array("d", like.scale), array("d", like.relative))
+    system = planar(
+        body_model(parameters),
+        legs,
+        leg_places(parameters),
+        array("d", like.scale),
+        array("d", like.relative),
+    )
     solver = exponential(system, 1e-6)
     for i, value in enumerate(start_state(parameters)):
         solver.y[i] = value
@@ -130,5 +159,8 @@ def test_the_compiled_copy_gives_the_same_digits(core, pure_rows, tmp_path):
 def test_two_kernel_files_that_define_the_same_name_are_refused(tmp_path):
     core = extended(tmp_path)
     (core / "struts" / "another.py").write_text("DAMPING = 1.0\n")
-    with pytest.raises(ValueError, match=r"DAMPING is defined in another\.py and in linear_spring\.py; give one of them another name"):
+    with pytest.raises(
+        ValueError,
+        match=r"DAMPING is defined in another\.py and in linear_spring\.py; give one of them another name",
+    ):
         write_source(tmp_path / "source", core)

@@ -90,4 +90,10 @@ def test_the_compiled_outputs_have_the_length_that_the_records_say(mode):
     system = new_solver(Parameters().for_mode(mode), DEFAULT_RTOL).system
     groups = (system.n - access.BODY - access.ACCOUNTS) // access.LEG
     assert system.n == access.BODY + access.LEG * groups + access.ACCOUNTS
-    assert system.row == access.BODY_OUTPUTS + access.ENERGY_OUTPUTS + access.STATUS_OUTPUTS + access.LEG_OUTPUTS * groups
+    assert (
+        system.row
+        == access.BODY_OUTPUTS
+        + access.ENERGY_OUTPUTS
+        + access.STATUS_OUTPUTS
+        + access.LEG_OUTPUTS * groups
+    )

@@ -20,10 +20,19 @@ def doubles(*values):
 
 
 class Relaxing(System):
-    """x'' = u - x, and a pair whose difference decays at 3 `decay` [1/s] and whose first state is driven as x is."""
+    """x'' = u - x, and a pair whose difference decays at 3 `decay` [1/s] and whose first state is
+    driven as x is.
+    """
 
     def __init__(self, decay, told):
-        super().__init__(doubles(1.0, 1.0, 1.0, 1.0), doubles(0.0, 0.0, 0.0, 0.0), carried=0, inputs=1, row=2, stiff_pairs=int(told))
+        super().__init__(
+            doubles(1.0, 1.0, 1.0, 1.0),
+            doubles(0.0, 0.0, 0.0, 0.0),
+            carried=0,
+            inputs=1,
+            row=2,
+            stiff_pairs=int(told),
+        )
         self.decay = decay
 
     def inputs_after(self, u, rates, dt, now):
@@ -113,6 +122,8 @@ def test_steps_grow_where_the_error_is_small_and_shrink_where_it_is_too_large(ex
     assert step_factor(1e30, 1.0, exponent) == SHRINK
     assert step_factor(float("nan"), 1.0, exponent) == SHRINK
     assert step_factor(1e-4, 1.0, exponent) > 1.0
-    factors = [step_factor(error, 1.0, exponent) for error in (1e-6, 1e-3, 0.5, 1.0, 2.0, 50.0, 1e5)]
+    factors = [
+        step_factor(error, 1.0, exponent) for error in (1e-6, 1e-3, 0.5, 1.0, 2.0, 50.0, 1e5)
+    ]
     assert factors == sorted(factors, reverse=True)
     assert all(factor < 1.0 for factor in factors[3:])

@@ -33,7 +33,12 @@ def test_the_landing_in_c_takes_the_cores_steps_to_the_same_states(mode, rtol):
 
 def test_the_landing_in_c_has_the_cores_inputs_slope_and_stops(mode):
     """With the transverse load at the footpads, on a slope, so fast that a strut reaches both ends."""
-    values = {"vehicle.transverse_load_at": "footpad", "ground.slope": 0.03, "drop.vertical_velocity": -4.0, "main_strut.stroke_max": 0.03}
+    values = {
+        "vehicle.transverse_load_at": "footpad",
+        "ground.slope": 0.03,
+        "drop.vertical_velocity": -4.0,
+        "main_strut.stroke_max": 0.03,
+    }
     parameters = load_preset("yue2022-figures", mode).with_values(values)
     solver = new_solver(parameters, 1e-4)
     for i, name in enumerate(INPUT_NAMES):
@@ -56,7 +61,9 @@ def test_a_landing_in_c_of_another_vehicle_is_told_from_the_cores(mode):
 
 @pytest.mark.parametrize("method", [ADAMS, BDF])
 def test_cvode_lands_as_the_core_does(mode, method):
-    """An integrator that shares nothing with ours finds the same peaks; friction lets late strokes differ by some micrometres."""
+    """An integrator that shares nothing with ours finds the same peaks; friction lets late strokes
+    differ by some micrometres.
+    """
     problem = Problem(mode)
     found = problem.error(CvodeInC(problem, 1e-8, method, 2e-3, 500_000).states(TIMES))
     assert found.peaks < 1e-3

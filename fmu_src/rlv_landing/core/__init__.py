@@ -1,7 +1,9 @@
-"""The kernels: plain Python on `math` alone, compiled where a compiler was there, the same digits either way.
+"""The kernels: plain Python on `math` alone, compiled where a compiler was there, the same digits
+either way.
 
-The classes come from the compiled module if there is one for this Python, else from the plain files. RLV_LANDING_PURE=1 in the
-environment asks for the plain files. Records and laws' names are those of the plain files always.
+The classes come from the compiled module if there is one for this Python, else from the plain
+files. RLV_LANDING_PURE=1 in the environment asks for the plain files. Records and laws' names are
+those of the plain files always.
 """
 
 from __future__ import annotations

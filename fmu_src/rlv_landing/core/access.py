@@ -1,7 +1,8 @@
 """Records from and to arrays of numbers: nothing else knows where a field stands.
 
-A state is the body's, then each leg's, then the accounts. What is kept between two kernels is an array of records of one kind. Compiled,
-each of these functions is an access through an address (see `core_source`).
+A state is the body's, then each leg's, then the accounts. What is kept between two kernels is an
+array of records of one kind. Compiled, each of these functions is an access through an address (see
+`core_source`).
 """
 
 from __future__ import annotations

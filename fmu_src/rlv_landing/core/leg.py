@@ -1,4 +1,7 @@
-"""One leg: main strut, auxiliary strut and footpad in a plane fixed in the body. It knows neither the body's motion nor the mode."""
+"""One leg: main strut, auxiliary strut and footpad in a plane fixed in the body.
+
+It knows neither the body's motion nor the mode.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,9 @@ from .struts.kinds import auxiliary_strut, auxiliary_strut_energy, main_strut, m
 
 
 def strut_motion(leg: LegState, joint_r: float, joint_h: float, length: float) -> StrutMotion:
-    """A strut of `length` [m], unloaded, from its joint on the body to the footpad, seen in the body's frame. Eqs. (19), (25)."""
+    """A strut of `length` [m], unloaded, from its joint on the body to the footpad, seen in the
+    body's frame. Eqs. (19), (25).
+    """
     dr = leg.r - joint_r
     dh = leg.h - joint_h
     now = sqrt(dr * dr + dh * dh)
@@ -21,7 +26,9 @@ def strut_motion(leg: LegState, joint_r: float, joint_h: float, length: float) -
 
 
 def leg_forces(leg: LegState, foot: FootMotion, p: LegModel) -> LegForces:
-    """All forces and powers of one leg, and the rates of its laws' states, where the footpad moves as `foot` says."""
+    """All forces and powers of one leg, and the rates of its laws' states, where the footpad moves
+    as `foot` says.
+    """
     main = strut_motion(leg, p.La, p.Lb, p.Lm0)
     aux = strut_motion(leg, p.Lc, p.Ld, p.Ls0)
     strut = main_strut(main.stroke, main.rate, leg.z1, leg.z2, p)
@@ -62,7 +69,9 @@ def leg_forces(leg: LegState, foot: FootMotion, p: LegModel) -> LegForces:
 
 
 def leg_status(leg: LegState, forces: LegForces, depth: float, p: LegModel) -> LegStatus:
-    """What one leg holds, and its main strut's chambers, with its footpad at penetration `depth` [m]."""
+    """What one leg holds, and its main strut's chambers, with its footpad at penetration `depth`
+    [m].
+    """
     strut = main_strut_status(forces.stroke, leg.z1, leg.z2, p)
     return LegStatus(
         main=strut.held,

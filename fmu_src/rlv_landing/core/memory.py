@@ -1,4 +1,7 @@
-"""How kernels hand arrays and records to each other. Compiled, all of this is addresses and structs (see `core_source`)."""
+"""How kernels hand arrays and records to each other.
+
+Compiled, all of this is addresses and structs (see `core_source`).
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,9 @@ nogil = nullcontext()
 
 
 class Doubles(Protocol):
-    """Numbers that kernels read and write: an array or buffer of doubles, in the compiled core the address of its first."""
+    """Numbers that kernels read and write: an array or buffer of doubles, in the compiled core the
+    address of its first.
+    """
 
     def __len__(self) -> int: ...
     def __iter__(self) -> Iterator[float]: ...
@@ -25,7 +30,8 @@ class Doubles(Protocol):
     def __setitem__(self, i: int, value: float, /) -> None: ...
 
 
-# what a caller in Python hands over, and what a class keeps: in the compiled core a buffer with its length
+# what a caller in Python hands over, and what a class keeps: in the compiled core a buffer with its
+# length
 Buffer = Doubles
 # records of one kind, one behind the other: in the compiled core an array of structs
 Records = list
@@ -47,5 +53,8 @@ def room(count: int, size: int) -> Records[Any]:
 
 
 def chosen(laws: Mapping[str, Law], kind: float) -> Law:
-    """The law at place `kind` of `laws`. In the compiled core a function that returns what a chosen law gives branches on its kind."""
+    """The law at place `kind` of `laws`.
+
+    In the compiled core a function that returns what a chosen law gives branches on its kind.
+    """
     return list(laws.values())[int(kind)]

@@ -1,10 +1,14 @@
-"""The only layout: what kernels take, give and keep, a record each. In the compiled core a record is a C struct made from the text here.
+"""The only layout: what kernels take, give and keep, a record each.
 
-Frames. Inertial: x forward, y up, z to the right; the origin is that of the ground. Body: the same axes turned by the pitch, which is
-clockwise positive; the origin is the body's centre of gravity (CG). Leg: r radially out and h up from the CG in a plane fixed in the body,
-t across it. Ground: n out of the ground, 1 and 2 along it, 1 down the slope and 2 along inertial z.
+In the compiled core a record is a C struct made from the text here.
 
-Records are handed on by value; those named `...Model`, which are long and never change, by address. All fields are numbers.
+Frames. Inertial: x forward, y up, z to the right; the origin is that of the ground. Body: the same
+axes turned by the pitch, which is clockwise positive; the origin is the body's centre of gravity
+(CG). Leg: r radially out and h up from the CG in a plane fixed in the body, t across it. Ground: n
+out of the ground, 1 and 2 along it, 1 down the slope and 2 along inertial z.
+
+Records are handed on by value; those named `...Model`, which are long and never change, by address.
+All fields are numbers.
 """
 
 from __future__ import annotations
@@ -14,7 +18,9 @@ from typing import NamedTuple
 
 
 class Phase(IntEnum):
-    """How far a landing has come; toppled: the whole vehicle's CG is beyond the outermost footpad, or the body has turned over."""
+    """How far a landing has come; toppled: the whole vehicle's CG is beyond the outermost footpad,
+    or the body has turned over.
+    """
 
     FALLING = 0
     CONTACT = 1
@@ -37,7 +43,10 @@ class BodyState(NamedTuple):
 
 
 class LegState(NamedTuple):
-    """One leg: its footpad in the leg's plane, and what its laws keep. As rates, the same a second."""
+    """One leg: its footpad in the leg's plane, and what its laws keep.
+
+    As rates, the same a second.
+    """
 
     r: float  # [m]
     h: float  # [m]
@@ -50,7 +59,10 @@ class LegState(NamedTuple):
 
 
 class Accounts(NamedTuple):
-    """Energy [J] dissipated so far, in six ways, and supplied so far, in three, by all legs. As rates, powers [W]."""
+    """Energy [J] dissipated so far, in six ways, and supplied so far, in three, by all legs.
+
+    As rates, powers [W].
+    """
 
     orifice: float
     seal: float
@@ -75,7 +87,8 @@ class Inputs(NamedTuple):
     tilt_rate: float  # [rad/s]
 
 
-# ---- the models: numbers that a landing does not change, under the paper's symbols, which `rlv_landing.quantities` tells the meaning of
+# ---- the models: numbers that a landing does not change, under the paper's symbols, which
+# `rlv_landing.quantities` tells the meaning of
 
 
 class BodyModel(NamedTuple):
@@ -90,7 +103,10 @@ class BodyModel(NamedTuple):
 
 
 class LegModel(NamedTuple):
-    """One leg: all that its struts, its footpad and the ground below it need. `Lb`, `Ld` are heights, negative below the CG."""
+    """One leg: all that its struts, its footpad and the ground below it need.
+
+    `Lb`, `Ld` are heights, negative below the CG.
+    """
 
     main_kind: float  # place of the law in `struts.kinds.MAIN_STRUTS`
     auxiliary_kind: float  # place of the law in `struts.kinds.AUXILIARY_STRUTS`
@@ -140,11 +156,15 @@ class LegModel(NamedTuple):
     Cr: float
     v_dir: float
     tau_sr: float
-    share_1: float  # part of mu^2 along 1 at rest: 1/2; 1 for a leg that lies in the symmetric plane
+    share_1: (
+        float  # part of mu^2 along 1 at rest: 1/2; 1 for a leg that lies in the symmetric plane
+    )
 
 
 class LegPlace(NamedTuple):
-    """Where a leg group stands on the body, and how many legs (mirror images of each other) it stands for."""
+    """Where a leg group stands on the body, and how many legs (mirror images of each other) it
+    stands for.
+    """
 
     sin_g: float  # sine of the azimuth
     cos_g: float  # cosine of the azimuth
@@ -176,7 +196,10 @@ class StrutForce(NamedTuple):
 
 
 class StrutStatus(NamedTuple):
-    """What is read of a main strut beside its force. A law without chambers gives 0 for what they would have."""
+    """What is read of a main strut beside its force.
+
+    A law without chambers gives 0 for what they would have.
+    """
 
     held: float  # energy held by the strut's medium [J]
     held_by_stop: float  # energy held by the end stops [J]
@@ -253,7 +276,9 @@ class GroundForce(NamedTuple):
 
 
 class LegForces(NamedTuple):
-    """All that one leg does: strut forces in its plane, the ground's force in the ground's axes, rates of its laws' states, powers [W]."""
+    """All that one leg does: strut forces in its plane, the ground's force in the ground's axes,
+    rates of its laws' states, powers [W].
+    """
 
     stroke: float  # main strut [m]
     stroke_rate: float  # [m/s]
@@ -358,7 +383,8 @@ class HeldEnergy(NamedTuple):
     stop: float
 
 
-# ---- what a user sees, in the order of `rlv_landing.quantities`; strut forces are negative in compression here
+# ---- what a user sees, in the order of `rlv_landing.quantities`; strut forces are negative in
+# compression here
 
 
 class BodyOutputs(NamedTuple):
@@ -431,7 +457,9 @@ class LegOutputs(NamedTuple):
 
 
 class StiffPair(NamedTuple):
-    """Two states `i`, `j` whose difference x = y_j - y_i decays: a change of x changes y_i' by a1 x and y_j' by -a2 x."""
+    """Two states `i`, `j` whose difference x = y_j - y_i decays: a change of x changes y_i' by a1 x
+    and y_j' by -a2 x.
+    """
 
     i: int
     j: int
@@ -440,7 +468,9 @@ class StiffPair(NamedTuple):
 
 
 class PhiWeights(NamedTuple):
-    """Weights of one stiff pair in an exponential step: of the rates at its start, at the stage before, or at the stages 2 to 4."""
+    """Weights of one stiff pair in an exponential step: of the rates at its start, at the stage
+    before, or at the stages 2 to 4.
+    """
 
     a21: float
     a31: float

@@ -46,17 +46,26 @@ from .planar_status import phase_of
 
 
 class Planar(PlanarMotion):
-    """The planar body with its outputs: body, energies, status, then each leg group, in the order of `rlv_landing.quantities`.
+    """The planar body with its outputs: body, energies, status, then each leg group, in the order
+    of `rlv_landing.quantities`.
 
-    Strut forces change sign here: the user's are negative in compression. Mirror images are made where the names are made.
-    `energy_start` [J] is the mechanical energy at the start, which the energy balance is drawn up against.
+    Strut forces change sign here: the user's are negative in compression. Mirror images are made
+    where the names are made. `energy_start` [J] is the mechanical energy at the start, which the
+    energy balance is drawn up against.
     """
 
     energy_start: float
     _rates: Buffer
     _status: Records[LegStatus]
 
-    def __init__(self, body: BodyModel, legs: Sequence[LegModel], places: Sequence[LegPlace], scale: Buffer, relative: Buffer) -> None:
+    def __init__(
+        self,
+        body: BodyModel,
+        legs: Sequence[LegModel],
+        places: Sequence[LegPlace],
+        scale: Buffer,
+        relative: Buffer,
+    ) -> None:
         super().__init__(body, legs, places, scale, relative)
         self.energy_start = 0.0
         self._rates = array("d", bytes(8 * self.n))
@@ -70,7 +79,21 @@ class Planar(PlanarMotion):
         at = BODY + LEG * self.groups
         a = accounts(y, at)
         ground = a.ground + work
-        put(Accounts(a.orifice, a.seal, a.stop, a.auxiliary, a.contact, a.friction, a.external, ground, a.transverse), y, at)
+        put(
+            Accounts(
+                a.orifice,
+                a.seal,
+                a.stop,
+                a.auxiliary,
+                a.contact,
+                a.friction,
+                a.external,
+                ground,
+                a.transverse,
+            ),
+            y,
+            at,
+        )
 
     def outputs(self, y: Doubles, u: Doubles, out: Doubles, at: int) -> None:
         """Write all outputs to `out[at:]`."""
@@ -78,7 +101,16 @@ class Planar(PlanarMotion):
         self.rhs(y, u, rates)
         for i in range(self.groups):
             depth = planar_loads_of(self._loads, i).depth
-            keep(leg_status(leg_state(y, BODY + LEG * i), leg_forces_of(self._forces, i), depth, leg_model(self._legs, i)), self._status, i)
+            keep(
+                leg_status(
+                    leg_state(y, BODY + LEG * i),
+                    leg_forces_of(self._forces, i),
+                    depth,
+                    leg_model(self._legs, i),
+                ),
+                self._status,
+                i,
+            )
         kinetic = self._kinetic_energy(y)
         self._put_body(y, u, rates, out, at)
         at += BODY_OUTPUTS
@@ -94,7 +126,11 @@ class Planar(PlanarMotion):
         r = body_state(rates, 0)
         along = self._acceleration(y, s, inputs(u, 0), turned(s.pitch, 0.0)).y
         top = along - s.pitch_rate * s.pitch_rate * body_model(self._body, 0).H
-        put(BodyOutputs(s.x, s.y, s.pitch, s.vx, s.vy, s.pitch_rate, r.vx, r.vy, r.pitch_rate, top), out, at)
+        put(
+            BodyOutputs(s.x, s.y, s.pitch, s.vx, s.vy, s.pitch_rate, r.vx, r.vy, r.pitch_rate, top),
+            out,
+            at,
+        )
 
     def _kinetic_energy(self, y: Doubles) -> float:
         """Kinetic energy [J] of body and footpads."""
@@ -103,10 +139,20 @@ class Planar(PlanarMotion):
         turn = turned(body.pitch, 0.0)
         vx = body.vx * turn.cos_p - body.vy * turn.sin_p
         vy = body.vx * turn.sin_p + body.vy * turn.cos_p
-        twice = p.m_u * (body.vx * body.vx + body.vy * body.vy) + p.I_u * body.pitch_rate * body.pitch_rate
+        twice = (
+            p.m_u * (body.vx * body.vx + body.vy * body.vy)
+            + p.I_u * body.pitch_rate * body.pitch_rate
+        )
         for i in range(self.groups):
             m_d = leg_model(self._legs, i).m_d
-            twice += footpad_kinetic_energy(vx, vy, body.pitch_rate, leg_state(y, BODY + LEG * i), leg_place(self._places, i), m_d)
+            twice += footpad_kinetic_energy(
+                vx,
+                vy,
+                body.pitch_rate,
+                leg_state(y, BODY + LEG * i),
+                leg_place(self._places, i),
+                m_d,
+            )
         return 0.5 * twice
 
     def _held(self, y: Doubles, kinetic: float) -> HeldEnergy:
@@ -129,7 +175,9 @@ class Planar(PlanarMotion):
 
     def _put_energies(self, y: Doubles, held: HeldEnergy, out: Doubles, at: int) -> None:
         a = accounts(y, BODY + LEG * self.groups)
-        mechanical = held.kinetic + held.potential + held.liquid + held.auxiliary + held.contact + held.stop
+        mechanical = (
+            held.kinetic + held.potential + held.liquid + held.auxiliary + held.contact + held.stop
+        )
         dissipated = a.orifice + a.seal + a.stop + a.auxiliary + a.contact + a.friction
         supplied = a.external + a.ground + a.transverse
         put(
@@ -156,8 +204,12 @@ class Planar(PlanarMotion):
             at,
         )
 
-    def _put_status(self, y: Doubles, rates: Doubles, kinetic: float, out: Doubles, at: int) -> None:
-        """The stability margin is the distance [m] from the whole vehicle's CG to the nearer of the outermost footpads, negative beyond."""
+    def _put_status(
+        self, y: Doubles, rates: Doubles, kinetic: float, out: Doubles, at: int
+    ) -> None:
+        """The stability margin is the distance [m] from the whole vehicle's CG to the nearer of the
+        outermost footpads, negative beyond.
+        """
         body = body_state(y, 0)
         mass = body_model(self._body, 0).m_u
         moment = mass * body.x

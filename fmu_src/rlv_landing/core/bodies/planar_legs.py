@@ -1,4 +1,7 @@
-"""How a leg of the planar body moves with it, and what it does to it, without small angles. Eqs. (2)-(11), (29)-(37), as derived."""
+"""How a leg of the planar body moves with it, and what it does to it, without small angles.
+
+Eqs. (2)-(11), (29)-(37), as derived.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +29,10 @@ def turned(pitch: float, slope: float) -> Turn:
 
 
 def foot_point(body: BodyState, leg: LegState, place: LegPlace, u: Inputs, turn: Turn) -> FootPoint:
-    """The footpad in the inertial frame. The ground turns clockwise about the inertial origin and is lifted by the heave."""
+    """The footpad in the inertial frame.
+
+    The ground turns clockwise about the inertial origin and is lifted by the heave.
+    """
     bx = leg.r * place.cos_g
     vbx = leg.vr * place.cos_g + body.pitch_rate * leg.h
     vby = leg.vh - body.pitch_rate * bx
@@ -45,11 +51,17 @@ def foot_motion(foot: FootPoint, u: Inputs, turn: Turn) -> FootMotion:
     rx = foot.vx - foot.ground_vx
     ry = foot.vy - foot.ground_vy
     depth = -(foot.x * turn.sin_a + yo * turn.cos_a)
-    return FootMotion(depth, -(rx * turn.sin_a + ry * turn.cos_a), rx * turn.cos_a - ry * turn.sin_a, foot.vz)
+    return FootMotion(
+        depth, -(rx * turn.sin_a + ry * turn.cos_a), rx * turn.cos_a - ry * turn.sin_a, foot.vz
+    )
 
 
-def planar_loads(forces: LegForces, foot: FootPoint, depth: float, place: LegPlace, turn: Turn, weight: float) -> PlanarLoads:
-    """The leg's `forces` on the footpad, along the leg's axes, and on the body, along the body's; `weight` [N] of the footpad."""
+def planar_loads(
+    forces: LegForces, foot: FootPoint, depth: float, place: LegPlace, turn: Turn, weight: float
+) -> PlanarLoads:
+    """The leg's `forces` on the footpad, along the leg's axes, and on the body, along the body's;
+    `weight` [N] of the footpad.
+    """
     x = forces.f1 * turn.cos_a + forces.normal * turn.sin_a
     y = forces.normal * turn.cos_a - forces.f1 * turn.sin_a
     body_x = x * turn.cos_p - (y - weight) * turn.sin_p
@@ -73,19 +85,32 @@ def planar_loads(forces: LegForces, foot: FootPoint, depth: float, place: LegPla
 
 
 def transverse_height(h: float, p: BodyModel, leg: LegModel) -> float:
-    """Height [m] above the CG, body axes, where the auxiliary strut's transverse force acts on the body: footpad or joint."""
+    """Height [m] above the CG, body axes, where the auxiliary strut's transverse force acts on the
+    body: footpad or joint.
+    """
     return h + p.at_joint * (leg.Ld - h)
 
 
-def frame_acceleration(leg: LegState, place: LegPlace, rate: float, a: BodyAcceleration) -> BodyAcceleration:
-    """Acceleration along the body's x and y of a footpad that is at rest in its leg's plane, less what moves with vr, vh themselves."""
+def frame_acceleration(
+    leg: LegState, place: LegPlace, rate: float, a: BodyAcceleration
+) -> BodyAcceleration:
+    """Acceleration along the body's x and y of a footpad that is at rest in its leg's plane, less
+    what moves with vr, vh themselves.
+    """
     bx = leg.r * place.cos_g
     x = a.x + a.pitch * leg.h - rate * rate * bx + 2.0 * rate * leg.vh
     y = a.y - a.pitch * bx - rate * rate * leg.h - 2.0 * rate * leg.vr * place.cos_g
     return BodyAcceleration(x, y, a.pitch)
 
 
-def leg_rates(leg: LegState, forces: LegForces, loads: PlanarLoads, place: LegPlace, frame: BodyAcceleration, m_d: float) -> LegState:
+def leg_rates(
+    leg: LegState,
+    forces: LegForces,
+    loads: PlanarLoads,
+    place: LegPlace,
+    frame: BodyAcceleration,
+    m_d: float,
+) -> LegState:
     """The rates of a leg's state."""
     return LegState(
         r=leg.vr,
@@ -99,14 +124,20 @@ def leg_rates(leg: LegState, forces: LegForces, loads: PlanarLoads, place: LegPl
     )
 
 
-def footpad_kinetic_energy(vx: float, vy: float, rate: float, leg: LegState, place: LegPlace, m_d: float) -> float:
-    """Twice the kinetic energy [J] of all footpads of the group; `vx`, `vy` [m/s] of the body along its own axes, `rate` of the pitch."""
+def footpad_kinetic_energy(
+    vx: float, vy: float, rate: float, leg: LegState, place: LegPlace, m_d: float
+) -> float:
+    """Twice the kinetic energy [J] of all footpads of the group; `vx`, `vy` [m/s] of the body along
+    its own axes, `rate` of the pitch.
+    """
     fx = vx + leg.vr * place.cos_g + rate * leg.h
     fy = vy + leg.vh - rate * leg.r * place.cos_g
     fz = leg.vr * place.sin_g
     return place.legs * m_d * (fx * fx + fy * fy + fz * fz)
 
 
-def footpad_moment(body: BodyState, leg: LegState, place: LegPlace, turn: Turn, m_d: float) -> float:
+def footpad_moment(
+    body: BodyState, leg: LegState, place: LegPlace, turn: Turn, m_d: float
+) -> float:
     """Mass times height [kg m] above the inertial origin of all footpads of the group."""
     return place.legs * m_d * (body.y - leg.r * place.cos_g * turn.sin_p + leg.h * turn.cos_p)

@@ -60,7 +60,8 @@ from .system import System
 class PlanarMotion(System):
     """One body in its symmetric plane on leg groups, and its ground.
 
-    The state is a `BodyState`, a `LegState` for each group, and the `Accounts`, which no other state depends on.
+    The state is a `BodyState`, a `LegState` for each group, and the `Accounts`, which no other
+    state depends on.
     """
 
     groups: int
@@ -70,7 +71,14 @@ class PlanarMotion(System):
     _forces: Records[LegForces]
     _loads: Records[PlanarLoads]
 
-    def __init__(self, body: BodyModel, legs: Sequence[LegModel], places: Sequence[LegPlace], scale: Buffer, relative: Buffer) -> None:
+    def __init__(
+        self,
+        body: BodyModel,
+        legs: Sequence[LegModel],
+        places: Sequence[LegPlace],
+        scale: Buffer,
+        relative: Buffer,
+    ) -> None:
         groups = len(legs)
         row = BODY_OUTPUTS + ENERGY_OUTPUTS + STATUS_OUTPUTS + LEG_OUTPUTS * groups
         super().__init__(scale, relative, ACCOUNTS, INPUTS, row, groups)
@@ -100,7 +108,9 @@ class PlanarMotion(System):
         )
 
     def rhs(self, y: Doubles, u: Doubles, dy: Doubles) -> None:
-        """Write dy/dt at the state `y` and the inputs `u` to `dy`; keep the legs' forces and loads on the way."""
+        """Write dy/dt at the state `y` and the inputs `u` to `dy`; keep the legs' forces and loads
+        on the way.
+        """
         p = body_model(self._body, 0)
         body = body_state(y, 0)
         now = inputs(u, 0)
@@ -128,13 +138,18 @@ class PlanarMotion(System):
         foot = foot_motion(point, u, turn)
         keep(leg_forces(leg, foot, model), self._forces, i)
         weight = model.m_d * body_model(self._body, 0).g
-        keep(planar_loads(leg_forces_of(self._forces, i), point, foot.depth, place, turn, weight), self._loads, i)
+        keep(
+            planar_loads(leg_forces_of(self._forces, i), point, foot.depth, place, turn, weight),
+            self._loads,
+            i,
+        )
 
     def _acceleration(self, y: Doubles, body: BodyState, u: Inputs, turn: Turn) -> BodyAcceleration:
         """The body's acceleration under the legs' loads.
 
-        Two coupled equations for a_x and the pitch acceleration, because the transverse force that keeps each footpad in its
-        plane contains both; a_y stands alone. Clockwise pitch and moments are positive.
+        Two coupled equations for a_x and the pitch acceleration, because the transverse force that
+        keeps each footpad in its plane contains both; a_y stands alone. Clockwise pitch and moments
+        are positive.
         """
         p = body_model(self._body, 0)
         rate = body.pitch_rate
@@ -159,27 +174,46 @@ class PlanarMotion(System):
             m12 += mass * leg.h
             m21 += mass * yn
             m22 += mass * yn * leg.h
-            bias = n * s * (loads.tangential + model.m_d * s * (2.0 * rate * leg.vh - rate * rate * leg.r * place.cos_g))
+            bias = (
+                n
+                * s
+                * (
+                    loads.tangential
+                    + model.m_d * s * (2.0 * rate * leg.vh - rate * rate * leg.r * place.cos_g)
+                )
+            )
             force_x += n * loads.body_x - bias
             force_y += n * loads.body_y
             moment += n * loads.moment - bias * yn
         determinant = m11 * m22 - m12 * m21
-        return BodyAcceleration((force_x * m22 - moment * m12) / determinant, force_y / p.m_u, (m11 * moment - m21 * force_x) / determinant)
+        return BodyAcceleration(
+            (force_x * m22 - moment * m12) / determinant,
+            force_y / p.m_u,
+            (m11 * moment - m21 * force_x) / determinant,
+        )
 
     def _move(self, i: int, y: Doubles, rate: float, a: BodyAcceleration, dy: Doubles) -> float:
-        """Write the rates of leg group `i` to `dy`; return the power [W] that its transverse forces create."""
+        """Write the rates of leg group `i` to `dy`; return the power [W] that its transverse forces
+        create.
+        """
         leg = leg_state(y, BODY + LEG * i)
         place = leg_place(self._places, i)
         model = leg_model(self._legs, i)
         loads = planar_loads_of(self._loads, i)
         frame = frame_acceleration(leg, place, rate, a)
-        put(leg_rates(leg, leg_forces_of(self._forces, i), loads, place, frame, model.m_d), dy, BODY + LEG * i)
+        put(
+            leg_rates(leg, leg_forces_of(self._forces, i), loads, place, frame, model.m_d),
+            dy,
+            BODY + LEG * i,
+        )
         force = -model.m_d * place.sin_g * frame.x - loads.tangential
         arm = leg.h - transverse_height(leg.h, body_model(self._body, 0), model)
         return place.legs * (-force * place.sin_g * rate * arm)
 
     def _powers(self, external: float, transverse: float) -> Accounts:
-        """The powers [W] that the accounts gather; those from outside and of the transverse forces are given."""
+        """The powers [W] that the accounts gather; those from outside and of the transverse forces
+        are given.
+        """
         orifice = seal = stop = auxiliary = contact = friction = ground = 0.0
         for i in range(self.groups):
             n = leg_place(self._places, i).legs
@@ -191,7 +225,9 @@ class PlanarMotion(System):
             contact += n * forces.contact
             friction += n * forces.friction
             ground += n * planar_loads_of(self._loads, i).ground
-        return Accounts(orifice, seal, stop, auxiliary, contact, friction, external, ground, transverse)
+        return Accounts(
+            orifice, seal, stop, auxiliary, contact, friction, external, ground, transverse
+        )
 
     def stiff(self, k: int) -> StiffPair:
         """The states of leg group `k`'s main strut law."""
@@ -204,4 +240,8 @@ class PlanarMotion(System):
         for i in range(self.groups):
             leg = leg_state(y, BODY + LEG * i)
             q = friction_bound(leg.q1, leg.q2, leg_model(self._legs, i))
-            put(LegState(leg.r, leg.h, leg.vr, leg.vh, leg.z1, leg.z2, q.q1, q.q2), y, BODY + LEG * i)
+            put(
+                LegState(leg.r, leg.h, leg.vr, leg.vh, leg.z1, leg.z2, q.q1, q.q2),
+                y,
+                BODY + LEG * i,
+            )

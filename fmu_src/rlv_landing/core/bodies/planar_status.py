@@ -8,16 +8,20 @@ from ..records import BodyState, Phase
 
 # [rad]
 TURNED_OVER = 1.5707963267948966
-# of a vehicle at rest, at most: speed [m/s] by its kinetic energy, sum of the body's accelerations [m/s2, rad/s2]
+# of a vehicle at rest, at most: speed [m/s] by its kinetic energy, sum of the body's accelerations
+# [m/s2, rad/s2]
 REST_SPEED = 2e-3
 REST_ACCELERATION = 0.05
 
 
-def phase_of(body: BodyState, rates: BodyState, margin: float, depth: float, kinetic: float, mass: float) -> int:
-    """The `Phase`, from the stability `margin` [m], the `depth` [m] of the footpad that is deepest in the ground, the `kinetic` energy [J]
-    and the `mass` [kg] of the vehicle.
+def phase_of(
+    body: BodyState, rates: BodyState, margin: float, depth: float, kinetic: float, mass: float
+) -> int:
+    """The `Phase`, from the stability `margin` [m], the `depth` [m] of the footpad that is deepest
+    in the ground, the `kinetic` energy [J] and the `mass` [kg] of the vehicle.
 
-    Settled: a footpad touches, the kinetic energy is that of 2 mm/s at most, and the body's acceleration is below 0.05 m/s2.
+    Settled: a footpad touches, the kinetic energy is that of 2 mm/s at most, and the body's
+        acceleration is below 0.05 m/s2.
     """
     if margin < 0.0 or fabs(body.pitch) > TURNED_OVER:
         return Phase.TOPPLED

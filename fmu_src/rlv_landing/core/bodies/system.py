@@ -7,11 +7,14 @@ from ..records import StiffPair
 
 
 class System:
-    """An initial value problem y' = f(y, u(t)), with what a solver needs of it. Bodies are subclasses.
+    """An initial value problem y' = f(y, u(t)), with what a solver needs of it.
+
+    Bodies are subclasses.
 
     Attributes:
-        n: length of the state; the first `controlled` states count in a step's error, the others are carried along.
-        scale, relative: [n] a step's error in state i is measured by rtol times scale_i, or by rtol times (scale_i + |y_i|) where
+        n: length of the state; the first `controlled` states count in a step's error, the others
+        are carried along. scale, relative: [n] a step's error in state i is measured by rtol times
+        scale_i, or by rtol times (scale_i + |y_i|) where
             relative_i is 1.
         inputs: how many inputs there are.
         row: how many outputs there are.
@@ -26,7 +29,9 @@ class System:
     scale: Buffer
     relative: Buffer
 
-    def __init__(self, scale: Buffer, relative: Buffer, carried: int, inputs: int, row: int, stiff_pairs: int) -> None:
+    def __init__(
+        self, scale: Buffer, relative: Buffer, carried: int, inputs: int, row: int, stiff_pairs: int
+    ) -> None:
         self.n = len(scale)
         self.controlled = self.n - carried
         self.inputs = inputs
@@ -36,13 +41,17 @@ class System:
         self.relative = relative
 
     def inputs_after(self, u: Doubles, rates: Doubles, dt: float, now: Doubles) -> None:
-        """Write to `now` the inputs that are `u`, `dt` [s] ago, and have gone on at their `rates` [unit/s]."""
+        """Write to `now` the inputs that are `u`, `dt` [s] ago, and have gone on at their `rates`
+        [unit/s].
+        """
 
     def rhs(self, y: Doubles, u: Doubles, dy: Doubles) -> None:
         """Write dy/dt at the state `y` and the inputs `u` to `dy`."""
 
     def stiff(self, k: int) -> StiffPair:
-        """The `k`-th pair of states whose difference decays fast, as it was where `rhs` was called last."""
+        """The `k`-th pair of states whose difference decays fast, as it was where `rhs` was called
+        last.
+        """
         return StiffPair(0, 0, 0.0, 0.0)
 
     def project(self, y: Doubles) -> None:

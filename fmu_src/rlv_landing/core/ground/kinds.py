@@ -1,6 +1,9 @@
-"""The ground under a footpad: the normal law, and the laws of friction. A new law is a file of its own, and its import and its line here.
+"""The ground under a footpad: the normal law, and the laws of friction.
 
-A law's place in the table is its number in a `LegModel`. Compiled, the functions that choose a law branch on that number.
+A new law is a file of its own, and its import and its line here.
+
+A law's place in the table is its number in a `LegModel`. Compiled, the functions that choose a law
+branch on that number.
 """
 
 from __future__ import annotations
@@ -15,7 +18,9 @@ from .paper_friction import paper_friction, paper_friction_bound
 
 
 class FrictionLaw(NamedTuple):
-    """A law of friction: what it gives at (motion, normal force, q1, q2), and where it lets (q1, q2) be at the end of a step."""
+    """A law of friction: what it gives at (motion, normal force, q1, q2), and where it lets (q1,
+    q2) be at the end of a step.
+    """
 
     force: Callable[[FootMotion, float, float, float, LegModel], FrictionForce]
     bound: Callable[[float, float, LegModel], FrictionBound]
@@ -37,7 +42,12 @@ def friction_bound(q1: float, q2: float, p: LegModel) -> FrictionBound:
 
 
 def ground_force(foot: FootMotion, q1: float, q2: float, p: LegModel) -> GroundForce:
-    """The ground on a footpad, in the ground's axes. Friction power [W] is taken from the motion, part of it held by the law's states."""
+    """The ground on a footpad, in the ground's axes.
+
+    Friction power [W] is taken from the motion, part of it held by the law's states.
+    """
     n = normal_force(foot.depth, foot.depth_rate, p)
     f = friction(foot, n.force, q1, q2, p)
-    return GroundForce(n.force, f.f1, f.f2, f.dq1, f.dq2, n.dissipated, -(f.f1 * foot.slip_1 + f.f2 * foot.slip_2))
+    return GroundForce(
+        n.force, f.f1, f.f2, f.dq1, f.dq2, n.dissipated, -(f.f1 * foot.slip_1 + f.f2 * foot.slip_2)
+    )

@@ -1,4 +1,5 @@
-"""The paper's friction: reset-integral with Stribeck effect, along each of the ground's directions by itself. Eqs. (16), (17).
+"""The paper's friction: reset-integral with Stribeck effect, along each of the ground's directions
+by itself. Eqs. (16), (17).
 
 Its states q1, q2 are the friction displacements [m] along 1 and 2.
 """
@@ -12,10 +13,13 @@ from .normal import damping_ramp
 
 
 def friction_along(d: float, Fn: float, mu: float, v: float, s: float, p: LegModel) -> Friction:
-    """Friction along one direction, at slip speed `v` [m/s] and displacement `s` [m]. Eqs. (16), (17).
+    """Friction along one direction, at slip speed `v` [m/s] and displacement `s` [m].
 
-    Slip where `s` has reached s_r0 in the sense of `v`: s' = 0; else stick: s' = v. The stick damping Cr fades in with the
-    contact and out towards slip. Out of contact `s` returns to 0 with time constant tau_sr. [closure]
+    Eqs. (16), (17).
+
+    Slip where `s` has reached s_r0 in the sense of `v`: s' = 0; else stick: s' = v. The stick
+    damping Cr fades in with the contact and out towards slip. Out of contact `s` returns to 0 with
+    time constant tau_sr. [closure]
     """
     if d <= 0.0:
         return Friction(0.0, -s / p.tau_sr)
@@ -34,17 +38,24 @@ def friction_along(d: float, Fn: float, mu: float, v: float, s: float, p: LegMod
 def paper_friction(foot: FootMotion, Fn: float, q1: float, q2: float, p: LegModel) -> FrictionForce:
     """Friction on a footpad under the normal force `Fn` [N].
 
-    The friction coefficient is shared by the direction of slip, mu_1^2 + mu_2^2 = mu^2; at rest `share_1` is 1's part of mu^2.
+    The friction coefficient is shared by the direction of slip, mu_1^2 + mu_2^2 = mu^2; at rest
+    `share_1` is 1's part of mu^2.
     """
     w = p.v_dir * p.v_dir
     v1 = foot.slip_1
     v2 = foot.slip_2
     speed = v1 * v1 + v2 * v2 + w
-    along1 = friction_along(foot.depth, Fn, p.mu * sqrt((v1 * v1 + p.share_1 * w) / speed), v1, q1, p)
-    along2 = friction_along(foot.depth, Fn, p.mu * sqrt((v2 * v2 + (1.0 - p.share_1) * w) / speed), v2, q2, p)
+    along1 = friction_along(
+        foot.depth, Fn, p.mu * sqrt((v1 * v1 + p.share_1 * w) / speed), v1, q1, p
+    )
+    along2 = friction_along(
+        foot.depth, Fn, p.mu * sqrt((v2 * v2 + (1.0 - p.share_1) * w) / speed), v2, q2, p
+    )
     return FrictionForce(along1.force, along2.force, along1.rate, along2.rate)
 
 
 def paper_friction_bound(q1: float, q2: float, p: LegModel) -> FrictionBound:
-    """The displacements within the slip limit: what a step gathers beyond it after sticking has turned to slip is taken off."""
+    """The displacements within the slip limit: what a step gathers beyond it after sticking has
+    turned to slip is taken off.
+    """
     return FrictionBound(min(max(q1, -p.s_r0), p.s_r0), min(max(q2, -p.s_r0), p.s_r0))

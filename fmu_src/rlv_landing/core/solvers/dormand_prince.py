@@ -1,7 +1,8 @@
-"""Dormand-Prince 5(4), the paper's ode45: explicit, held by the stiffest chamber whatever the tolerance.
+"""Dormand-Prince 5(4), the paper's ode45: explicit, held by the stiffest chamber whatever the
+tolerance.
 
-Coefficients: Dormand and Prince (1980); the fourth-order interpolant: Hairer, Norsett and Wanner, Solving Ordinary Differential
-Equations I, II.6.
+Coefficients: Dormand and Prince (1980); the fourth-order interpolant: Hairer, Norsett and Wanner,
+Solving Ordinary Differential Equations I, II.6.
 """
 
 from __future__ import annotations
@@ -17,10 +18,27 @@ A21 = 1.0 / 5.0
 A31, A32 = 3.0 / 40.0, 9.0 / 40.0
 A41, A42, A43 = 44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0
 A51, A52, A53, A54 = 19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0
-A61, A62, A63, A64, A65 = 9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0
+A61, A62, A63, A64, A65 = (
+    9017.0 / 3168.0,
+    -355.0 / 33.0,
+    46732.0 / 5247.0,
+    49.0 / 176.0,
+    -5103.0 / 18656.0,
+)
 A71, A73, A74, A75, A76 = 35.0 / 384.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0
-E1, E3, E4, E5, E6, E7 = 71.0 / 57600.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0
-D1, D3, D4 = -12715105075.0 / 11282082432.0, 87487479700.0 / 32700410799.0, -10690763975.0 / 1880347072.0
+E1, E3, E4, E5, E6, E7 = (
+    71.0 / 57600.0,
+    -71.0 / 16695.0,
+    71.0 / 1920.0,
+    -17253.0 / 339200.0,
+    22.0 / 525.0,
+    -1.0 / 40.0,
+)
+D1, D3, D4 = (
+    -12715105075.0 / 11282082432.0,
+    87487479700.0 / 32700410799.0,
+    -10690763975.0 / 1880347072.0,
+)
 D5, D6, D7 = 701980252875.0 / 199316789632.0, -1453857185.0 / 822651844.0, 69997945.0 / 29380423.0
 
 
@@ -59,7 +77,9 @@ class DormandPrince(Solver):
             s[i] = y[i] + h * (A61 * k1[i] + A62 * k2[i] + A63 * k3[i] + A64 * k4[i] + A65 * k5[i])
         self._derivatives(t + h, s, k6)
         for i in range(n):
-            end[i] = y[i] + h * (A71 * k1[i] + A73 * k3[i] + A74 * k4[i] + A75 * k5[i] + A76 * k6[i])
+            end[i] = y[i] + h * (
+                A71 * k1[i] + A73 * k3[i] + A74 * k4[i] + A75 * k5[i] + A76 * k6[i]
+            )
         self._derivatives(t + h, end, k7)
         for i in range(n):
             e[i] = h * (E1 * k1[i] + E3 * k3[i] + E4 * k4[i] + E5 * k5[i] + E6 * k6[i] + E7 * k7[i])
@@ -69,5 +89,10 @@ class DormandPrince(Solver):
         n = self.n
         for i in range(n):
             self.dense[4 * n + i] = h * (
-                D1 * self.k1[i] + D3 * self.k3[i] + D4 * self.k4[i] + D5 * self.k5[i] + D6 * self.k6[i] + D7 * self.k_end[i]
+                D1 * self.k1[i]
+                + D3 * self.k3[i]
+                + D4 * self.k4[i]
+                + D5 * self.k5[i]
+                + D6 * self.k6[i]
+                + D7 * self.k_end[i]
             )

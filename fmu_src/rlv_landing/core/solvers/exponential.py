@@ -1,14 +1,19 @@
-"""Runge-Kutta of fourth order in which stiff pairs of states even out exponentially: no pair holds the step, however stiff.
+"""Runge-Kutta of fourth order in which stiff pairs of states even out exponentially: no pair holds
+the step, however stiff.
 
-A system tells of pairs of states whose difference decays at lambda = a1 + a2, far faster than all else changes: the pressures in the
-chambers of a damper, which its orifice evens out at 1e4 to 1e5 1/s near zero flow, while all else in a landing changes at 1e3 to 5e3 1/s.
-That part of the pair's rates, (a1 x, -a2 x) with x the growth of the difference since the step's start and a1, a2 as they are there, is
-solved exactly within a step; the rest is taken by the classic Runge-Kutta scheme. That is exponential time differencing, ETDRK4-B of
-Krogstad, Generalized integrating factor methods for stiff PDEs, Journal of Computational Physics 203 (2005); here the stiff part is a
-matrix of rank one for each pair, so that its functions are scalars in closed form. Where nothing is stiff it is the classic scheme.
+A system tells of pairs of states whose difference decays at lambda = a1 + a2, far faster than all
+else changes: the pressures in the chambers of a damper, which its orifice evens out at 1e4 to 1e5
+1/s near zero flow, while all else in a landing changes at 1e3 to 5e3 1/s. That part of the pair's
+rates, (a1 x, -a2 x) with x the growth of the difference since the step's start and a1, a2 as they
+are there, is solved exactly within a step; the rest is taken by the classic Runge-Kutta scheme.
+That is exponential time differencing, ETDRK4-B of Krogstad, Generalized integrating factor methods
+for stiff PDEs, Journal of Computational Physics 203 (2005); here the stiff part is a matrix of rank
+one for each pair, so that its functions are scalars in closed form. Where nothing is stiff it is
+the classic scheme.
 
-The step's error is that against a third-order companion whose last stage is the right-hand side at the step's end, which is the next
-step's first. Both see the step's end only; a part of the difference to a second-order companion shows them a kink inside the step.
+The step's error is that against a third-order companion whose last stage is the right-hand side at
+the step's end, which is the next step's first. Both see the step's end only; a part of the
+difference to a second-order companion shows them a kink inside the step.
 """
 
 from __future__ import annotations
@@ -34,7 +39,8 @@ STAGES = 5
 class Exponential(Solver):
     """Four right-hand sides a step, fourth order.
 
-    `driven` holds, for each stiff pair and each of the STAGES, the rate of its difference less the decay of the difference's growth.
+    `driven` holds, for each stiff pair and each of the STAGES, the rate of its difference less the
+    decay of the difference's growth.
     """
 
     driven: Buffer
@@ -66,15 +72,23 @@ class Exponential(Solver):
             keep(phi_weights(h * (pair.a1 + pair.a2)), self._weights, k)
 
     def _nonlinear_rate(self, stage: int, s: Doubles, rates: Doubles) -> None:
-        """Keep the rate of each pair's difference at a stage, less the decay of its growth: from the state `s` and the `rates` there."""
+        """Keep the rate of each pair's difference at a stage, less the decay of its growth: from
+        the state `s` and the `rates` there.
+        """
         y = data(self.y)
         for k in range(self.system.stiff_pairs):
             pair = stiff_pair_of(self._pairs, k)
             growth = s[pair.j] - s[pair.i] - (y[pair.j] - y[pair.i])
-            self.driven[STAGES * k + stage] = rates[pair.j] - rates[pair.i] + (pair.a1 + pair.a2) * growth
+            self.driven[STAGES * k + stage] = (
+                rates[pair.j] - rates[pair.i] + (pair.a1 + pair.a2) * growth
+            )
 
-    def _replace_linear_growth(self, pair: StiffPair, s: Doubles, growth: float, plain: float) -> None:
-        """In `s`, put `growth` of the pair's difference in the place of the classic scheme's `plain` one; what does not decay stays."""
+    def _replace_linear_growth(
+        self, pair: StiffPair, s: Doubles, growth: float, plain: float
+    ) -> None:
+        """In `s`, put `growth` of the pair's difference in the place of the classic scheme's
+        `plain` one; what does not decay stays.
+        """
         decay = pair.a1 + pair.a2
         if decay > 0.0:
             shift = (plain - growth) / decay
@@ -82,7 +96,9 @@ class Exponential(Solver):
             s[pair.j] -= pair.a2 * shift
 
     def _stage(self, i: int, ahead: float, h: float, k: Doubles, k_next: Doubles) -> None:
-        """Stage `i` of a step of `h` [s], `ahead` [s] from its start: from the rates `k` of the stage before to `k_next`."""
+        """Stage `i` of a step of `h` [s], `ahead` [s] from its start: from the rates `k` of the
+        stage before to `k_next`.
+        """
         y, s, d = data(self.y), data(self.y_stage), data(self.driven)
         for j in range(self.n):
             s[j] = y[j] + ahead * k[j]
@@ -95,7 +111,9 @@ class Exponential(Solver):
         self._nonlinear_rate(i, s, k_next)
 
     def _try_step(self, h: float) -> None:
-        """Write the stages and the new state of a step of `h` [s], the right-hand side there, and the error."""
+        """Write the stages and the new state of a step of `h` [s], the right-hand side there, and
+        the error.
+        """
         k1, k2, k3, k4 = data(self.k1), data(self.k2), data(self.k3), data(self.k4)
         self._weigh_pairs(h)
         self._stage(1, 0.5 * h, h, k1, k2)
@@ -107,7 +125,13 @@ class Exponential(Solver):
     def _finish_step(self, h: float) -> None:
         """The new state from the four stages, and the right-hand side there."""
         y, s, d = data(self.y), data(self.y_new), data(self.driven)
-        k1, k2, k3, k4, k5 = data(self.k1), data(self.k2), data(self.k3), data(self.k4), data(self.k_end)
+        k1, k2, k3, k4, k5 = (
+            data(self.k1),
+            data(self.k2),
+            data(self.k3),
+            data(self.k4),
+            data(self.k_end),
+        )
         for i in range(self.n):
             s[i] = y[i] + h * (SIXTH * (k1[i] + k4[i]) + THIRD * (k2[i] + k3[i]))
         for g in range(self.system.stiff_pairs):
@@ -115,21 +139,31 @@ class Exponential(Solver):
             w = phi_weights_of(self._weights, g)
             q = STAGES * g
             growth = h * (w.b1 * d[q] + w.b23 * (d[q + 1] + d[q + 2]) + w.b4 * d[q + 3])
-            self._replace_linear_growth(pair, s, growth, (s[pair.j] - s[pair.i]) - (y[pair.j] - y[pair.i]))
+            self._replace_linear_growth(
+                pair, s, growth, (s[pair.j] - s[pair.i]) - (y[pair.j] - y[pair.i])
+            )
         self._derivatives(self.t + h, s, k5)
         self._nonlinear_rate(4, s, k5)
 
     def _compare(self, h: float) -> None:
         """The step's deviation from its companions."""
         e, d, relative = data(self.deviation), data(self.driven), data(self.system.relative)
-        k1, k2, k3, k4, k5 = data(self.k1), data(self.k2), data(self.k3), data(self.k4), data(self.k_end)
+        k1, k2, k3, k4, k5 = (
+            data(self.k1),
+            data(self.k2),
+            data(self.k3),
+            data(self.k4),
+            data(self.k_end),
+        )
         for i in range(self.n):
             e[i] = h * SIXTH * (k4[i] - k5[i])
         for g in range(self.system.stiff_pairs):
             pair = stiff_pair_of(self._pairs, g)
             w = phi_weights_of(self._weights, g)
             q = STAGES * g
-            self._replace_linear_growth(pair, e, h * w.b4 * (d[q + 3] - d[q + 4]), e[pair.j] - e[pair.i])
+            self._replace_linear_growth(
+                pair, e, h * w.b4 * (d[q + 3] - d[q + 4]), e[pair.j] - e[pair.i]
+            )
         for i in range(self.n):
             if relative[i] == 0.0:
                 e[i] = fabs(e[i]) + KINK * h * SIXTH * fabs(k1[i] - k2[i] - k3[i] + k4[i])

@@ -1,4 +1,6 @@
-"""The functions that exponential time differencing is made of, and the weights that Krogstad's scheme makes of them."""
+"""The functions that exponential time differencing is made of, and the weights that Krogstad's
+scheme makes of them.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,9 @@ def phi2(z: float, f1: float) -> float:
     """(1 - phi1)/z, from `f1` = phi1(z); Taylor's series where that would cancel."""
     if z > SMALL:
         return (1.0 - f1) / z
-    tail = 1.0 / 720.0 - z * (1.0 / 5040.0 - z * (1.0 / 40320.0 - z * (1.0 / 362880.0 - z / 3628800.0)))
+    tail = 1.0 / 720.0 - z * (
+        1.0 / 5040.0 - z * (1.0 / 40320.0 - z * (1.0 / 362880.0 - z / 3628800.0))
+    )
     return 0.5 - z * (1.0 / 6.0 - z * (1.0 / 24.0 - z * (1.0 / 120.0 - z * tail)))
 
 
@@ -27,7 +31,9 @@ def phi3(z: float, f2: float) -> float:
     """(1/2 - phi2)/z, from `f2` = phi2(z); Taylor's series where that would cancel."""
     if z > SMALL:
         return (0.5 - f2) / z
-    tail = 1.0 / 5040.0 - z * (1.0 / 40320.0 - z * (1.0 / 362880.0 - z * (1.0 / 3628800.0 - z / 39916800.0)))
+    tail = 1.0 / 5040.0 - z * (
+        1.0 / 40320.0 - z * (1.0 / 362880.0 - z * (1.0 / 3628800.0 - z / 39916800.0))
+    )
     return 1.0 / 6.0 - z * (1.0 / 24.0 - z * (1.0 / 120.0 - z * (1.0 / 720.0 - z * tail)))
 
 

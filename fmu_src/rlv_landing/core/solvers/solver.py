@@ -1,4 +1,6 @@
-"""One-step integration with dense output, with steps of its own whatever the communication step. The methods are subclasses.
+"""One-step integration with dense output, with steps of its own whatever the communication step.
+
+The methods are subclasses.
 
 Interpolants: Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, II.6.
 """
@@ -17,14 +19,17 @@ FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 1e-5, 2e-3, 1e-16
 
 
 class Solver:
-    """The state of one `System` in time: the present state, and the internal step that reaches ahead of it.
+    """The state of one `System` in time: the present state, and the internal step that reaches
+    ahead of it.
 
-    `y` [n] is the state at `t` (s), the end of the last internal step; `advance` moves `t` to or past a time, `interpolate` gives the
-    state at any time inside the last step. `u` [inputs] holds the inputs at `t_input`, which go on from there at `u_rate` [inputs].
-    `exponent` of the step control is the method's.
+    `y` [n] is the state at `t` (s), the end of the last internal step; `advance` moves `t` to or
+    past a time, `interpolate` gives the state at any time inside the last step. `u` [inputs] holds
+    the inputs at `t_input`, which go on from there at `u_rate` [inputs]. `exponent` of the step
+    control is the method's.
 
-    Forces that switch do so inside steps: the error control finds them. The system takes off at a step's end what the step has gathered
-    beyond where a state may be, which would be a first-order error.
+    Forces that switch do so inside steps: the error control finds them. The system takes off at a
+    step's end what the step has gathered beyond where a state may be, which would be a first-order
+    error.
     """
 
     system: System
@@ -86,7 +91,9 @@ class Solver:
         self._inputs_at(t)
 
     def _inputs_at(self, t: float) -> None:
-        self.system.inputs_after(data(self.u), data(self.u_rate), t - self.t_input, data(self.u_now))
+        self.system.inputs_after(
+            data(self.u), data(self.u_rate), t - self.t_input, data(self.u_now)
+        )
 
     def derivatives(self, t: float, y: Buffer, dy: Buffer) -> None:
         """Write dy/dt at time `t` [s] and state `y` [n] to `dy` [n], for other solvers."""
@@ -98,7 +105,9 @@ class Solver:
         self.rhs_calls += 1.0
 
     def restart(self, t: float) -> None:
-        """Start anew at time `t` [s] from the state in `y` and the inputs in `u`, with no step behind."""
+        """Start anew at time `t` [s] from the state in `y` and the inputs in `u`, with no step
+        behind.
+        """
         self.t = t
         self.t_old = t
         self.t_input = t
@@ -117,16 +126,24 @@ class Solver:
         self._start_step()
 
     def _start_step(self) -> None:
-        """What a method takes from the system at the start of a step, where the right-hand side was called last."""
+        """What a method takes from the system at the start of a step, where the right-hand side was
+        called last.
+        """
 
     def _try_step(self, h: float) -> None:
-        """Compute a step of `h` [s]: the new state, the right-hand side there (`k_end`), the step's `deviation` from its companion."""
+        """Compute a step of `h` [s]: the new state, the right-hand side there (`k_end`), the step's
+        `deviation` from its companion.
+        """
 
     def _dense_correction(self, h: float) -> None:
-        """Write the interpolant's fourth-order part, where the method has one, to the end of `dense`."""
+        """Write the interpolant's fourth-order part, where the method has one, to the end of
+        `dense`.
+        """
 
     def _error(self) -> float:
-        """Error of the step just computed, in units of the tolerance: root mean square over the controlled states."""
+        """Error of the step just computed, in units of the tolerance: root mean square over the
+        controlled states.
+        """
         y, end, deviation = data(self.y), data(self.y_new), data(self.deviation)
         scale, relative = data(self.system.scale), data(self.system.relative)
         total = 0.0
@@ -142,7 +159,13 @@ class Solver:
     def _accept(self, h: float) -> None:
         """Make the step just computed the last one: keep its interpolant, move on."""
         n = self.n
-        d, y, end, k1, k_end = data(self.dense), data(self.y), data(self.y_new), data(self.k1), data(self.k_end)
+        d, y, end, k1, k_end = (
+            data(self.dense),
+            data(self.y),
+            data(self.y_new),
+            data(self.k1),
+            data(self.k_end),
+        )
         for i in range(n):
             change = end[i] - y[i]
             bend = h * k1[i] - change
@@ -161,7 +184,10 @@ class Solver:
         self._start_step()
 
     def advance(self, t_end: float) -> bool:
-        """Take internal steps until `t` is at or past `t_end` [s]. Returns False if the step size has collapsed."""
+        """Take internal steps until `t` is at or past `t_end` [s].
+
+        Returns False if the step size has collapsed.
+        """
         return self._advance(t_end)
 
     def _advance(self, t_end: float) -> bool:
@@ -191,7 +217,9 @@ class Solver:
         a = (t - self.t_old) / span if span > 0.0 else 0.0
         b = 1.0 - a
         for i in range(n):
-            y[i] = d[i] + a * (d[n + i] + b * (d[2 * n + i] + a * (d[3 * n + i] + b * d[4 * n + i])))
+            y[i] = d[i] + a * (
+                d[n + i] + b * (d[2 * n + i] + a * (d[3 * n + i] + b * d[4 * n + i]))
+            )
 
     def outputs_at(self, t: float, y: Buffer, out: Buffer) -> None:
         """Write the outputs at time `t` [s] and state `y` [n] to `out` [row]."""
@@ -202,9 +230,11 @@ class Solver:
         self.system.outputs(y, data(self.u_now), out, at)
 
     def record(self, start: float, every: float, first: int, last: int, rows: Buffer) -> int:
-        """Go on and write the outputs at times start + k every [s], k from `first` to `last` - 1, to `rows`: row k begins at k times `row`.
+        """Go on and write the outputs at times start + k every [s], k from `first` to `last` - 1,
+        to `rows`: row k begins at k times `row`.
 
-        Returns the first k that was not reached: `last`, or earlier if the step size has collapsed. Other threads run meanwhile.
+        Returns the first k that was not reached: `last`, or earlier if the step size has collapsed.
+            Other threads run meanwhile.
         """
         numbers = data(rows)
         with nogil:

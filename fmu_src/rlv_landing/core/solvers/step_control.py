@@ -1,23 +1,30 @@
-"""How long the next step is. Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, II.4."""
+"""How long the next step is.
+
+Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, II.4.
+"""
 
 from __future__ import annotations
 
 from math import pow
 
-# part of the step that the error would allow, and how much shorter and longer the next step is at most
+# part of the step that the error would allow, and how much shorter and longer the next step is at
+# most
 SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
 # weight of the error before: a step control with memory is calmer
 BETA = 0.04
-# errors, in units of the tolerance, are taken as no smaller: that of this step, and that of the step before, which starts as this
+# errors, in units of the tolerance, are taken as no smaller: that of this step, and that of the
+# step before, which starts as this
 LEAST_ERROR, LEAST_PREVIOUS_ERROR = 1e-10, 1e-4
 # an error that says nothing of how much shorter the step must be
 HOPELESS_ERROR = 1e10
 
 
 def step_factor(error: float, previous: float, exponent: float) -> float:
-    """The next step's length, in parts of the length of a step with this `error`; `previous` is that of the step before.
+    """The next step's length, in parts of the length of a step with this `error`; `previous` is
+    that of the step before.
 
-    Errors are in units of the tolerance: a step with an error above 1 is taken again, shorter. `exponent` is the method's.
+    Errors are in units of the tolerance: a step with an error above 1 is taken again, shorter.
+        `exponent` is the method's.
     """
     if error <= 1.0:
         factor = SAFETY * pow(previous, BETA) / pow(max(error, LEAST_ERROR), exponent)

@@ -6,9 +6,11 @@ from ..records import AxialForce, LegModel
 
 
 def stop_force(s: float, v: float, p: LegModel) -> AxialForce:
-    """The end stops at stroke `s` [m] and stroke rate `v` [m/s]; force positive where it pushes the strut longer.
+    """The end stops at stroke `s` [m] and stroke rate `v` [m/s]; force positive where it pushes the
+    strut longer.
 
-    One-sided K e (1 + c e') with overlap `e` beyond full extension (s < 0) or full compression (s > s_max), never pulling.
+    One-sided K e (1 + c e') with overlap `e` beyond full extension (s < 0) or full compression (s >
+    s_max), never pulling.
     """
     if s < 0.0:
         force = -p.K_stop * s * (1.0 - p.c_stop * v)

@@ -11,12 +11,14 @@ P_FLOOR = 1.0
 
 
 def fluid(P: float, x: float, n: float, B0: float, kB: float, Pa: float) -> FluidState:
-    """The mixture at absolute pressure `P` [Pa], with v the specific volume relative to that at `Pa`.
+    """The mixture at absolute pressure `P` [Pa], with v the specific volume relative to that at
+    `Pa`.
 
-    v = (1 - x) (1 + kB (P - Pa)/B0)^(-1/kB) + x (Pa/P)^(1/n); `x` air's volume fraction at `Pa`, `n` its polytropic
-    exponent, `B0`, `kB` the liquid's bulk modulus [Pa] and its slope. Density is rho0/v and the effective bulk modulus
-    -v/(dv/dP), so that liquid mass is conserved by construction. h = integral of v dP from `Pa` [Pa] is the energy that a
-    flow carries. Pressures below 1 Pa count as 1 Pa.
+    v = (1 - x) (1 + kB (P - Pa)/B0)^(-1/kB) + x (Pa/P)^(1/n); `x` air's volume fraction at `Pa`,
+    `n` its polytropic exponent, `B0`, `kB` the liquid's bulk modulus [Pa] and its slope. Density is
+    rho0/v and the effective bulk modulus -v/(dv/dP), so that liquid mass is conserved by
+    construction. h = integral of v dP from `Pa` [Pa] is the energy that a flow carries. Pressures
+    below 1 Pa count as 1 Pa.
     """
     if P < P_FLOOR:
         P = P_FLOOR
@@ -30,5 +32,7 @@ def fluid(P: float, x: float, n: float, B0: float, kB: float, Pa: float) -> Flui
 
 
 def strain_energy(f: FluidState, P: float, V: float, Pa: float) -> float:
-    """Energy [J] stored in volume `V` [m3] of the mixture `f` at pressure `P` [Pa]: V/v times (h - (P - Pa) v), zero at `Pa`."""
+    """Energy [J] stored in volume `V` [m3] of the mixture `f` at pressure `P` [Pa]: V/v times (h -
+    (P - Pa) v), zero at `Pa`.
+    """
     return V / f.v * (f.h - (P - Pa) * f.v)

@@ -1,6 +1,7 @@
 """The laws of struts. A new law is a file of its own, and its import and its line in a table here.
 
-A law's place in its table is its number in a `LegModel`. Compiled, the functions below branch on that number.
+A law's place in its table is its number in a `LegModel`. Compiled, the functions below branch on
+that number.
 """
 
 from __future__ import annotations
@@ -15,14 +16,18 @@ from .liquid_spring import liquid_spring, liquid_spring_status
 
 
 class MainStrutLaw(NamedTuple):
-    """A law of the main strut: what it gives at (stroke, rate, z1, z2), and what is read of it at (stroke, z1, z2)."""
+    """A law of the main strut: what it gives at (stroke, rate, z1, z2), and what is read of it at
+    (stroke, z1, z2).
+    """
 
     force: Callable[[float, float, float, float, LegModel], StrutForce]
     status: Callable[[float, float, float, LegModel], StrutStatus]
 
 
 class AuxiliaryStrutLaw(NamedTuple):
-    """A law of the auxiliary strut: what it gives at (stroke, rate), and the energy [J] that it holds at a stroke."""
+    """A law of the auxiliary strut: what it gives at (stroke, rate), and the energy [J] that it
+    holds at a stroke.
+    """
 
     force: Callable[[float, float, LegModel], AxialForce]
     energy: Callable[[float, LegModel], float]

@@ -1,6 +1,9 @@
-"""The liquid-spring damper of the main strut: two chambers, an orifice, a seal, two end stops. Eq. (12).
+"""The liquid-spring damper of the main strut: two chambers, an orifice, a seal, two end stops.
 
-Its states z1, z2 are the absolute pressures P1, P2 [Pa] in the upper annulus (chamber 1) and the lower bore (chamber 2).
+Eq. (12).
+
+Its states z1, z2 are the absolute pressures P1, P2 [Pa] in the upper annulus (chamber 1) and the
+lower bore (chamber 2).
 """
 
 from __future__ import annotations
@@ -15,22 +18,32 @@ from .fluid import fluid, strain_energy
 def orifice_flow(dP: float, density_ratio: float, p: LegModel) -> float:
     """Volume flow [m3/s] from the lower to the upper chamber under `dP` = P2 - P1 [Pa]. [closure]
 
-    Cd Ao sqrt(2/rho) dP/(dP^2 + dP_lam^2)^(1/4): the square-root law with a laminar passage through zero.
-    `density_ratio` is the mean of rho/rho0 in the two chambers. Compression and rebound have areas of their own.
+    Cd Ao sqrt(2/rho) dP/(dP^2 + dP_lam^2)^(1/4): the square-root law with a laminar passage through
+    zero. `density_ratio` is the mean of rho/rho0 in the two chambers. Compression and rebound have
+    areas of their own.
     """
     area = p.CdAo_c if dP > 0.0 else p.CdAo_r
-    return area * sqrt(2.0 / (p.rho0 * density_ratio)) * dP / sqrt(sqrt(dP * dP + p.dP_lam * p.dP_lam))
+    return (
+        area * sqrt(2.0 / (p.rho0 * density_ratio)) * dP / sqrt(sqrt(dP * dP + p.dP_lam * p.dP_lam))
+    )
 
 
 def orifice_slope(dP: float, density_ratio: float, p: LegModel) -> float:
     """Derivative of `orifice_flow` by `dP` [m3/(s Pa)]."""
     area = p.CdAo_c if dP > 0.0 else p.CdAo_r
     square = dP * dP + p.dP_lam * p.dP_lam
-    return area * sqrt(2.0 / (p.rho0 * density_ratio)) * (square - 0.5 * dP * dP) / (square * sqrt(sqrt(square)))
+    return (
+        area
+        * sqrt(2.0 / (p.rho0 * density_ratio))
+        * (square - 0.5 * dP * dP)
+        / (square * sqrt(sqrt(square)))
+    )
 
 
 def seal_friction(v: float, P1: float, P2: float, p: LegModel) -> float:
-    """Seal friction [N] against the stroke rate `v` [m/s]: Coulomb + pressure-proportional + Stribeck, smoothed. [closure]"""
+    """Seal friction [N] against the stroke rate `v` [m/s]: Coulomb + pressure-proportional +
+    Stribeck, smoothed. [closure]
+    """
     ratio = v / p.v_str
     level = p.Fc + p.kp * 0.5 * (fabs(P1 - p.Pa) + fabs(P2 - p.Pa)) + p.Fs * exp(-ratio * ratio)
     return level * tanh(v / p.v_sm)
@@ -55,11 +68,15 @@ def liquid_spring(s: float, v: float, P1: float, P2: float, p: LegModel) -> Stru
     force = (P2 - p.Pa) * p.A2 - (P1 - p.Pa) * p.A1 + F_seal + stop.force
     a1 = stiffness1 * f1.v * slope
     a2 = stiffness2 * f2.v * slope
-    return StrutForce(force, dP1, dP2, ratio * Q * (f2.h - f1.h), F_seal * v, stop.dissipated, a1, a2)
+    return StrutForce(
+        force, dP1, dP2, ratio * Q * (f2.h - f1.h), F_seal * v, stop.dissipated, a1, a2
+    )
 
 
 def liquid_spring_status(s: float, P1: float, P2: float, p: LegModel) -> StrutStatus:
-    """What the liquid and the end stops hold at stroke `s` [m], the pressures, and the liquid's mass."""
+    """What the liquid and the end stops hold at stroke `s` [m], the pressures, and the liquid's
+    mass.
+    """
     V1 = p.V10 + p.A1 * s
     V2 = p.V20 - p.A2 * s
     f1 = fluid(P1, p.x_air, p.n_air, p.B0, p.kB, p.Pa)
