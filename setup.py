@@ -1,7 +1,8 @@
-"""Compiles the core where Cython and a C compiler are there; without them the package works, slowly, from the same files.
+"""Compiles the core where Cython and a C compiler are there; without them the package works,
+slowly, from the same files.
 
-From Python 3.11 on the binary is of the limited API: one for all versions from 3.11 on, in the FMU as well. Python 3.10 has no buffers
-in its limited API: what it compiles serves 3.10 alone.
+From Python 3.11 on the binary is of the limited API: one for all versions from 3.11 on, in the FMU
+as well. Python 3.10 has no buffers in its limited API: what it compiles serves 3.10 alone.
 """
 
 import sys
@@ -21,13 +22,24 @@ def extensions() -> list[Extension]:
         from Cython.Build import cythonize
     except ImportError:
         return []
-    from fmu_build.core_source import COMPILE_ARGS, CORE, DIRECTIVES, LIMITED_API, MODULE, write_source
+    from fmu_build.core_source import (
+        COMPILE_ARGS,
+        CORE,
+        DIRECTIVES,
+        LIMITED_API,
+        MODULE,
+        write_source,
+    )
 
     if LIMITED:
         # it would be found before the binary for all versions
         (CORE / f"{MODULE}{sysconfig.get_config_var('EXT_SUFFIX')}").unlink(missing_ok=True)
     source = write_source(Path("build") / "core")
-    translated = cythonize([Extension(f"{source.parent.name}.{MODULE}", [str(source)])], compiler_directives=DIRECTIVES, quiet=True)
+    translated = cythonize(
+        [Extension(f"{source.parent.name}.{MODULE}", [str(source)])],
+        compiler_directives=DIRECTIVES,
+        quiet=True,
+    )
     return [
         Extension(
             f"rlv_landing.core.{MODULE}",
@@ -40,4 +52,7 @@ def extensions() -> list[Extension]:
     ]
 
 
-setup(ext_modules=extensions(), options={"bdist_wheel": {"py_limited_api": "cp311"}} if LIMITED else {})
+setup(
+    ext_modules=extensions(),
+    options={"bdist_wheel": {"py_limited_api": "cp311"}} if LIMITED else {},
+)

@@ -1,4 +1,7 @@
-"""Cython's annotated HTML of the compiled core: the more yellow a line, the more Python it calls. `make annotate` writes it to build/."""
+"""Cython's annotated HTML of the compiled core: the more yellow a line, the more Python it calls.
+
+`make annotate` writes it to build/.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,9 @@ ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT / "fmu_src"))
 from fmu_build.core_source import DIRECTIVES, MODULE, write_source  # noqa: E402
 
-LINE = re.compile(r'<pre class="cython line score-(\d+)"[^>]*>[^<]*<span class="">(\d+)</span>: (.*?)</pre>')
+LINE = re.compile(
+    r'<pre class="cython line score-(\d+)"[^>]*>[^<]*<span class="">(\d+)</span>: (.*?)</pre>'
+)
 
 
 @dataclass(frozen=True)
@@ -28,7 +33,9 @@ class Line:
 
 
 def annotate(folder: Path) -> Path:
-    """Write the joined kernels and their annotation below `folder`; return the HTML file, which stands beside its source."""
+    """Write the joined kernels and their annotation below `folder`; return the HTML file, which
+    stands beside its source.
+    """
     source = write_source(folder)
     extension = Extension(f"{source.parent.name}.{MODULE}", [str(source)])
     cythonize([extension], compiler_directives=DIRECTIVES, quiet=True, annotate=True, force=True)
@@ -38,7 +45,10 @@ def annotate(folder: Path) -> Path:
 def lines(html: Path) -> list[Line]:
     """The annotated lines of `html`."""
     found = LINE.findall(html.read_text(encoding="utf-8"))
-    return [Line(int(number), int(score), unescape(re.sub("<[^>]+>", "", text))) for score, number, text in found]
+    return [
+        Line(int(number), int(score), unescape(re.sub("<[^>]+>", "", text)))
+        for score, number, text in found
+    ]
 
 
 if __name__ == "__main__":

@@ -1,11 +1,15 @@
-"""The ROS 2 node and the replay: how fast they are, what a sample costs, and how punctual they are beside a loop that only waits.
+"""The ROS 2 node and the replay: how fast they are, what a sample costs, and how punctual they are
+beside a loop that only waits.
 
-- As fast as possible: a landing of 10 s in 1 ms steps, nobody listening, with all recorded and with nothing; the best of REPEATS. The
-  processor time of the landing's thread and of the whole process a sample, from the first sample to the last.
-- What of that is the FMU, the messages, the log: each by itself, over the same 10 s, in processor time.
-- Real time: the node lands at 1 kHz, records, and a subscriber in another process takes every sample; a replay plays the log's `struts`
-  to it. They take turns with a loop that waits for the same times and does nothing else (by `time.sleep` as the node, awake for the
-  last 0.3 ms as the replay): its lateness is the machine's own.
+- As fast as possible: a landing of 10 s in 1 ms steps, nobody listening, with all recorded and with
+  nothing; the best of REPEATS. The processor time of the landing's thread and of the whole process
+  a sample, from the first sample to the last.
+- What of that is the FMU, the messages, the log: each by itself, over the same 10 s, in processor
+  time.
+- Real time: the node lands at 1 kHz, records, and a subscriber in another process takes every
+  sample; a replay plays the log's `struts` to it. They take turns with a loop that waits for the
+  same times and does nothing else (by `time.sleep` as the node, awake for the last 0.3 ms as the
+  replay): its lateness is the machine's own.
 
 Each run has a process of its own. Prints tables, and appends a row a case to `results.jsonl`.
 """
@@ -101,7 +105,12 @@ print(len(heard))
 
 def worker(code: str, *arguments: Any) -> list[str]:
     """The command that runs `code`."""
-    return [sys.executable, "-c", code, *(a if isinstance(a, str) else json.dumps(a) for a in arguments)]
+    return [
+        sys.executable,
+        "-c",
+        code,
+        *(a if isinstance(a, str) else json.dumps(a) for a in arguments),
+    ]
 
 
 def environment() -> dict[str, str]:
@@ -110,10 +119,18 @@ def environment() -> dict[str, str]:
 
 
 def run(code: str, options: dict[str, Any], listen: int = 0) -> dict[str, Any]:
-    """What the worker found, with a subscriber that waits for `listen` samples in a process of its own."""
-    listener = subprocess.Popen(worker(LISTEN, listen), env=environment(), stdout=subprocess.PIPE) if listen else None
+    """What the worker found, with a subscriber that waits for `listen` samples in a process of its
+    own.
+    """
+    listener = (
+        subprocess.Popen(worker(LISTEN, listen), env=environment(), stdout=subprocess.PIPE)
+        if listen
+        else None
+    )
     try:
-        done = subprocess.run(worker(code, options), env=environment(), stdout=subprocess.PIPE, text=True, check=True)
+        done = subprocess.run(
+            worker(code, options), env=environment(), stdout=subprocess.PIPE, text=True, check=True
+        )
         if listener is not None:
             listener.wait(30.0)
     finally:
@@ -125,7 +142,9 @@ def run(code: str, options: dict[str, Any], listen: int = 0) -> dict[str, Any]:
 
 
 def plain_loop(seconds: float, spin: float) -> list[float]:
-    """The lateness [s] of a loop that waits for every millisecond, the last `spin` [s] awake, and does nothing else."""
+    """The lateness [s] of a loop that waits for every millisecond, the last `spin` [s] awake, and
+    does nothing else.
+    """
     lateness = []
     start = time.perf_counter()
     for k in range(round(seconds / STEP) + 1):
@@ -151,14 +170,24 @@ def parts(folder: Path) -> dict[str, float]:
     with FmuRunner(FMU, {}) as fmu:
         steps = cost(lambda: [fmu.step(k, STEP) for k in range(count)])
     with FmuRunner(FMU, {}) as fmu:
-        both = cost(lambda: [(fmu.step(k, STEP), samples.append(fmu.values())) for k in range(count)])
+        both = cost(
+            lambda: [(fmu.step(k, STEP), samples.append(fmu.values())) for k in range(count)]
+        )
     plain = SampleBytes()
     recorder = Recorder(folder, [RecordedTopic(t.name, t.type_name, TELEMETRY) for t in SAMPLED])
-    sizes = {t.name: place.stop - place.start for t, place in zip(plain.topics, plain.places) if t in SAMPLED}
+    sizes = {
+        t.name: place.stop - place.start
+        for t, place in zip(plain.topics, plain.places)
+        if t in SAMPLED
+    }
     packer = SampleBytes(dict(zip(plain.topics[1:], recorder.begin_samples(sizes))))
     records = slice(packer.places[0].stop, None)
     packed: list[bytes] = []
-    pack = cost(lambda: [packed.append(packer.pack(k * 1_000_000, values, k)) for k, values in enumerate(samples)])
+    pack = cost(
+        lambda: [
+            packed.append(packer.pack(k * 1_000_000, values, k)) for k, values in enumerate(samples)
+        ]
+    )
 
     def record() -> None:
         for k, data in enumerate(packed):
@@ -167,7 +196,12 @@ def parts(folder: Path) -> dict[str, float]:
 
     log = cost(record)
     recorder.close()
-    return {"FMU: step": steps, "FMU: all outputs": max(0.0, both - steps), "messages": pack, "log": log}
+    return {
+        "FMU: step": steps,
+        "FMU: all outputs": max(0.0, both - steps),
+        "messages": pack,
+        "log": log,
+    }
 
 
 def fast(folder: Path) -> list[dict[str, Any]]:
@@ -175,7 +209,13 @@ def fast(folder: Path) -> list[dict[str, Any]]:
     best: dict[str, dict[str, float]] = {}
     for i in range(REPEATS):
         for case, record in (("recorded", str(folder / f"fast-{i}")), ("not recorded", "")):
-            options = {"fmu": str(FMU), "realtime_factor": 0.0, "step_size": STEP, "stop_time": FAST_SECONDS, "record": record}
+            options = {
+                "fmu": str(FMU),
+                "realtime_factor": 0.0,
+                "step_size": STEP,
+                "stop_time": FAST_SECONDS,
+                "record": record,
+            }
             found = run(LAND, options)
             better = best.setdefault(case, {"factor": 0.0, "thread": 1.0, "process": 1.0})
             better["factor"] = max(better["factor"], found["factor"])
@@ -189,25 +229,41 @@ def fast(folder: Path) -> list[dict[str, Any]]:
 
 def punctual(folder: Path) -> list[dict[str, Any]]:
     """Lateness in real time, of all rounds together."""
-    lateness: dict[str, list[float]] = {"node": [], "plain loop, sleeping": [], "replay": [], "plain loop, awake": []}
+    lateness: dict[str, list[float]] = {
+        "node": [],
+        "plain loop, sleeping": [],
+        "replay": [],
+        "plain loop, awake": [],
+    }
     samples = round(ROUND_SECONDS / STEP) + 1
     for i in range(ROUNDS):
         log = str(folder / f"log-{i}")
-        options = {"fmu": str(FMU), "step_size": STEP, "stop_time": ROUND_SECONDS, "wait_for_subscribers": 1}
+        options = {
+            "fmu": str(FMU),
+            "step_size": STEP,
+            "stop_time": ROUND_SECONDS,
+            "wait_for_subscribers": 1,
+        }
         lateness["node"] += run(LAND, {**options, "record": log}, listen=samples)["lateness"]
         lateness["plain loop, sleeping"] += plain_loop(ROUND_SECONDS, 0.0)
         options = {"path": log, "topics": ["struts"], "wait_for_subscribers": 1}
         lateness["replay"] += run(REPLAY, options, listen=samples)["lateness"]
         lateness["plain loop, awake"] += plain_loop(ROUND_SECONDS, SPIN_SECONDS)
     names = ("median", "p99", "largest")
-    return [{"case": f"bridge lateness: {case}", "samples": len(v), **dict(zip(names, spread(v)))} for case, v in lateness.items()]
+    return [
+        {"case": f"bridge lateness: {case}", "samples": len(v), **dict(zip(names, spread(v)))}
+        for case, v in lateness.items()
+    ]
 
 
 def main() -> None:
     load = os.getloadavg()[0]
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         speeds, figures = fast(Path(name)), punctual(Path(name))
-    table = Table(title=f"As fast as possible: best of {REPEATS}, load {load:.1f} on {os.cpu_count()} cores", title_justify="left")
+    table = Table(
+        title=f"As fast as possible: best of {REPEATS}, load {load:.1f} on {os.cpu_count()} cores",
+        title_justify="left",
+    )
     for heading in ("case", "times real time", "thread [us]", "process [us]"):
         table.add_column(heading, justify="left" if heading == "case" else "right")
     for row in speeds:
@@ -216,11 +272,18 @@ def main() -> None:
         table.add_row(row["case"].split(": ", 1)[1], factor, f"{1e6 * row['thread']:.1f}", process)
     table.caption = "processor time a sample"
     Console(width=110).print(table)
-    table = Table(title=f"Lateness at 1 kHz, {ROUNDS} rounds of {ROUND_SECONDS:g} s in turn", title_justify="left")
+    table = Table(
+        title=f"Lateness at 1 kHz, {ROUNDS} rounds of {ROUND_SECONDS:g} s in turn",
+        title_justify="left",
+    )
     for heading in ("case", "samples", "median [us]", "99 % [us]", "largest [ms]"):
         table.add_column(heading, justify="left" if heading == "case" else "right")
     for row in figures:
-        times = f"{1e6 * row['median']:.0f}", f"{1e6 * row['p99']:.0f}", f"{1e3 * row['largest']:.2f}"
+        times = (
+            f"{1e6 * row['median']:.0f}",
+            f"{1e6 * row['p99']:.0f}",
+            f"{1e3 * row['largest']:.2f}",
+        )
         table.add_row(row["case"].split(": ", 1)[1], str(row["samples"]), *times)
     Console(width=110).print(table)
     append_rows([{**row, "load": load} for row in (*speeds, *figures)])

@@ -1,13 +1,17 @@
-"""What the FMU costs its importer, beside an FMU in C of the same variables and no model: what FMPy costs by itself.
+"""What the FMU costs its importer, beside an FMU in C of the same variables and no model: what FMPy
+costs by itself.
 
-- Cold: a new Python process that imports FMPy and lands for 1 s in 1 ms steps with all outputs recorded, from its start to its end, and
-  what of that was the start of Python with the import of FMPy, and `simulate_fmu` (unpacking, loading, the landing, removing).
-  How long its main thread was on a processor tells what a machine that does nothing else would take, but for reading files.
-- Calls: `fmi2DoStep` of 1 ms, and with it all Real outputs in one `fmi2GetReal` with arrays made before, over the 1000 steps of a landing.
+- Cold: a new Python process that imports FMPy and lands for 1 s in 1 ms steps with all outputs
+  recorded, from its start to its end, and what of that was the start of Python with the import of
+  FMPy, and `simulate_fmu` (unpacking, loading, the landing, removing). How long its main thread was
+  on a processor tells what a machine that does nothing else would take, but for reading files.
+- Calls: `fmi2DoStep` of 1 ms, and with it all Real outputs in one `fmi2GetReal` with arrays made
+  before, over the 1000 steps of a landing.
 
-The C FMU (`empty_fmu.c`, compiled here by gcc) has the FMU's modelDescription.xml and nothing else to unpack, and its step does
-nothing: the ratios are upper bounds of those to the same model written in C. The two FMUs take turns, and the best of all turns counts.
-Prints a table, and appends a row a case to `results.jsonl`.
+The C FMU (`empty_fmu.c`, compiled here by gcc) has the FMU's modelDescription.xml and nothing else
+to unpack, and its step does nothing: the ratios are upper bounds of those to the same model written
+in C. The two FMUs take turns, and the best of all turns counts. Prints a table, and appends a row a
+case to `results.jsonl`.
 """
 
 from __future__ import annotations
@@ -50,7 +54,16 @@ def empty_fmu(folder: Path) -> Path:
         description = archive.read("modelDescription.xml")
     variables = len(fmpy.read_model_description(str(FMU)).modelVariables)
     library = folder / "RlvLanding.so"
-    options = ["-O2", "-Wall", "-Werror", "-shared", "-fPIC", f"-DVARIABLES={variables}", "-isystem", str(HEADERS)]
+    options = [
+        "-O2",
+        "-Wall",
+        "-Werror",
+        "-shared",
+        "-fPIC",
+        f"-DVARIABLES={variables}",
+        "-isystem",
+        str(HEADERS),
+    ]
     subprocess.run(["gcc", *options, "-o", str(library), str(HERE / "empty_fmu.c")], check=True)
     made = folder / "Empty.fmu"
     with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -60,21 +73,38 @@ def empty_fmu(folder: Path) -> Path:
 
 
 def cold(fmu: Path) -> dict[str, float]:
-    """Seconds of one new process: from its start to its end, of `simulate_fmu` in it, and of its main thread on a processor."""
+    """Seconds of one new process: from its start to its end, of `simulate_fmu` in it, and of its
+    main thread on a processor.
+    """
     start = time.perf_counter()
-    done = subprocess.run([sys.executable, "-c", COLD, str(fmu)], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", COLD, str(fmu)], capture_output=True, text=True, check=True
+    )
     seconds = time.perf_counter() - start
     found = json.loads(done.stdout)
-    outputs = sum(v.causality == "output" for v in fmpy.read_model_description(str(fmu)).modelVariables)
+    outputs = sum(
+        v.causality == "output" for v in fmpy.read_model_description(str(fmu)).modelVariables
+    )
     if (found["samples"], found["columns"]) != (STEPS + 1, outputs + 1):
-        raise SystemExit(f"error: {fmu.name} gave {found['samples']} samples of {found['columns']} columns")
-    return {"cold": seconds, "simulate": found["simulate"], "start": seconds - found["simulate"], "processor": found["processor"]}
+        raise SystemExit(
+            f"error: {fmu.name} gave {found['samples']} samples of {found['columns']} columns"
+        )
+    return {
+        "cold": seconds,
+        "simulate": found["simulate"],
+        "start": seconds - found["simulate"],
+        "processor": found["processor"],
+    }
 
 
 def calls(fmu: Path, folder: Path) -> dict[str, float]:
     """Mean seconds a step of one landing: `fmi2DoStep` alone, and with all Real outputs."""
     description = fmpy.read_model_description(str(fmu))
-    outputs = [v.valueReference for v in description.modelVariables if v.causality == "output" and v.type == "Real"]
+    outputs = [
+        v.valueReference
+        for v in description.modelVariables
+        if v.causality == "output" and v.type == "Real"
+    ]
     vrs, values, n = (c_uint * len(outputs))(*outputs), (c_double * len(outputs))(), len(outputs)
     slave = FMU2Slave(
         guid=description.guid,
@@ -108,7 +138,10 @@ def main() -> None:
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         folder = Path(name)
         fmus = {"FMU": FMU, "C FMU without a model": empty_fmu(folder)}
-        unpacked = {case: Path(fmpy.extract(str(fmu), str(folder / case.split()[0]))) for case, fmu in fmus.items()}
+        unpacked = {
+            case: Path(fmpy.extract(str(fmu), str(folder / case.split()[0])))
+            for case, fmu in fmus.items()
+        }
         best: dict[str, dict[str, float]] = {case: {} for case in fmus}
         for _ in range(REPEATS):
             for case, fmu in fmus.items():
@@ -117,7 +150,8 @@ def main() -> None:
     load = os.getloadavg()[0]
     ours, empty = best.values()
     table = Table(
-        title=f"Cost to FMPy {fmpy.__version__}: best of {REPEATS}, load {load:.1f} on {os.cpu_count()} cores", title_justify="left"
+        title=f"Cost to FMPy {fmpy.__version__}: best of {REPEATS}, load {load:.1f} on {os.cpu_count()} cores",
+        title_justify="left",
     )
     for heading in ("cost", *best, "ratio"):
         table.add_column(heading, justify="left" if heading == "cost" else "right")
@@ -129,10 +163,20 @@ def main() -> None:
         ("step", "fmi2DoStep of 1 ms", 1e6, "us"),
         ("step_get", "fmi2DoStep and all Real outputs in one call", 1e6, "us"),
     ):
-        table.add_row(f"{what} [{unit}]", f"{scale * ours[key]:.1f}", f"{scale * empty[key]:.1f}", f"{ours[key] / empty[key]:.1f}")
-    table.caption = "the C FMU computes nothing: the ratios are upper bounds of those to the same model in C"
+        table.add_row(
+            f"{what} [{unit}]",
+            f"{scale * ours[key]:.1f}",
+            f"{scale * empty[key]:.1f}",
+            f"{ours[key] / empty[key]:.1f}",
+        )
+    table.caption = (
+        "the C FMU computes nothing: the ratios are upper bounds of those to the same model in C"
+    )
     Console(width=110).print(table)
-    rows: list[dict[str, Any]] = [{"case": f"cost {case}", "load": load, "fmpy": fmpy.__version__, **cost} for case, cost in best.items()]
+    rows: list[dict[str, Any]] = [
+        {"case": f"cost {case}", "load": load, "fmpy": fmpy.__version__, **cost}
+        for case, cost in best.items()
+    ]
     append_rows(rows)
 
 

@@ -1,6 +1,8 @@
-"""What a 1 s landing costs at equal error: our integrator and model beside other solvers, C, MuJoCo and the FMU, in one run.
+"""What a 1 s landing costs at equal error: our integrator and model beside other solvers, C, MuJoCo
+and the FMU, in one run.
 
-See `docs/performance.md`, whose table and picture this writes. Prints the table as well, and appends a row a run to `results.jsonl`.
+See `docs/performance.md`, whose table and picture this writes. Prints the table as well, and
+appends a row a run to `results.jsonl`.
 """
 
 from __future__ import annotations
@@ -52,24 +54,47 @@ def digits(value: float, bound: str = "") -> str:
 
 
 def line_of(runs: list[Run], core: list[Run], call: float) -> list[str]:
-    """One line of the table: the `runs` of one peer beside those of the core, one of whose right-hand sides takes `call` [s]."""
-    (at, loose), (base, base_loose) = ([cost(own, target) for target in TARGETS] for own in (runs, core))
+    """One line of the table: the `runs` of one peer beside those of the core, one of whose
+    right-hand sides takes `call` [s].
+    """
+    (at, loose), (base, base_loose) = (
+        [cost(own, target) for target in TARGETS] for own in (runs, core)
+    )
     peer = runs[0].peer
     failed = [f"{r.tolerance:g}" for r in runs if r.failure]
     line = [peer.name + f" (no end at {', '.join(failed)})" * bool(failed)]
-    line += [digits(1e3 * at.seconds, at.bound), digits(at.seconds / base.seconds, at.bound), digits(1e6 * at.stroke)]
+    line += [
+        digits(1e3 * at.seconds, at.bound),
+        digits(at.seconds / base.seconds, at.bound),
+        digits(1e6 * at.stroke),
+    ]
     if peer.kind == "simulator":
         line += [f"{at.calls:.0f} steps", "", "", ""]
     else:
         share = f"{100.0 * call * at.calls / at.seconds:.0f} %" if peer.kind == "foreign" else ""
-        line += [f"{at.calls:.0f}", digits(at.calls / base.calls, at.bound), f"{1e6 * at.seconds / at.calls:.2f}", share]
-    return [*line, digits(1e3 * loose.seconds, loose.bound), digits(loose.seconds / base_loose.seconds, loose.bound)]
+        line += [
+            f"{at.calls:.0f}",
+            digits(at.calls / base.calls, at.bound),
+            f"{1e6 * at.seconds / at.calls:.2f}",
+            share,
+        ]
+    return [
+        *line,
+        digits(1e3 * loose.seconds, loose.bound),
+        digits(loose.seconds / base_loose.seconds, loose.bound),
+    ]
 
 
 def row_of(mode: str, runs: list[Run], loads: list[float]) -> dict[str, Any]:
-    """What `results.jsonl` keeps of a peer: its cost at the first target, and of every run tolerance, seconds, calls and errors."""
+    """What `results.jsonl` keeps of a peer: its cost at the first target, and of every run
+    tolerance, seconds, calls and errors.
+    """
     at = cost(runs, TARGETS[0])
-    curve = [[r.tolerance, r.seconds, r.calls, r.error.peaks, r.error.stroke] for r in runs if r.error and not r.failure]
+    curve = [
+        [r.tolerance, r.seconds, r.calls, r.error.peaks, r.error.stroke]
+        for r in runs
+        if r.error and not r.failure
+    ]
     return {
         "case": f"{mode} {runs[0].peer.name}",
         "error": TARGETS[0],
@@ -87,18 +112,24 @@ def report(console: Console, lines: dict[str, list[list[str]]], note: str) -> No
     """Print the tables, and put them where `docs/performance.md` has them."""
     text = f"Measured on {note}.\n"
     for mode, table_lines in lines.items():
-        table = Table(title=f"1 s landing in mode {mode} at equal error of the peaks", title_justify="left")
+        table = Table(
+            title=f"1 s landing in mode {mode} at equal error of the peaks", title_justify="left"
+        )
         for heading in HEADINGS:
             table.add_column(heading, justify="left" if heading == HEADINGS[0] else "right")
         for line in table_lines:
             table.add_row(*line)
         console.print(table)
-        text += f"\nMode {mode}:\n\n| {' | '.join(HEADINGS)} |\n|---|{'---:|' * (len(HEADINGS) - 1)}\n"
+        text += (
+            f"\nMode {mode}:\n\n| {' | '.join(HEADINGS)} |\n|---|{'---:|' * (len(HEADINGS) - 1)}\n"
+        )
         text += "".join(f"| {' | '.join(line)} |\n" for line in table_lines)
     console.print(note)
     page = DOCS / "performance.md"
     before, _, rest = page.read_text(encoding="utf-8").partition(MARKS[0])
-    page.write_text(before + MARKS[0] + text + MARKS[1] + rest.partition(MARKS[1])[2], encoding="utf-8")
+    page.write_text(
+        before + MARKS[0] + text + MARKS[1] + rest.partition(MARKS[1])[2], encoding="utf-8"
+    )
 
 
 def main() -> None:
@@ -121,8 +152,16 @@ def main() -> None:
     stamp, modules = provenance(), (np, scipy, sksundae, mujoco, fmpy)
     versions = ", ".join(f"{module.__name__} {module.__version__}" for module in modules)
     machine = f"{stamp['cpu']}, load {loads[0]:.1f} before and {loads[1]:.1f} after on {os.cpu_count()} cores"
-    report(console, lines, f"{machine}; commit {stamp['commit']}, Python {stamp['python']}, {versions}; `gcc {' '.join(EXACT)}`")
-    draw({mode: [*chain(*own)] for mode, own in runs.items()}, DOCS / "work-precision.png", f"commit {stamp['commit']}, {machine}")
+    report(
+        console,
+        lines,
+        f"{machine}; commit {stamp['commit']}, Python {stamp['python']}, {versions}; `gcc {' '.join(EXACT)}`",
+    )
+    draw(
+        {mode: [*chain(*own)] for mode, own in runs.items()},
+        DOCS / "work-precision.png",
+        f"commit {stamp['commit']}, {machine}",
+    )
 
 
 if __name__ == "__main__":

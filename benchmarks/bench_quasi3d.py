@@ -1,15 +1,20 @@
-"""What the quasi-3D formulation saves: the core against a full three-dimensional Newton-Euler model of the same vehicle, at equal error.
+"""What the quasi-3D formulation saves: the core against a full three-dimensional Newton-Euler model
+of the same vehicle, at equal error.
 
-The 3-D model is that of `tests/independent/vehicle_3d.py`: numpy over four legs, no symmetry used, 45 states, 18 linear equations a
-call, integrated by scipy's RK45, which is the core's method `dormand-prince` with the core's scales of error. The error of either
-is the largest difference of any main strut stroke from its own landing at a far tighter tolerance. Both are run at several tolerances;
-calls of the right-hand side at equal error are read off by interpolation between them, and seconds are calls times seconds a call.
+The 3-D model is that of `tests/independent/vehicle_3d.py`: numpy over four legs, no symmetry used,
+45 states, 18 linear equations a call, integrated by scipy's RK45, which is the core's method
+`dormand-prince` with the core's scales of error. The error of either is the largest difference of
+any main strut stroke from its own landing at a far tighter tolerance. Both are run at several
+tolerances; calls of the right-hand side at equal error are read off by interpolation between them,
+and seconds are calls times seconds a call.
 
-Seconds compare languages as much as models: a compiled core, a plain Python one, numpy. So the work of one right-hand side is
-counted too, by running both on numbers that count their operations, at the same moment of the landing: + - * / sqrt on one hand,
-powers, exp, sin, cos, tanh on the other. The core's includes its energy accounts, which the 3-D model has not; the 3-D model's is given
-with and without its dense elimination, because a cleverer one would cost less. Compiled like the core, the 3-D model would be slower
-by about the ratio of the work. Prints a table and appends a row a case to `results.jsonl`.
+Seconds compare languages as much as models: a compiled core, a plain Python one, numpy. So the work
+of one right-hand side is counted too, by running both on numbers that count their operations, at
+the same moment of the landing: + - * / sqrt on one hand, powers, exp, sin, cos, tanh on the other.
+The core's includes its energy accounts, which the 3-D model has not; the 3-D model's is given with
+and without its dense elimination, because a cleverer one would cost less. Compiled like the core,
+the 3-D model would be slower by about the ratio of the work. Prints a table and appends a row a
+case to `results.jsonl`.
 """
 
 from __future__ import annotations
@@ -120,7 +125,9 @@ class Counted3D(Vehicle3D):
     elimination = 2 * 18**3 // 3 + 2 * 18**2
 
     def solve(self, A: Any, b: Any) -> Any:
-        return np.array([Count(v) for v in np.linalg.solve(A.astype(float), b.astype(float))], dtype=object)
+        return np.array(
+            [Count(v) for v in np.linalg.solve(A.astype(float), b.astype(float))], dtype=object
+        )
 
 
 def count(work: Any) -> tuple[int, int]:
@@ -138,8 +145,20 @@ def work_of_core(landing: Landing) -> tuple[int, int]:
         for name in ("sin", "cos", "sqrt", "exp", "tanh", "fabs", "pow"):
             if hasattr(module, name):
                 replaced.append((module, name, getattr(module, name)))
-                special = {"fabs": abs, "pow": lambda a, b: (a if isinstance(a, Count) else Count(a)) ** b}
-                setattr(module, name, special.get(name, lambda a, name=name: getattr(a if isinstance(a, Count) else Count(a), name)()))
+                special = {
+                    "fabs": abs,
+                    "pow": lambda a, b: (a if isinstance(a, Count) else Count(a)) ** b,
+                }
+                setattr(
+                    module,
+                    name,
+                    special.get(
+                        name,
+                        lambda a, name=name: getattr(
+                            a if isinstance(a, Count) else Count(a), name
+                        )(),
+                    ),
+                )
     built = build_model(landing.parameters)
     model = Model(built.sin_g, built.cos_g, built.count, built.share_x)
     for name in dir(built):
@@ -168,24 +187,35 @@ def core(mode: str, rtol: float) -> tuple[np.ndarray, int, float]:
     return np.array([history[n] for n in STROKES]), calls, best / calls
 
 
-def space(mode: str, rtol: float, method: str = "RK45") -> tuple[np.ndarray, int, float, np.ndarray]:
+def space(
+    mode: str, rtol: float, method: str = "RK45"
+) -> tuple[np.ndarray, int, float, np.ndarray]:
     """Strokes, calls, seconds a call and states of the 3-D model."""
     landing = Landing(load_preset(PRESET), mode)
     model = Vehicle3D(landing.parameters)
     y0 = model.start([landing.get(f"body.{n}") for n in BODY])
     start = time.perf_counter()
-    done = solve_ivp(model, (0.0, UNTIL), y0, method, TIMES, rtol=rtol, atol=rtol * SCALE, max_step=2e-3)
+    done = solve_ivp(
+        model, (0.0, UNTIL), y0, method, TIMES, rtol=rtol, atol=rtol * SCALE, max_step=2e-3
+    )
     seconds = time.perf_counter() - start
     r, h = done.y[LEGS : LEGS + 4], done.y[LEGS + 4 : LEGS + 8]
     m = landing.parameters.main_strut
-    return m.length - np.hypot(r - m.joint_radius, h + m.joint_depth), model.calls, seconds / model.calls, done.y
+    return (
+        m.length - np.hypot(r - m.joint_radius, h + m.joint_depth),
+        model.calls,
+        seconds / model.calls,
+        done.y,
+    )
 
 
 def calls_at(runs: Runs, error: float) -> float:
     """Calls at which `error` [m] would be met, by interpolation in logarithms."""
     errors, calls = np.log(np.array(sorted(runs))).T
     if not errors[0] <= math.log(error) <= errors[-1]:
-        raise SystemExit(f"error: {error:g} m is outside the errors found, {np.exp(errors[0]):.1e} to {np.exp(errors[-1]):.1e} m")
+        raise SystemExit(
+            f"error: {error:g} m is outside the errors found, {np.exp(errors[0]):.1e} to {np.exp(errors[-1]):.1e} m"
+        )
     return float(np.exp(np.interp(math.log(error), errors, calls)))
 
 
@@ -200,9 +230,17 @@ def measure(mode: str) -> list[dict[str, Any]]:
         ours.append((float(np.abs(strokes - exact_core).max()), calls))
         strokes, calls, space_seconds, states = space(mode, rtol)
         full.append((float(np.abs(strokes - exact_space).max()), calls))
-        print(f"{mode} rtol {rtol:.0e}: core {ours[-1][0]:.1e} m in {ours[-1][1]} calls, 3-D {full[-1][0]:.1e} m in {full[-1][1]} calls")
+        print(
+            f"{mode} rtol {rtol:.0e}: core {ours[-1][0]:.1e} m in {ours[-1][1]} calls, 3-D {full[-1][0]:.1e} m in {full[-1][1]} calls"
+        )
     command = [sys.executable, "-c", PURE, mode, str(UNTIL)]
-    done = subprocess.run(command, capture_output=True, text=True, check=True, env={**os.environ, "RLV_LANDING_PURE": "1"})
+    done = subprocess.run(
+        command,
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "RLV_LANDING_PURE": "1"},
+    )
     pure_seconds = float(done.stdout)
 
     landing = Landing(load_preset(PRESET), mode)
@@ -238,7 +276,17 @@ def measure(mode: str) -> list[dict[str, Any]]:
 def main() -> None:
     rows = [row for mode in ("2-2", "1-2-1") for row in measure(mode)]
     table = Table(title=f"Landing to {UNTIL} s at equal error of the strokes", title_justify="left")
-    for name in ("case", "error [mm]", "rhs calls", "us a call", "seconds", "+-*/ a call", "elimination", "functions", "work to core"):
+    for name in (
+        "case",
+        "error [mm]",
+        "rhs calls",
+        "us a call",
+        "seconds",
+        "+-*/ a call",
+        "elimination",
+        "functions",
+        "work to core",
+    ):
         table.add_column(name, justify="left" if name == "case" else "right")
     for i, row in enumerate(rows):
         base = rows[i - i % 3]

@@ -1,8 +1,10 @@
-"""Time of a sweep by its number of landings: `python benchmarks/bench_sweep.py 100 1000 10000 100000`.
+"""Time of a sweep by its number of landings: `python benchmarks/bench_sweep.py 100 1000 10000
+100000`.
 
-Each count is swept in a process of its own by `rlv-landing sweep`, on all cores: a Latin hypercube over touchdown states, sink rate,
-friction and slope, both modes in turn, 1 s of landing at 1 kHz, all default responses. Prints wall time, processor time, landings a second
-and the largest resident memory, then what a landing's processor time is spent on, and appends rows to `results.jsonl`.
+Each count is swept in a process of its own by `rlv-landing sweep`, on all cores: a Latin hypercube
+over touchdown states, sink rate, friction and slope, both modes in turn, 1 s of landing at 1 kHz,
+all default responses. Prints wall time, processor time, landings a second and the largest resident
+memory, then what a landing's processor time is spent on, and appends rows to `results.jsonl`.
 """
 
 from __future__ import annotations
@@ -70,18 +72,33 @@ REPEATS = 40
 
 
 def swept(study: Path, folder: Path, workers: int) -> dict[str, float]:
-    """One sweep in a process of its own: wall and processor time [s] and largest resident memory [MB]."""
+    """One sweep in a process of its own: wall and processor time [s] and largest resident memory
+    [MB].
+    """
     start = time.perf_counter()
     child = os.posix_spawn(
         sys.executable,
-        [sys.executable, "-c", SWEEP, str(study), "--results", str(folder), "--workers", str(workers)],
+        [
+            sys.executable,
+            "-c",
+            SWEEP,
+            str(study),
+            "--results",
+            str(folder),
+            "--workers",
+            str(workers),
+        ],
         os.environ,
         file_actions=[(os.POSIX_SPAWN_OPEN, 1, os.devnull, os.O_WRONLY, 0)],
     )
     _, status, usage = os.wait4(child, 0)
     if status:
         raise SystemExit(f"the sweep ended with {os.waitstatus_to_exitcode(status)}")
-    return {"seconds": time.perf_counter() - start, "cpu": usage.ru_utime + usage.ru_stime, "memory": usage.ru_maxrss / 1024.0}
+    return {
+        "seconds": time.perf_counter() - start,
+        "cpu": usage.ru_utime + usage.ru_stime,
+        "memory": usage.ru_maxrss / 1024.0,
+    }
 
 
 def best(work: Callable[[], Any]) -> float:
@@ -122,14 +139,22 @@ def parts(study: Path) -> dict[str, float]:
 
         written = best(write) / len(block)
         results.__exit__(None, None, None)
-    return {"set up": set_up, "integrate and sample": landed, "responses": measured, "hand over": handed, "write": written}
+    return {
+        "set up": set_up,
+        "integrate and sample": landed,
+        "responses": measured,
+        "hand over": handed,
+        "write": written,
+    }
 
 
 @click.command()
 @click.argument("counts", nargs=-1, type=click.IntRange(1))
 @click.option("--until", default=1.0, show_default=True, help="End of each landing [s].")
 @click.option("--workers", default=default_workers(), show_default=True, help="Threads.")
-@click.option("--keep/--no-keep", default=True, show_default=True, help="Append the rows to results.jsonl.")
+@click.option(
+    "--keep/--no-keep", default=True, show_default=True, help="Append the rows to results.jsonl."
+)
 def main(counts: tuple[int, ...], until: float, workers: int, keep: bool) -> None:
     """Sweep COUNTS landings each [default: 100 1000]."""
     rows: list[dict[str, Any]] = []
@@ -137,13 +162,33 @@ def main(counts: tuple[int, ...], until: float, workers: int, keep: bool) -> Non
         study = Path(name) / "bench.toml"
         for count in counts or (100, 1000):
             study.write_text(STUDY.format(samples=count, until=until))
-            rows.append({"case": f"sweep of {count}", "workers": workers, "until": until, **swept(study, Path(name) / str(count), workers)})
+            rows.append(
+                {
+                    "case": f"sweep of {count}",
+                    "workers": workers,
+                    "until": until,
+                    **swept(study, Path(name) / str(count), workers),
+                }
+            )
         spent = parts(study)
     table = Table(title=f"landings of {until:g} s on {workers} threads", title_justify="left")
-    for column in ("landings", "wall [s]", "processor [s]", "landings/s", "processor/landing [ms]", "memory [MB]"):
+    for column in (
+        "landings",
+        "wall [s]",
+        "processor [s]",
+        "landings/s",
+        "processor/landing [ms]",
+        "memory [MB]",
+    ):
         table.add_column(column, justify="right")
     for count, row in zip(counts or (100, 1000), rows):
-        cells = (row["seconds"], row["cpu"], count / row["seconds"], 1e3 * row["cpu"] / count, row["memory"])
+        cells = (
+            row["seconds"],
+            row["cpu"],
+            count / row["seconds"],
+            1e3 * row["cpu"] / count,
+            row["memory"],
+        )
         table.add_row(str(count), *(f"{v:.1f}" for v in cells))
     Console(width=110).print(table)
     for what, value in spent.items():

@@ -1,6 +1,8 @@
-"""CVODE without Python in its loop: the shared libraries that come with scikit-sundae, with the right-hand side of `yardstick.c`.
+"""CVODE without Python in its loop: the shared libraries that come with scikit-sundae, with the
+right-hand side of `yardstick.c`.
 
-What is left of Python is one call a millisecond or less. It shows what the method costs, where scikit-sundae shows what a user of it pays.
+What is left of Python is one call a millisecond or less. It shows what the method costs, where
+scikit-sundae shows what a user of it pays.
 """
 
 from __future__ import annotations
@@ -70,14 +72,20 @@ def call(name: str, *arguments: Any) -> Any:
 
 
 class CvodeInC:
-    """One landing by CVODE, `method` ADAMS or BDF, with its dense Newton iteration and its difference quotients for the Jacobian."""
+    """One landing by CVODE, `method` ADAMS or BDF, with its dense Newton iteration and its
+    difference quotients for the Jacobian.
+    """
 
-    def __init__(self, problem: Problem, rtol: float, method: int, longest: float, most: int) -> None:
+    def __init__(
+        self, problem: Problem, rtol: float, method: int, longest: float, most: int
+    ) -> None:
         m = problem.m
         # kept, because SUNDIALS works in them
         self._y, self._atol = doubles(problem.state), doubles(rtol * problem.scale)
         self._landing = Yardstick(problem.landing(), rtol)
-        self._bridge = Bridge(self._landing._landing, cast(sundials("core").N_VGetArrayPointer, c_void_p))
+        self._bridge = Bridge(
+            self._landing._landing, cast(sundials("core").N_VGetArrayPointer, c_void_p)
+        )
         self._context = c_void_p()
         call("SUNContext_Create", 0, byref(self._context))
         self._vector = call("N_VMake_Serial", m, self._y, self._context)
@@ -85,7 +93,13 @@ class CvodeInC:
         self._matrix = call("SUNDenseMatrix", m, m, self._context)
         self._linear = call("SUNLinSol_Dense", self._vector, self._matrix, self._context)
         self._memory = c_void_p(call("CVodeCreate", method, self._context))
-        call("CVodeInit", self._memory, cast(library(EXACT).slope_for_cvode, c_void_p), 0.0, self._vector)
+        call(
+            "CVodeInit",
+            self._memory,
+            cast(library(EXACT).slope_for_cvode, c_void_p),
+            0.0,
+            self._vector,
+        )
         call("CVodeSetUserData", self._memory, cast(byref(self._bridge), c_void_p))
         call("CVodeSVtolerances", self._memory, rtol, self._tolerances)
         call("CVodeSetLinearSolver", self._memory, self._linear, self._matrix)

@@ -1,8 +1,11 @@
-"""Solvers that we did not write, on the core's compiled right-hand side, and MuJoCo's own model of the vehicle.
+"""Solvers that we did not write, on the core's compiled right-hand side, and MuJoCo's own model of
+the vehicle.
 
-Solvers in Python call `Solver.derivatives` through one Python function that copies the state in and the derivatives out. All integrate
-without the energy integrals, which the core carries along, with the core's absolute tolerances and its longest step. Only the core
-takes off what friction displacements gather beyond their limit; others run on with it, and their errors are what they then get.
+Solvers in Python call `Solver.derivatives` through one Python function that copies the state in and
+the derivatives out. All integrate without the energy integrals, which the core carries along, with
+the core's absolute tolerances and its longest step. Only the core takes off what friction
+displacements gather beyond their limit; others run on with it, and their errors are what they then
+get.
 """
 
 from __future__ import annotations
@@ -37,7 +40,8 @@ LSODA_TOLERANCES = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6)
 MOST_STEPS, MOST_SECONDS = 500_000, 3.0
 # where a plain landing is read
 ENDS = np.array([0.0, 0.5 * UNTIL, UNTIL])
-# MuJoCo: time constant [s] and damping ratio of its contact, about those of 4.2 kg on the model's ground under 4 kN
+# MuJoCo: time constant [s] and damping ratio of its contact, about those of 4.2 kg on the model's
+# ground under 4 kN
 CONTACT = (1.5e-3, 1.0)
 TIME_STEPS = (5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5)
 REFERENCE_STEP = 2e-6
@@ -63,7 +67,9 @@ def time_limit(seconds: float) -> Iterator[None]:
 
 
 class RightHandSide:
-    """The core's right-hand side for solvers in Python: `fresh(t, y)` returns a new array, `into(t, y, dy)` fills one."""
+    """The core's right-hand side for solvers in Python: `fresh(t, y)` returns a new array, `into(t,
+    y, dy)` fills one.
+    """
 
     def __init__(self, problem: Problem) -> None:
         self.problem = problem
@@ -86,7 +92,10 @@ class RightHandSide:
         self.fresh, self.into = fresh, into
 
     def jacobian(self, t: float, state: np.ndarray) -> np.ndarray:
-        """Forward differences. Scipy's own overflow here: its increments grow without end for a state that changes nothing."""
+        """Forward differences.
+
+        Scipy's own overflow here: its increments grow without end for a state that changes nothing.
+        """
         y, m, scale = state.copy(), self.problem.m, self.problem.scale
         increments = 1.5e-8 * np.maximum(np.abs(y), scale)
         matrix, base = np.empty((m, m)), self.fresh(t, y)
@@ -123,7 +132,16 @@ def by_odeint(f: RightHandSide, times: np.ndarray, rtol: float) -> np.ndarray:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         atol = rtol * f.problem.scale
-        return odeint(f.fresh, f.problem.state, times, tfirst=True, rtol=rtol, atol=atol, hmax=LONGEST_STEP, mxstep=MOST_STEPS)
+        return odeint(
+            f.fresh,
+            f.problem.state,
+            times,
+            tfirst=True,
+            rtol=rtol,
+            atol=atol,
+            hmax=LONGEST_STEP,
+            mxstep=MOST_STEPS,
+        )
 
 
 def by_sundae(method: str) -> Solve:
@@ -131,7 +149,14 @@ def by_sundae(method: str) -> Solve:
 
     def solve(f: RightHandSide, times: np.ndarray, rtol: float) -> np.ndarray:
         p = f.problem
-        solver = CVODE(f.into, method=method, rtol=rtol, atol=rtol * p.scale, max_step=LONGEST_STEP, max_num_steps=MOST_STEPS)
+        solver = CVODE(
+            f.into,
+            method=method,
+            rtol=rtol,
+            atol=rtol * p.scale,
+            max_step=LONGEST_STEP,
+            max_num_steps=MOST_STEPS,
+        )
         done = solver.solve(times, p.state)
         if not done.success:
             raise ArithmeticError(done.message)
@@ -167,11 +192,19 @@ def cvode_in_c(name: str, method: int) -> Peer:
         cvode = solver(problem, rtol)
         return Task(lambda: cvode.advance(UNTIL), cvode.calls)
 
-    return Peer(name, "C", TOLERANCES, task, lambda problem, rtol: problem.error(solver(problem, rtol).states(TIMES)))
+    return Peer(
+        name,
+        "C",
+        TOLERANCES,
+        task,
+        lambda problem, rtol: problem.error(solver(problem, rtol).states(TIMES)),
+    )
 
 
 class MujocoLanding:
-    """The vehicle of `tests/independent/mujoco_vehicle.py` on MuJoCo's own contact, in time steps of `step` [s]."""
+    """The vehicle of `tests/independent/mujoco_vehicle.py` on MuJoCo's own contact, in time steps
+    of `step` [s].
+    """
 
     def __init__(self, problem: Problem, step: float, integrator: int = IMPLICIT) -> None:
         self.parameters = load_preset(PRESET, problem.mode)

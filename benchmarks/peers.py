@@ -1,4 +1,5 @@
-"""The solvers that are compared, each a `Peer`: a plain landing to time, and the error of a landing with the same steps.
+"""The solvers that are compared, each a `Peer`: a plain landing to time, and the error of a landing
+with the same steps.
 
 Here are those that are ours, and the landing in C; `foreign.py` has the others.
 """
@@ -32,7 +33,9 @@ FEW_TOLERANCES = (1e-3, 1e-4, 1e-5)
 
 @dataclass(frozen=True)
 class Task:
-    """One landing, ready to go: `land()` is what is timed, `calls()` tells its right-hand sides (or steps) afterwards."""
+    """One landing, ready to go: `land()` is what is timed, `calls()` tells its right-hand sides (or
+    steps) afterwards.
+    """
 
     land: Callable[[], object]
     calls: Callable[[], int]
@@ -40,7 +43,8 @@ class Task:
 
 @dataclass(frozen=True)
 class Peer:
-    """A solver: `task(problem, tolerance)` is its plain landing, `error(problem, tolerance)` that of one with the same steps.
+    """A solver: `task(problem, tolerance)` is its plain landing, `error(problem, tolerance)` that
+    of one with the same steps.
 
     `kind` groups the curves: ours, C, foreign, or simulator.
     """
@@ -59,7 +63,13 @@ def core(name: str, method: str) -> Peer:
         landing = problem.landing(rtol, method)
         return Task(lambda: landing.advance_to(UNTIL), lambda: landing.statistics["rhs_calls"])
 
-    return Peer(name, "ours", TOLERANCES, task, lambda problem, rtol: problem.error(core_states(problem.landing(rtol, method), TIMES)))
+    return Peer(
+        name,
+        "ours",
+        TOLERANCES,
+        task,
+        lambda problem, rtol: problem.error(core_states(problem.landing(rtol, method), TIMES)),
+    )
 
 
 def cores_error(problem: Problem, rtol: float) -> Error:
@@ -111,12 +121,19 @@ class Slave:
         description, folder = unpacked()
         self.references = {v.name: v.valueReference for v in description.modelVariables}
         name = description.coSimulation.modelIdentifier
-        self.slave = FMU2Slave(guid=description.guid, unzipDirectory=folder.name, modelIdentifier=name, instanceName="bench")
+        self.slave = FMU2Slave(
+            guid=description.guid,
+            unzipDirectory=folder.name,
+            modelIdentifier=name,
+            instanceName="bench",
+        )
         self.slave.instantiate()
         self.slave.setupExperiment(tolerance=rtol, startTime=0.0)
         for key, value in load_preset(PRESET, problem.mode).items():
             if key.startswith("drop."):
-                (self.slave.setString if isinstance(value, str) else self.slave.setReal)([self.references[key]], [value])
+                (self.slave.setString if isinstance(value, str) else self.slave.setReal)(
+                    [self.references[key]], [value]
+                )
         self.slave.enterInitializationMode()
         self.slave.exitInitializationMode()
 
@@ -154,8 +171,16 @@ def fmu(problem: Problem, rtol: float) -> Task:
 OURS = (
     core("core, exponential", "exponential"),
     core("core, Dormand-Prince", "dormand-prince"),
-    Peer("core, exponential, 1001 samples of all outputs", "ours", TOLERANCES, sampled, cores_error),
-    Peer("FMU by FMPy, 1000 steps", "ours", TOLERANCES, fmu, lambda p, rtol: error(Slave(p, rtol).series(p), p.reference)),
+    Peer(
+        "core, exponential, 1001 samples of all outputs", "ours", TOLERANCES, sampled, cores_error
+    ),
+    Peer(
+        "FMU by FMPy, 1000 steps",
+        "ours",
+        TOLERANCES,
+        fmu,
+        lambda p, rtol: error(Slave(p, rtol).series(p), p.reference),
+    ),
     Peer("pure core, exponential", "ours", FEW_TOLERANCES, pure, cores_error),
     in_c("C, exponential, gcc -O3", EXACT),
     in_c("C, exponential, gcc -O3 -march=native -ffast-math", FAST),

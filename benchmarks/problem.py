@@ -1,9 +1,11 @@
-"""The benchmarks' problem: a 1 s landing of the default preset in one mode, and the error of a solution, the same for every solver.
+"""The benchmarks' problem: a 1 s landing of the default preset in one mode, and the error of a
+solution, the same for every solver.
 
-A solution is what its solver's own dense output gives every millisecond. Its loads are worked out from its states by the core. Its error
-is the largest relative deviation of any peak: largest and smallest main strut force and auxiliary strut force and largest main strut
-stroke of every leg group, against the reference, in parts of the largest absolute value of that force or stroke; and the largest
-difference of any main strut stroke at any time [m].
+A solution is what its solver's own dense output gives every millisecond. Its loads are worked out
+from its states by the core. Its error is the largest relative deviation of any peak: largest and
+smallest main strut force and auxiliary strut force and largest main strut stroke of every leg
+group, against the reference, in parts of the largest absolute value of that force or stroke; and
+the largest difference of any main strut stroke at any time [m].
 """
 
 from __future__ import annotations
@@ -29,7 +31,9 @@ COLUMNS = [[q.name for q in LEG_QUANTITIES].index(name) for name in SAMPLED]
 
 @dataclass(frozen=True)
 class Error:
-    """Of a solution: `peaks` the largest relative deviation of any peak, `stroke` the largest stroke error over time [m]."""
+    """Of a solution: `peaks` the largest relative deviation of any peak, `stroke` the largest
+    stroke error over time [m].
+    """
 
     peaks: float
     stroke: float
@@ -40,14 +44,16 @@ def error(series: np.ndarray, reference: np.ndarray) -> Error:
     largest = np.abs(reference).max(axis=2)
     high = np.abs(series.max(axis=2) - reference.max(axis=2)) / largest
     low = np.abs(series.min(axis=2) - reference.min(axis=2)) / largest
-    return Error(max(float(high.max()), float(low[:2].max())), float(np.abs(series[2] - reference[2]).max()))
+    return Error(
+        max(float(high.max()), float(low[:2].max())), float(np.abs(series[2] - reference[2]).max())
+    )
 
 
 class Problem:
     """The landing in `mode`: what solvers of others need of it, and the error of what they find.
 
-    `state` is where it starts, without the energy integrals, which no other state depends on; `scale` and `relative` are the core's
-    measures of error for it.
+    `state` is where it starts, without the energy integrals, which no other state depends on;
+    `scale` and `relative` are the core's measures of error for it.
     """
 
     def __init__(self, mode: str) -> None:
@@ -66,7 +72,9 @@ class Problem:
         return Landing(load_preset(PRESET), self.mode, rtol, method)
 
     def series(self, states: np.ndarray) -> np.ndarray:
-        """[force, force, stroke; leg group; time] of the `states` at TIMES, one a row, with or without the energy integrals."""
+        """[force, force, stroke; leg group; time] of the `states` at TIMES, one a row, with or
+        without the energy integrals.
+        """
         y, size = array("d", bytes(8 * self.n)), len(LEG_QUANTITIES)
         out = array("d", bytes(8 * (len(SHARED_QUANTITIES) + size * self.groups)))
         rows = np.empty((len(states), self.groups, len(COLUMNS)))

@@ -15,9 +15,19 @@ FMU = HERE.parent / "build" / "RlvLanding.fmu"
 
 def provenance() -> dict[str, str]:
     """Commit, processor and Python."""
-    commit = subprocess.run(["git", "describe", "--always", "--dirty"], capture_output=True, text=True, cwd=HERE).stdout.strip()
-    names = [line.split(":")[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")]
-    return {"commit": commit, "cpu": names[0] if names else platform.processor(), "python": platform.python_version()}
+    commit = subprocess.run(
+        ["git", "describe", "--always", "--dirty"], capture_output=True, text=True, cwd=HERE
+    ).stdout.strip()
+    names = [
+        line.split(":")[1].strip()
+        for line in Path("/proc/cpuinfo").read_text().splitlines()
+        if line.startswith("model name")
+    ]
+    return {
+        "commit": commit,
+        "cpu": names[0] if names else platform.processor(),
+        "python": platform.python_version(),
+    }
 
 
 def load() -> float:

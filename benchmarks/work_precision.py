@@ -1,7 +1,8 @@
-"""Work against precision: runs the peers at their tolerances, reads off what equal error costs, and draws it.
+"""Work against precision: runs the peers at their tolerances, reads off what equal error costs, and
+draws it.
 
-Time is the processor time of the thread in one plain landing, the best of several turns that all runs take one after another, so that
-other work on the machine hurts all alike.
+Time is the processor time of the thread in one plain landing, the best of several turns that all
+runs take one after another, so that other work on the machine hurts all alike.
 """
 
 from __future__ import annotations
@@ -25,7 +26,9 @@ MARKERS = "osD^vP*X<>"
 
 @dataclass
 class Run:
-    """One peer at one tolerance: its error, its best time [s] and its right-hand sides (steps of a simulator)."""
+    """One peer at one tolerance: its error, its best time [s] and its right-hand sides (steps of a
+    simulator).
+    """
 
     peer: Peer
     tolerance: float
@@ -49,7 +52,11 @@ class Run:
             start = thread_time()
             task.land()
             seconds = thread_time() - start
-            self.seconds, self.spent, self.calls = min(self.seconds, seconds), self.spent + seconds, task.calls()
+            self.seconds, self.spent, self.calls = (
+                min(self.seconds, seconds),
+                self.spent + seconds,
+                task.calls(),
+            )
 
     @contextmanager
     def _kept(self) -> Iterator[None]:
@@ -75,9 +82,11 @@ def measure(peers: Iterable[Peer], problem: Problem, tell: Callable[[str], objec
 
 @dataclass(frozen=True)
 class Cost:
-    """What an error of the peaks costs: seconds, right-hand sides (steps), and the stroke error [m] that goes with it.
+    """What an error of the peaks costs: seconds, right-hand sides (steps), and the stroke error [m]
+    that goes with it.
 
-    `bound`: "≤" where even the loosest run is better than asked, ">" where the tightest is not good enough; its numbers are that run's.
+    `bound`: "≤" where even the loosest run is better than asked, ">" where the tightest is not good
+    enough; its numbers are that run's.
     """
 
     seconds: float
@@ -87,7 +96,8 @@ class Cost:
 
 
 def cost(runs: list[Run], target: float) -> Cost:
-    """What the `runs` of one peer need to keep every peak within `target`, at every tighter tolerance too.
+    """What the `runs` of one peer need to keep every peak within `target`, at every tighter
+    tolerance too.
 
     Between the loosest run that keeps it and the next looser one, logarithms are interpolated.
     """
@@ -120,14 +130,36 @@ def draw(runs: dict[str, list[Run]], path: Path, note: str) -> None:
     for ax, (mode, all_runs) in zip(axes, runs.items()):
         for kind, members in kinds.items():
             for i, peer in enumerate(members):
-                points = [(1e3 * r.seconds, r.error.peaks) for r in all_runs if r.peer is peer and not r.failure]
+                points = [
+                    (1e3 * r.seconds, r.error.peaks)
+                    for r in all_runs
+                    if r.peer is peer and not r.failure
+                ]
                 colour = colormaps[COLOURS[kind]](0.9 - 0.5 * i / max(len(members), 2))
-                ax.plot(*zip(*points), marker=MARKERS[i], markersize=4.5, linewidth=1.2, color=colour, label=peer.name)
+                ax.plot(
+                    *zip(*points),
+                    marker=MARKERS[i],
+                    markersize=4.5,
+                    linewidth=1.2,
+                    color=colour,
+                    label=peer.name,
+                )
         ax.axhline(1e-3, color="#888888", linewidth=0.8, linestyle=":")
-        ax.set(xscale="log", yscale="log", xlabel="processor time of a 1 s landing [ms]", ylim=(3e-7, 3.0))
+        ax.set(
+            xscale="log",
+            yscale="log",
+            xlabel="processor time of a 1 s landing [ms]",
+            ylim=(3e-7, 3.0),
+        )
         ax.set_title(f"mode {mode}", loc="left")
         ax.grid(True, which="major", linewidth=0.3)
     axes[0].set_ylabel("largest error of any peak force or stroke [of its peak]")
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False, fontsize=8.5)
+    figure.legend(
+        *axes[0].get_legend_handles_labels(),
+        loc="outside lower center",
+        ncols=3,
+        frameon=False,
+        fontsize=8.5,
+    )
     figure.suptitle(note, x=0.01, ha="left", fontsize=9)
     figure.savefig(path, dpi=120, metadata={"Software": None})

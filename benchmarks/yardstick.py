@@ -1,4 +1,6 @@
-"""The landing by hand in C (`yardstick.c`), compiled here by gcc: how fast the machine does what the compiled core does."""
+"""The landing by hand in C (`yardstick.c`), compiled here by gcc: how fast the machine does what
+the compiled core does.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +41,19 @@ def library(options: tuple[str, ...]) -> CDLL:
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as folder:
         target = Path(folder) / "yardstick.so"
         names = f"-DPARAMETERS={','.join(PARAMETERS)}"
-        command = ["gcc", "-std=gnu11", "-Wall", "-Wextra", "-Werror", *options, names, "-shared", "-fPIC", "-o", str(target)]
+        command = [
+            "gcc",
+            "-std=gnu11",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            *options,
+            names,
+            "-shared",
+            "-fPIC",
+            "-o",
+            str(target),
+        ]
         subprocess.run([*command, str(HERE / "yardstick.c"), "-lm"], check=True)
         loaded = CDLL(str(target))
     doubles = POINTER(c_double)
@@ -61,7 +75,8 @@ def doubles(values: Any) -> Any:
 
 
 class Yardstick:
-    """One landing in C, from the start of the same `Landing`; `inputs` by name go on at the rates `rates` [unit/s].
+    """One landing in C, from the start of the same `Landing`; `inputs` by name go on at the rates
+    `rates` [unit/s].
 
     Raises MemoryError without memory, ArithmeticError where the step size has collapsed.
     """
@@ -75,7 +90,11 @@ class Yardstick:
         rates: Mapping[str, float] | None = None,
     ) -> None:
         solver, model = landing._solver, landing._model
-        groups = [x for i in range(model.n_groups) for x in (model.sin_g[i], model.cos_g[i], model.count[i], model.share_x[i])]
+        groups = [
+            x
+            for i in range(model.n_groups)
+            for x in (model.sin_g[i], model.cos_g[i], model.count[i], model.share_x[i])
+        ]
         self.n = solver.n
         self._library = library(options)
         self._landing = self._library.landing(
@@ -83,7 +102,10 @@ class Yardstick:
             model.n_groups,
             *(doubles(a) for a in (groups, list(solver.y), solver.scale, solver.relative)),
             rtol,
-            *(doubles([(values or {}).get(name, 0.0) for name in INPUT_NAMES]) for values in (inputs, rates)),
+            *(
+                doubles([(values or {}).get(name, 0.0) for name in INPUT_NAMES])
+                for values in (inputs, rates)
+            ),
         )
         if not self._landing:
             raise MemoryError("no memory for a landing in C")
@@ -125,8 +147,10 @@ def core_states(landing: Landing, times: Any) -> np.ndarray:
 
 
 def disagreement(landing: Landing, yardstick: Yardstick, until: float) -> float:
-    """Largest difference of any state, less the energy integrals, every millisecond up to `until` [s], relative to that state's largest
-    value; infinite where the two have not taken the same numbers of steps, rejected steps and right-hand sides."""
+    """Largest difference of any state, less the energy integrals, every millisecond up to `until`
+    [s], relative to that state's largest value; infinite where the two have not taken the same
+    numbers of steps, rejected steps and right-hand sides.
+    """
     times = 1e-3 * np.arange(round(until / 1e-3) + 1)
     n = yardstick.n - layout.INTEGRALS
     core, c = (states[:, :n] for states in (core_states(landing, times), yardstick.states(times)))

@@ -1,9 +1,11 @@
-"""The FMI 2.0 co-simulation slave: registers the table's quantities as variables and delegates to `Landing`. No arithmetic.
+"""The FMI 2.0 co-simulation slave: registers the table's quantities as variables and delegates to
+`Landing`. No arithmetic.
 
-The C front (`fmu_front/`) calls it through pythonfmu's binary, with known value references of the right type only, in the order that FMI
-allows, and returns the worst status that is logged here during a call.
-`fmu_build/build.py` packs this file into its own copy of the package, whose name carries the version; `fmu_build/description.py` adds
-units, types and dependencies to the description.
+The C front (`fmu_front/`) calls it through pythonfmu's binary, with known value references of the
+right type only, in the order that FMI allows, and returns the worst status that is logged here
+during a call. `fmu_build/build.py` packs this file into its own copy of the package, whose name
+carries the version; `fmu_build/description.py` adds units, types and dependencies to the
+description.
 """
 
 import json
@@ -17,13 +19,28 @@ from typing import Any
 from uuid import NAMESPACE_URL, uuid5
 from xml.etree.ElementTree import Element
 
-from pythonfmu import Boolean, DefaultExperiment, Fmi2Causality, Fmi2Initial, Fmi2Slave, Fmi2Variability, Integer, Real, String
+from pythonfmu import (
+    Boolean,
+    DefaultExperiment,
+    Fmi2Causality,
+    Fmi2Initial,
+    Fmi2Slave,
+    Fmi2Variability,
+    Integer,
+    Real,
+    String,
+)
 from pythonfmu.enums import Fmi2Status
 
 from rlv_landing import Landing, LandingError, Parameters, __version__
 from rlv_landing.landing import DEFAULT_RTOL
 from rlv_landing.parameters import PARAMETER_QUANTITIES, check_value
-from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES, Quantity
+from rlv_landing.quantities import (
+    INPUT_QUANTITIES,
+    OUTPUT_QUANTITIES,
+    STATISTIC_QUANTITIES,
+    Quantity,
+)
 
 # value references of the front's own: the rate of input i is set as the real RATES + i
 RATES = 2_000_000
@@ -34,7 +51,8 @@ KINDS = {"real": Real, "integer": Integer, "boolean": Boolean, "string": String}
 
 
 def logs_faults(method: Callable[..., Any]) -> Callable[..., Any]:
-    """`method`, whose exceptions are logged as errors: the front returns the status logged, while pythonfmu makes every exception Fatal.
+    """`method`, whose exceptions are logged as errors: the front returns the status logged, while
+    pythonfmu makes every exception Fatal.
 
     Returns False after an exception.
     """
@@ -46,7 +64,9 @@ def logs_faults(method: Callable[..., Any]) -> Callable[..., Any]:
         except LandingError as e:
             self.log(str(e), Fmi2Status.error)
         except Exception as e:
-            self.log(f"internal error in {method.__name__}: {type(e).__name__}: {e}", Fmi2Status.error)
+            self.log(
+                f"internal error in {method.__name__}: {type(e).__name__}: {e}", Fmi2Status.error
+            )
         return False
 
     return wrapped
@@ -59,14 +79,18 @@ def new_landing(values: dict[str, Any], rtol: float) -> Landing:
 
 
 class RlvLanding(Fmi2Slave):
-    """Touchdown of a four-legged rocket stage: parameters, external loads and ground motion in; loads, strokes and motion out."""
+    """Touchdown of a four-legged rocket stage: parameters, external loads and ground motion in;
+    loads, strokes and motion out.
+    """
 
     author = "The rlv-landing authors"
     license = "Apache-2.0"
     copyright = "Copyright The rlv-landing authors"
     version = __version__
     description = "Touchdown of a vertical-landing rocket stage on four legs (Yue, Lin, Zheng, Du 2022), quasi-3D"
-    default_experiment = DefaultExperiment(start_time=0.0, stop_time=1.0, step_size=1e-3, tolerance=DEFAULT_RTOL)
+    default_experiment = DefaultExperiment(
+        start_time=0.0, stop_time=1.0, step_size=1e-3, tolerance=DEFAULT_RTOL
+    )
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -74,7 +98,8 @@ class RlvLanding(Fmi2Slave):
         self._rtol = DEFAULT_RTOL
         self._values: list[Any] = []
         self._parameters: dict[str, Any] = {}
-        # what the next step starts with; rates of a step that was refused hold until the input is set again
+        # what the next step starts with; rates of a step that was refused hold until the input is
+        # set again
         self._inputs: dict[str, float] = {}
         self._rates: dict[str, float] = {}
         self._refused_rates: set[str] = set()
@@ -83,7 +108,9 @@ class RlvLanding(Fmi2Slave):
         # once they were asked for at this time
         self._outputs: list[float] = []
         for q in PARAMETER_QUANTITIES.values():
-            self._register(q, q.default, Fmi2Causality.parameter, Fmi2Variability.fixed, Fmi2Initial.exact)
+            self._register(
+                q, q.default, Fmi2Causality.parameter, Fmi2Variability.fixed, Fmi2Initial.exact
+            )
         for q in INPUT_QUANTITIES:
             self._register(q, 0.0, Fmi2Causality.input, Fmi2Variability.continuous, None)
         self._first_output = len(self.vars)
@@ -92,22 +119,43 @@ class RlvLanding(Fmi2Slave):
             self._register(q, 0.0, Fmi2Causality.output, changes, Fmi2Initial.calculated)
         self._output_references = list(range(self._first_output, len(self.vars)))
         for q in STATISTIC_QUANTITIES:
-            self._register(q, 0.0, Fmi2Causality.local, Fmi2Variability.discrete, Fmi2Initial.calculated)
+            self._register(
+                q, 0.0, Fmi2Causality.local, Fmi2Variability.discrete, Fmi2Initial.calculated
+            )
         self._names = [v.name for v in self.vars.values()]
 
     def to_xml(self, model_options: dict[str, str] | None = None) -> Element:
-        """pythonfmu's description, with a GUID made from the version and the variables. Called at build time only."""
-        quantities = [*PARAMETER_QUANTITIES.values(), INPUT_QUANTITIES, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES]
+        """pythonfmu's description, with a GUID made from the version and the variables.
+
+        Called at build time only.
+        """
+        quantities = [
+            *PARAMETER_QUANTITIES.values(),
+            INPUT_QUANTITIES,
+            OUTPUT_QUANTITIES,
+            STATISTIC_QUANTITIES,
+        ]
         self.guid = uuid5(NAMESPACE_URL, f"rlv-landing {__version__} {quantities!r}")
         return super().to_xml(model_options or {})
 
-    def _register(self, q: Quantity, value: Any, causality: Any, variability: Any, initial: Any) -> None:
-        attributes = {"causality": causality, "variability": variability, "initial": initial, "getter": lambda: None}
-        self.register_variable(KINDS[q.kind](q.name, description=q.meaning, **attributes), nested=False)
+    def _register(
+        self, q: Quantity, value: Any, causality: Any, variability: Any, initial: Any
+    ) -> None:
+        attributes = {
+            "causality": causality,
+            "variability": variability,
+            "initial": initial,
+            "getter": lambda: None,
+        }
+        self.register_variable(
+            KINDS[q.kind](q.name, description=q.meaning, **attributes), nested=False
+        )
         self._values.append(value)
 
     @logs_faults
-    def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
+    def setup_experiment(
+        self, start_time: float, stop_time: float | None, tolerance: float | None
+    ) -> None:
         """Takes the start time, and the tolerance for the integrator's own."""
         self._start_time = start_time
         self._rtol = DEFAULT_RTOL if tolerance is None else tolerance
@@ -115,22 +163,28 @@ class RlvLanding(Fmi2Slave):
 
     @logs_faults
     def enter_initialization_mode(self) -> None:
-        """Takes the resources off Python's path, where pythonfmu puts them for each instance: all is imported by now."""
+        """Takes the resources off Python's path, where pythonfmu puts them for each instance: all
+        is imported by now.
+        """
         while self.resources in sys.path:
             sys.path.remove(self.resources)
 
     @logs_faults
     def exit_initialization_mode(self) -> None:
-        """Checks parameters and inputs and starts the landing. A bad one is an error; others may be set then."""
+        """Checks parameters and inputs and starts the landing.
+
+        A bad one is an error; others may be set then.
+        """
         self._present()
         self._apply_inputs()
 
     @logs_faults
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """Goes on to `current_time + step_size`; refuses (Discard, with a logged reason) what cannot be done, and stays as it was.
+        """Goes on to `current_time + step_size`; refuses (Discard, with a logged reason) what
+        cannot be done, and stays as it was.
 
-        Where the integrator gives up within the step, that is an error, and the landing has ended: outputs and steps are errors until a
-        state is restored, or reset.
+        Where the integrator gives up within the step, that is an error, and the landing has ended:
+        outputs and steps are errors until a state is restored, or reset.
         """
         try:
             landing = self._present()
@@ -191,7 +245,10 @@ class RlvLanding(Fmi2Slave):
             return self._outputs
         calculated: list[Any] = self._outputs
         if max(vrs, default=0) >= first + len(OUTPUT_QUANTITIES):
-            calculated = [*calculated, *(min(count, LARGEST_INTEGER) for count in self._present().statistics.values())]
+            calculated = [
+                *calculated,
+                *(min(count, LARGEST_INTEGER) for count in self._present().statistics.values()),
+            ]
         return [known[vr] if vr < first else calculated[vr - first] for vr in vrs]
 
     def get_real(self, vrs: list[int]) -> list[float]:
@@ -250,8 +307,17 @@ class RlvLanding(Fmi2Slave):
         """Takes up all of `state`, or, where it is no state of this FMU, nothing of it."""
         if "fault" in state:
             raise LandingError(f"the state cannot be read: {state['fault']}")
-        start_time, rtol, values, broken = float(state["start_time"]), float(state["rtol"]), list(state["values"]), str(state["broken"])
-        parameters, inputs, rates = dict(state["parameters"]), dict(state["inputs"]), dict(state["rates"])
+        start_time, rtol, values, broken = (
+            float(state["start_time"]),
+            float(state["rtol"]),
+            list(state["values"]),
+            str(state["broken"]),
+        )
+        parameters, inputs, rates = (
+            dict(state["parameters"]),
+            dict(state["inputs"]),
+            dict(state["rates"]),
+        )
         refused_rates, numbers = set(state["refused_rates"]), state["landing"]
         landing = self._landing
         if numbers is None:
@@ -260,8 +326,19 @@ class RlvLanding(Fmi2Slave):
             if landing is None or parameters != self._parameters or rtol != self._rtol:
                 landing = new_landing(parameters, rtol)
             landing.restore(array("d", numbers))
-        self._landing, self._start_time, self._rtol, self._values, self._broken = landing, start_time, rtol, values, broken
-        self._parameters, self._inputs, self._rates, self._refused_rates = parameters, inputs, rates, refused_rates
+        self._landing, self._start_time, self._rtol, self._values, self._broken = (
+            landing,
+            start_time,
+            rtol,
+            values,
+            broken,
+        )
+        self._parameters, self._inputs, self._rates, self._refused_rates = (
+            parameters,
+            inputs,
+            rates,
+            refused_rates,
+        )
         self._outputs = []
 
     @staticmethod

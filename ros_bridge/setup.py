@@ -1,4 +1,7 @@
-"""The bridge as an ament_python package, for `colcon build`. The whole project installs by the pyproject.toml one folder up."""
+"""The bridge as an ament_python package, for `colcon build`.
+
+The whole project installs by the pyproject.toml one folder up.
+"""
 
 from pathlib import Path
 from xml.etree import ElementTree
@@ -21,5 +24,7 @@ setup(
         (f"share/{NAME}/launch", sorted(map(str, Path("launch").glob("*.launch.py")))),
         (f"share/{NAME}/config", sorted(map(str, Path("config").iterdir()))),
     ],
-    entry_points={"console_scripts": [f"landing_node = {NAME}.land:main", f"bridge = {NAME}.__main__:run"]},
+    entry_points={
+        "console_scripts": [f"landing_node = {NAME}.land:main", f"bridge = {NAME}.__main__:run"]
+    },
 )

@@ -28,7 +28,9 @@ MODES = ("2-2", "1-2-1")
 
 @pytest.fixture(scope="session")
 def many() -> Callable[[int], int]:
-    """How many cases a random test tries: those of `make test`, times RLV_TORTURE in the environment."""
+    """How many cases a random test tries: those of `make test`, times RLV_TORTURE in the
+    environment.
+    """
     return lambda count: round(count * float(os.environ.get("RLV_TORTURE", "1")))
 
 
@@ -53,7 +55,9 @@ def drop_test(mode: str) -> History:
 
 @pytest.fixture(scope="session")
 def ecos_environment() -> dict[str, str]:
-    """The environment, with the libtbb that Ecos needs: the wheel `tbb` puts it where the loader does not look."""
+    """The environment, with the libtbb that Ecos needs: the wheel `tbb` puts it where the loader
+    does not look.
+    """
     libraries = [str(Path(sys.prefix) / "lib"), os.environ.get("LD_LIBRARY_PATH", "")]
     return {**os.environ, "LD_LIBRARY_PATH": os.pathsep.join(filter(None, libraries))}
 
@@ -62,20 +66,36 @@ def ecos_environment() -> dict[str, str]:
 def ecos(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Ecos' program. Its wheel does not mark it executable, so this is a copy."""
     program = tmp_path_factory.mktemp("ecos") / "ecos"
-    shutil.copy(Path(str(find_spec("ecospy").submodule_search_locations[0])) / "binaries" / "ecos", program)
+    shutil.copy(
+        Path(str(find_spec("ecospy").submodule_search_locations[0])) / "binaries" / "ecos", program
+    )
     program.chmod(0o755)
     return program
 
 
 @pytest.fixture
-def simulated_by_ecos(ecos: Path, ecos_environment: dict[str, str], tmp_path: Path) -> Callable[..., np.ndarray]:
-    """`simulated_by_ecos(path, *options)`: the table that `ecos simulate`, a C++ program without Python, writes of an FMU or SSP file."""
+def simulated_by_ecos(
+    ecos: Path, ecos_environment: dict[str, str], tmp_path: Path
+) -> Callable[..., np.ndarray]:
+    """`simulated_by_ecos(path, *options)`: the table that `ecos simulate`, a C++ program without
+    Python, writes of an FMU or SSP file.
+    """
 
     def run(path: Path, *options: str) -> np.ndarray:
-        environment = {name: value for name, value in ecos_environment.items() if not name.startswith("PYTHON")}
+        environment = {
+            name: value for name, value in ecos_environment.items() if not name.startswith("PYTHON")
+        }
         command = [str(ecos), "simulate", "--path", str(path), "--stepSize", "0.001", *options]
-        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300)
+        done = subprocess.run(
+            command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300
+        )
         assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
-        return np.genfromtxt(tmp_path / f"{path.stem}.csv", delimiter=", ", names=True, deletechars="", replace_space=" ")
+        return np.genfromtxt(
+            tmp_path / f"{path.stem}.csv",
+            delimiter=", ",
+            names=True,
+            deletechars="",
+            replace_space=" ",
+        )
 
     return run

@@ -18,7 +18,9 @@ COMMANDS = re.findall(r"\.venv/bin/rlv-landing ([^\n#]+)", README)
 
 @pytest.mark.parametrize("snippet", SNIPPETS, ids=lambda s: s.split("\n", 1)[0])
 def test_python_snippets_run(snippet, fmu):
-    subprocess.run([sys.executable, "-c", snippet], cwd=ROOT, check=True, capture_output=True, timeout=120)
+    subprocess.run(
+        [sys.executable, "-c", snippet], cwd=ROOT, check=True, capture_output=True, timeout=120
+    )
 
 
 @pytest.mark.parametrize("line", COMMANDS)

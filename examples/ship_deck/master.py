@@ -1,6 +1,7 @@
 """A co-simulation master in Python: FMPy's instances, a fixed step, Jacobi.
 
-Jacobi: all instances make their step with the inputs of its start; then outputs go to the inputs that they are connected to.
+Jacobi: all instances make their step with the inputs of its start; then outputs go to the inputs
+    that they are connected to.
 """
 
 from __future__ import annotations
@@ -23,7 +24,11 @@ class Component:
     def __init__(self, name: str, file: Path, folder: Path) -> None:
         description = fmpy.read_model_description(str(file))
         self.references = {v.name: v.valueReference for v in description.modelVariables}
-        self.outputs = [v.name for v in description.modelVariables if v.causality == "output" and v.type == "Real"]
+        self.outputs = [
+            v.name
+            for v in description.modelVariables
+            if v.causality == "output" and v.type == "Real"
+        ]
         self._output_references = [self.references[output] for output in self.outputs]
         self.slave = FMU2Slave(
             guid=description.guid,
@@ -54,21 +59,33 @@ def simulate(
     until: float = 3.0,
     progress: Callable[[float], object] | None = None,
 ) -> dict[str, np.ndarray]:
-    """The real outputs of all components at every communication point from 0 to `until` [s]: `time` and `component.output` -> values."""
+    """The real outputs of all components at every communication point from 0 to `until` [s]: `time`
+    and `component.output` -> values.
+    """
     with TemporaryDirectory() as folder:
         components = {name: Component(name, file, Path(folder)) for name, file in fmus.items()}
         for name, component in components.items():
             component.start(parameters[name])
-        columns = [f"{name}.{output}" for name, component in components.items() for output in component.outputs]
+        columns = [
+            f"{name}.{output}"
+            for name, component in components.items()
+            for output in component.outputs
+        ]
         time, rows = 0.0, []
         for k in range(round(until / step) + 1):
             if k > 0:
                 for component in components.values():
                     component.slave.doStep(time, step)
                 time += step  # summed, as Ecos does: the communication points of both are the same to the last digit
-            transfer(components, connections, {name: component.get() for name, component in components.items()})
+            transfer(
+                components,
+                connections,
+                {name: component.get() for name, component in components.items()},
+            )
             # read again, as Ecos does: inputs act on accelerations and contact forces at once
-            rows.append([time, *(value for component in components.values() for value in component.get())])
+            rows.append(
+                [time, *(value for component in components.values() for value in component.get())]
+            )
             if progress is not None:
                 progress(time)
         for component in components.values():
@@ -77,10 +94,14 @@ def simulate(
     return dict(zip(["time", *columns], np.array(rows).T))
 
 
-def transfer(components: dict[str, Component], connections: Connections, values: dict[str, list[float]]) -> None:
+def transfer(
+    components: dict[str, Component], connections: Connections, values: dict[str, list[float]]
+) -> None:
     """Set every connected input to the output that drives it."""
     inputs: dict[str, dict[str, float]] = {}
     for (source, output), (target, name) in connections.items():
-        inputs.setdefault(target, {})[name] = values[source][components[source].outputs.index(output)]
+        inputs.setdefault(target, {})[name] = values[source][
+            components[source].outputs.index(output)
+        ]
     for target, settings in inputs.items():
         components[target].set(settings)

@@ -12,7 +12,10 @@ STYLES = {1: "-", 3: "--"}
 
 
 def save_picture(results: dict[str, dict[str, np.ndarray]], path: Path) -> None:
-    """Write the picture of `results` (name of the deck -> columns) to `path`. Solid: legs 1 and 2, dashed: legs 3 and 4."""
+    """Write the picture of `results` (name of the deck -> columns) to `path`.
+
+    Solid: legs 1 and 2, dashed: legs 3 and 4.
+    """
     figure = Figure(figsize=(10.0, 11.0), layout="constrained")
     axes = figure.subplots(5, 1, sharex=True)
     for name, result in results.items():
@@ -20,11 +23,23 @@ def save_picture(results: dict[str, dict[str, np.ndarray]], path: Path) -> None:
         axes[0].plot(time, result["deck.heave"] * 1e3, color=colour, label=f"{name} deck")
         axes[1].plot(time, result["landing.body.y"] - result["deck.heave"], color=colour)
         for leg, style in STYLES.items():
-            axes[2].plot(time, result[f"landing.leg[{leg}].main_strut.stroke"] * 1e3, color=colour, linestyle=style)
-            axes[3].plot(time, result[f"landing.leg[{leg}].main_strut.force"] / 1e3, color=colour, linestyle=style)
+            axes[2].plot(
+                time,
+                result[f"landing.leg[{leg}].main_strut.stroke"] * 1e3,
+                color=colour,
+                linestyle=style,
+            )
+            axes[3].plot(
+                time,
+                result[f"landing.leg[{leg}].main_strut.force"] / 1e3,
+                color=colour,
+                linestyle=style,
+            )
         axes[4].plot(time, np.degrees(result["landing.body.pitch"]), color=colour)
         axes[4].plot(time, np.degrees(result["deck.tilt"]), color=colour, linestyle=":")
-    axes[3].plot(time, result["engine.force_y"] / 1e3, color="#c8553d", linewidth=1.0, label="thrust")
+    axes[3].plot(
+        time, result["engine.force_y"] / 1e3, color="#c8553d", linewidth=1.0, label="thrust"
+    )
     labels = (
         "heave of\nthe deck [mm]",
         "CG above\nthe deck [m]",
@@ -39,5 +54,7 @@ def save_picture(results: dict[str, dict[str, np.ndarray]], path: Path) -> None:
     axes[0].set_title("Engine tail-off and touchdown on a calm and on a moving deck", loc="left")
     axes[0].legend(loc="lower left", frameon=False)
     axes[3].legend(loc="lower right", frameon=False)
-    axes[-1].set_xlabel("time [s]   (solid: legs 1 and 2, dashed: legs 3 and 4; forces negative in compression)")
+    axes[-1].set_xlabel(
+        "time [s]   (solid: legs 1 and 2, dashed: legs 3 and 4; forces negative in compression)"
+    )
     figure.savefig(path, dpi=110)

@@ -1,4 +1,6 @@
-"""Land on a calm and on a moving deck: FMPy and Ecos run the same system of three FMUs; compare them and draw what happens."""
+"""Land on a calm and on a moving deck: FMPy and Ecos run the same system of three FMUs; compare
+them and draw what happens.
+"""
 
 from __future__ import annotations
 
@@ -23,38 +25,79 @@ LEGS = (1, 2, 3, 4)
     show_default=True,
     help="Folder for the FMUs, the SSP files, the results as CSV, and the picture.",
 )
-@click.option("--until", type=click.FloatRange(0.8, 60.0), default=3.0, show_default=True, help="Duration [s].")
-@click.option("--step", type=click.FloatRange(1e-5, 1e-2), default=1e-3, show_default=True, help="Communication step [s].")
-@click.option("--picture", type=click.Path(dir_okay=False, path_type=Path), help="The picture's file  [default: ship_deck.png in --out]")
+@click.option(
+    "--until",
+    type=click.FloatRange(0.8, 60.0),
+    default=3.0,
+    show_default=True,
+    help="Duration [s].",
+)
+@click.option(
+    "--step",
+    type=click.FloatRange(1e-5, 1e-2),
+    default=1e-3,
+    show_default=True,
+    help="Communication step [s].",
+)
+@click.option(
+    "--picture",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="The picture's file  [default: ship_deck.png in --out]",
+)
 def main(out: Path, until: float, step: float, picture: Path | None) -> None:
     out.mkdir(parents=True, exist_ok=True)
     picture = picture or out / "ship_deck.png"
     try:
         fmus = system.build(out)
-        results = {name: run(name, parameters, fmus, out, until, step) for name, parameters in system.DECKS.items()}
+        results = {
+            name: run(name, parameters, fmus, out, until, step)
+            for name, parameters in system.DECKS.items()
+        }
     except FileNotFoundError as e:
         raise click.ClickException(str(e)) from None
     save_picture(results, picture)
     click.echo(f"wrote {picture}, and FMUs, SSP files and results in {out}")
 
 
-def run(name: str, parameters: Parameters, fmus: dict[str, Path], out: Path, until: float, step: float) -> dict[str, np.ndarray]:
-    """Land on the deck `name` by FMPy and by Ecos, write both results and the SSP file to `out`, tell what happened; return FMPy's."""
-    with tqdm(total=2.0 * until, desc=f"{name} deck", bar_format="{l_bar}{bar}| {n:.2f} of {total:.2f} s") as bar:
-        result = simulate(fmus, system.CONNECTIONS, parameters, step, until, lambda time: bar.update(time - bar.n))
+def run(
+    name: str, parameters: Parameters, fmus: dict[str, Path], out: Path, until: float, step: float
+) -> dict[str, np.ndarray]:
+    """Land on the deck `name` by FMPy and by Ecos, write both results and the SSP file to `out`,
+    tell what happened; return FMPy's.
+    """
+    with tqdm(
+        total=2.0 * until, desc=f"{name} deck", bar_format="{l_bar}{bar}| {n:.2f} of {total:.2f} s"
+    ) as bar:
+        result = simulate(
+            fmus, system.CONNECTIONS, parameters, step, until, lambda time: bar.update(time - bar.n)
+        )
         ssp.write(out / f"{name}.ssp", fmus, system.CONNECTIONS, parameters, until)
         columns = [column for column in result if column != "time"]
-        again = ssp.run_in_ecos(out / f"{name}.ssp", columns, step, until, lambda time: bar.update(until + time - bar.n))
+        again = ssp.run_in_ecos(
+            out / f"{name}.ssp", columns, step, until, lambda time: bar.update(until + time - bar.n)
+        )
     for table, importer in ((result, "fmpy"), (again, "ecos")):
         rows = np.array(list(table.values())).T
-        np.savetxt(out / f"{name}-{importer}.csv", rows, fmt="%.12g", delimiter=",", header=",".join(table), comments="")
+        np.savetxt(
+            out / f"{name}-{importer}.csv",
+            rows,
+            fmt="%.12g",
+            delimiter=",",
+            header=",".join(table),
+            comments="",
+        )
     click.echo(told(name, result, again))
     return result
 
 
 def difference(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> tuple[float, str]:
-    """The largest difference of two results as part of the quantity's largest value, and that quantity's name."""
-    parts = ((float(np.abs(one[name] - other[name]).max() / (np.abs(one[name]).max() or 1.0)), name) for name in one)
+    """The largest difference of two results as part of the quantity's largest value, and that
+    quantity's name.
+    """
+    parts = (
+        (float(np.abs(one[name] - other[name]).max() / (np.abs(one[name]).max() or 1.0)), name)
+        for name in one
+    )
     return max(parts)
 
 
@@ -68,7 +111,11 @@ def told(name: str, result: dict[str, np.ndarray], again: dict[str, np.ndarray])
     force = -min(result[f"landing.leg[{leg}].main_strut.force"].min() for leg in LEGS)
     stroke = max(result[f"landing.leg[{leg}].main_strut.stroke"].max() for leg in LEGS)
     apart, where = difference(result, again)
-    compared = f"differ by {apart:.1e} of the largest value of {where}" if apart > 0.0 else "give the same digits"
+    compared = (
+        f"differ by {apart:.1e} of the largest value of {where}"
+        if apart > 0.0
+        else "give the same digits"
+    )
     return (
         f"{name} deck: touches at {result['time'][first]:.3f} s with {speed:.2f} m/s relative to the deck; "
         f"main struts up to {force:.0f} N and {1e3 * stroke:.1f} mm\n"

@@ -22,8 +22,16 @@ NAMESPACES = {
 PARAMETER_SET = "start"
 
 
-def write(path: Path, fmus: dict[str, Path], connections: Connections, parameters: Parameters, until: float) -> None:
-    """Write the system to `path` (.ssp): the FMUs, their connections, and the parameters of all of them as the set `start`."""
+def write(
+    path: Path,
+    fmus: dict[str, Path],
+    connections: Connections,
+    parameters: Parameters,
+    until: float,
+) -> None:
+    """Write the system to `path` (.ssp): the FMUs, their connections, and the parameters of all of
+    them as the set `start`.
+    """
     prefixes = {f"xmlns:{prefix}": uri for prefix, uri in NAMESPACES.items()}
     root = Element("ssd:SystemStructureDescription", prefixes, name=path.stem, version="1.0")
     system = SubElement(root, "ssd:System", name=path.stem)
@@ -32,43 +40,84 @@ def write(path: Path, fmus: dict[str, Path], connections: Connections, parameter
         add_component(elements, name, file, connections, parameters[name])
     lines = SubElement(system, "ssd:Connections") if connections else system
     for (source, output), (target, inlet) in connections.items():
-        SubElement(lines, "ssd:Connection", startElement=source, startConnector=output, endElement=target, endConnector=inlet)
+        SubElement(
+            lines,
+            "ssd:Connection",
+            startElement=source,
+            startConnector=output,
+            endElement=target,
+            endConnector=inlet,
+        )
     SubElement(root, "ssd:DefaultExperiment", startTime="0.0", stopTime=repr(until))
     indent(root)
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("SystemStructure.ssd", tostring(root, encoding="utf-8", xml_declaration=True))
+        archive.writestr(
+            "SystemStructure.ssd", tostring(root, encoding="utf-8", xml_declaration=True)
+        )
         for file in fmus.values():
             archive.write(file, f"resources/{file.name}")
 
 
-def add_component(elements: Element, name: str, file: Path, connections: Connections, parameters: dict[str, float]) -> None:
-    """Add the FMU `file` as the component `name`: what is connected, and its parameters, of the types that the FMU states."""
+def add_component(
+    elements: Element, name: str, file: Path, connections: Connections, parameters: dict[str, float]
+) -> None:
+    """Add the FMU `file` as the component `name`: what is connected, and its parameters, of the
+    types that the FMU states.
+    """
     types = {v.name: v.type for v in fmpy.read_model_description(str(file)).modelVariables}
-    element = SubElement(elements, "ssd:Component", name=name, type="application/x-fmu-sharedlibrary", source=f"resources/{file.name}")
-    ends = [("output", end) for end in connections] + [("input", end) for end in connections.values()]
+    element = SubElement(
+        elements,
+        "ssd:Component",
+        name=name,
+        type="application/x-fmu-sharedlibrary",
+        source=f"resources/{file.name}",
+    )
+    ends = [("output", end) for end in connections] + [
+        ("input", end) for end in connections.values()
+    ]
     own = [(kind, variable) for kind, (component, variable) in ends if component == name]
     connectors = SubElement(element, "ssd:Connectors") if own else element
     for kind, variable in own:
-        SubElement(SubElement(connectors, "ssd:Connector", name=variable, kind=kind), f"ssc:{types[variable]}")
+        SubElement(
+            SubElement(connectors, "ssd:Connector", name=variable, kind=kind),
+            f"ssc:{types[variable]}",
+        )
     if parameters:
         binding = SubElement(SubElement(element, "ssd:ParameterBindings"), "ssd:ParameterBinding")
-        values = SubElement(SubElement(binding, "ssd:ParameterValues"), "ssv:ParameterSet", version="1.0", name=PARAMETER_SET)
+        values = SubElement(
+            SubElement(binding, "ssd:ParameterValues"),
+            "ssv:ParameterSet",
+            version="1.0",
+            name=PARAMETER_SET,
+        )
         entries = SubElement(values, "ssv:Parameters")
         for parameter, value in parameters.items():
-            SubElement(SubElement(entries, "ssv:Parameter", name=parameter), f"ssv:{types[parameter]}", value=str(value))
+            SubElement(
+                SubElement(entries, "ssv:Parameter", name=parameter),
+                f"ssv:{types[parameter]}",
+                value=str(value),
+            )
 
 
 def run_in_ecos(
-    path: Path, columns: list[str], step: float = 1e-3, until: float = 3.0, progress: Callable[[float], object] | None = None
+    path: Path,
+    columns: list[str],
+    step: float = 1e-3,
+    until: float = 3.0,
+    progress: Callable[[float], object] | None = None,
 ) -> dict[str, np.ndarray]:
-    """Ecos runs the SSP file `path`: the real outputs `columns` (`component.output`) and `time`, as `master.simulate` gives them.
+    """Ecos runs the SSP file `path`: the real outputs `columns` (`component.output`) and `time`, as
+    `master.simulate` gives them.
 
     Raises FileNotFoundError where Ecos or its libtbb is not installed.
     """
-    # the wheel `tbb` puts libtbb where the loader does not look; once loaded, it is found by its name
+    # the wheel `tbb` puts libtbb where the loader does not look; once loaded, it is found by its
+    # name
     libtbb = Path(sys.prefix) / "lib" / "libtbb.so.12"
     if not (libtbb.is_file() and find_spec("ecospy")):
-        raise FileNotFoundError("Ecos or its libtbb is missing: run .venv/bin/pip install -e '.[cosim]'")
+        raise FileNotFoundError(
+            "Ecos or its libtbb is missing: run .venv/bin/pip install -e '.[cosim]'"
+        )
     ctypes.CDLL(str(libtbb), mode=ctypes.RTLD_GLOBAL)
     from ecospy import EcosSimulation
 

@@ -1,4 +1,6 @@
-"""The system: three FMUs, what is connected to what, and the parameters of a calm and a moving deck."""
+"""The system: three FMUs, what is connected to what, and the parameters of a calm and a moving
+deck.
+"""
 
 from __future__ import annotations
 
@@ -15,13 +17,21 @@ ROOT = HERE.parent.parent
 LANDING = ROOT / "build" / "RlvLanding.fmu"
 SLAVES = {"deck": "ship_deck.py", "engine": "engine_tail_off.py"}
 
-# output of a component -> input of another; the rates too, since the ground goes on at them within a step
+# output of a component -> input of another; the rates too, since the ground goes on at them within
+# a step
 CONNECTIONS = {
-    **{("deck", name): ("landing", f"ground.{name}") for name in ("heave", "heave_rate", "tilt", "tilt_rate")},
-    **{("engine", name): ("landing", f"external.{name}") for name in ("force_x", "force_y", "moment")},
+    **{
+        ("deck", name): ("landing", f"ground.{name}")
+        for name in ("heave", "heave_rate", "tilt", "tilt_rate")
+    },
+    **{
+        ("engine", name): ("landing", f"external.{name}")
+        for name in ("force_x", "force_y", "moment")
+    },
 }
 
-# A landing burn: at time 0 the vehicle hangs 0.2 m above the deck with its engine holding most of its weight.
+# A landing burn: at time 0 the vehicle hangs 0.2 m above the deck with its engine holding most of
+# its weight.
 DROP = {
     "drop.contact_time": 0.2,
     "drop.vertical_velocity": -2.0,
@@ -35,18 +45,27 @@ DECKS = {"calm": CALM, "moving": MOVING}
 
 
 def build(folder: Path, landing: Path = LANDING) -> dict[str, Path]:
-    """The file of every component; those of deck and engine are built into `folder`. Raises FileNotFoundError if `landing` is missing."""
+    """The file of every component; those of deck and engine are built into `folder`.
+
+    Raises FileNotFoundError if `landing` is missing.
+    """
     if not landing.is_file():
         raise FileNotFoundError(f"{landing} is missing: run make build/RlvLanding.fmu")
     fmus = {"landing": landing}
     for component, slave in SLAVES.items():
-        fmus[component] = Path(FmuBuilder.build_FMU(HERE / "fmus" / slave, dest=folder, project_files=[HERE / "fmus" / "described.py"]))
+        fmus[component] = Path(
+            FmuBuilder.build_FMU(
+                HERE / "fmus" / slave, dest=folder, project_files=[HERE / "fmus" / "described.py"]
+            )
+        )
         add_front(fmus[component])
     return fmus
 
 
 def add_front(fmu: Path) -> None:
-    """Give an FMU of pythonfmu the C front of RlvLanding.fmu, without which it runs in hosts that are Python processes only."""
+    """Give an FMU of pythonfmu the C front of RlvLanding.fmu, without which it runs in hosts that
+    are Python processes only.
+    """
     sys.path.insert(0, str(ROOT / "fmu_src"))
     from fmu_build.binary import replace_binaries
 

@@ -1,8 +1,8 @@
-"""Builds `build/RlvLanding.fmu`: the slave, its own copy of the package with the compiled core, pythonfmu's binary, description and
-documentation.
+"""Builds `build/RlvLanding.fmu`: the slave, its own copy of the package with the compiled core,
+pythonfmu's binary, description and documentation.
 
-Run by `build_fmu.sh`. pythonfmu's FMU is unpacked, completed and packed anew, the same bytes from the same sources. The FMU is
-validated by FMPy and landed once before it takes its place.
+Run by `build_fmu.sh`. pythonfmu's FMU is unpacked, completed and packed anew, the same bytes from
+the same sources. The FMU is validated by FMPy and landed once before it takes its place.
 """
 
 from __future__ import annotations
@@ -30,10 +30,18 @@ from .documentation import write_documentation
 HERE = Path(__file__).parent.parent
 ROOT = HERE.parent
 PACKAGE = HERE / "rlv_landing"
-MODULES = ("__init__.py", "errors.py", "quantities.py", "parameters.py", "touchdown.py", "landing.py")
+MODULES = (
+    "__init__.py",
+    "errors.py",
+    "quantities.py",
+    "parameters.py",
+    "touchdown.py",
+    "landing.py",
+)
 # pythonfmu's command line, CSV tool and builder, which no slave needs
 NOT_NEEDED = ("__main__.py", "csvbuilder.py", "deploy.py", "builder.py", "osutil.py")
-# the line of pythonfmu's `__init__.py` that imports the builder, and with it argparse, logging and minidom: a third of an instance
+# the line of pythonfmu's `__init__.py` that imports the builder, and with it argparse, logging and
+# minidom: a third of an instance
 IMPORTS_BUILDER = "from .builder import FmuBuilder\n"
 # what a zip file can date: 1980, which stands for a source without a date, to 2107
 OLDEST, NEWEST = 315532800, 4354819199
@@ -56,11 +64,19 @@ def version() -> str:
 
 
 def source_date() -> datetime:
-    """The date of the sources [UTC]: SOURCE_DATE_EPOCH of the environment, else that of the last git commit, else 1980-01-01."""
+    """The date of the sources [UTC]: SOURCE_DATE_EPOCH of the environment, else that of the last
+    git commit, else 1980-01-01.
+    """
     text = os.environ.get("SOURCE_DATE_EPOCH", "")
     if not text and (ROOT / ".git").exists():
         try:
-            text = subprocess.run(["git", "log", "-1", "--format=%ct"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+            text = subprocess.run(
+                ["git", "log", "-1", "--format=%ct"],
+                cwd=ROOT,
+                capture_output=True,
+                text=True,
+                check=True,
+            ).stdout
         except (OSError, subprocess.CalledProcessError):
             text = ""
     if text and not (re.fullmatch(r"\d+\s*", text) and int(text) <= NEWEST):
@@ -71,7 +87,9 @@ def source_date() -> datetime:
 
 
 def lay_out(folder: Path) -> tuple[Path, Path]:
-    """Copy slave and package to `folder` under names that carry the version, so that two versions live in one process."""
+    """Copy slave and package to `folder` under names that carry the version, so that two versions
+    live in one process.
+    """
     name = "rlv_landing_" + re.sub(r"\W", "_", version())
     package = folder / name
     (package / "core").mkdir(parents=True)
@@ -79,19 +97,27 @@ def lay_out(folder: Path) -> tuple[Path, Path]:
         shutil.copy(PACKAGE / module, package / module)
     for file in sorted((PACKAGE / "core").iterdir()):
         # compiled cores of all Python versions that are there, but none of older kernels
-        if file.suffix == ".py" or (file.suffix in (".so", ".pyd") and package_name().encode() in file.read_bytes()):
+        if file.suffix == ".py" or (
+            file.suffix in (".so", ".pyd") and package_name().encode() in file.read_bytes()
+        ):
             shutil.copy(file, package / "core" / file.name)
     text = (HERE / "landing_fmu.py").read_text()
-    (package / "slave.py").write_text(re.sub(r"^from rlv_landing\b", f"from {name}", text, flags=re.M))
+    (package / "slave.py").write_text(
+        re.sub(r"^from rlv_landing\b", f"from {name}", text, flags=re.M)
+    )
     script = folder / f"{name.replace('rlv_landing', 'landing_fmu')}.py"
     script.write_text(SCRIPT.format(package=name))
     return script, package
 
 
 def unpack_pythonfmus(folder: Path) -> Path:
-    """Have pythonfmu build its FMU of slave and package; return the folder of its files, without those that are not needed."""
+    """Have pythonfmu build its FMU of slave and package; return the folder of its files, without
+    those that are not needed.
+    """
     slave, package = lay_out(folder)
-    built = FmuBuilder.build_FMU(slave, dest=folder / "out" / "RlvLanding.fmu", project_files=[package])
+    built = FmuBuilder.build_FMU(
+        slave, dest=folder / "out" / "RlvLanding.fmu", project_files=[package]
+    )
     files = folder / "files"
     with zipfile.ZipFile(built) as archive:
         archive.extractall(files)
@@ -119,9 +145,13 @@ def write_description(files: Path, date: datetime) -> ElementTree.Element:
 
 
 def pack(files: Path, target: Path, date: datetime) -> None:
-    """Zip all of `files`, in the order of their names, all of `date`, so that the same files give the same bytes."""
+    """Zip all of `files`, in the order of their names, all of `date`, so that the same files give
+    the same bytes.
+    """
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
-        for name in sorted(p.relative_to(files).as_posix() for p in files.rglob("*") if p.is_file()):
+        for name in sorted(
+            p.relative_to(files).as_posix() for p in files.rglob("*") if p.is_file()
+        ):
             entry = zipfile.ZipInfo(name, date.timetuple()[:6])
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.create_system = 3  # Unix, whose modes these are
@@ -130,14 +160,24 @@ def pack(files: Path, target: Path, date: datetime) -> None:
 
 
 def check(fmu: Path) -> str:
-    """Validate the FMU's description and land it once; say what came of it. Raises SystemExit with what is wrong."""
+    """Validate the FMU's description and land it once; say what came of it.
+
+    Raises SystemExit with what is wrong.
+    """
     problems = validate_fmu(str(fmu))
     if problems:
         raise SystemExit("error: the FMU is not valid: " + "; ".join(problems))
-    result = fmpy.simulate_fmu(str(fmu), stop_time=0.2, output_interval=1e-3, output=["leg[1].main_strut.force", "energy.balance"])
+    result = fmpy.simulate_fmu(
+        str(fmu),
+        stop_time=0.2,
+        output_interval=1e-3,
+        output=["leg[1].main_strut.force", "energy.balance"],
+    )
     force, balance = result["leg[1].main_strut.force"].min(), abs(result["energy.balance"]).max()
     if not (force < -1000.0 and balance < 1e-3):
-        raise SystemExit(f"error: the FMU's trial landing is off: strut force {force:g} N, energy balance {balance:g} J")
+        raise SystemExit(
+            f"error: the FMU's trial landing is off: strut force {force:g} N, energy balance {balance:g} J"
+        )
     return f"valid; trial landing: main strut 1 down to {force:.0f} N, energy balance within {balance:.1e} J"
 
 

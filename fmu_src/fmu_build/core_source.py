@@ -1,8 +1,10 @@
-"""Joins the kernels of `rlv_landing/core` to one Cython module, so that one small binary holds the compiled core.
+"""Joins the kernels of `rlv_landing/core` to one Cython module, so that one small binary holds the
+compiled core.
 
-The kernels are plain Python and import each other and `math`. Compiled, they call each other and libm directly: this drops their
-imports, puts the files in the order of their imports, and turns the names of `layout.py` into C constants, an array that kernels pass
-to each other into its address. Nothing else of the text changes, so compiled and pure core compute the same digits.
+The kernels are plain Python and import each other and `math`. Compiled, they call each other and
+libm directly: this drops their imports, puts the files in the order of their imports, and turns the
+names of `layout.py` into C constants, an array that kernels pass to each other into its address.
+Nothing else of the text changes, so compiled and pure core compute the same digits.
 """
 
 from __future__ import annotations
@@ -39,7 +41,11 @@ def kernels(core: Path = CORE) -> list[Path]:
     for path in sorted(core.glob("*.py")):
         if path.stem in ("__init__", *TRANSLATED):
             continue
-        nodes = [n for n in ast.parse(path.read_text()).body if isinstance(n, ast.ImportFrom) and n.level == 1]
+        nodes = [
+            n
+            for n in ast.parse(path.read_text()).body
+            if isinstance(n, ast.ImportFrom) and n.level == 1
+        ]
         imports[path.stem] = [n.module for n in nodes if n.module and n.module not in TRANSLATED]
     return [core / f"{name}.py" for name in TopologicalSorter(imports).static_order()]
 
@@ -62,8 +68,14 @@ def layout_constants(core: Path = CORE) -> dict[str, int]:
 
 
 def digest(core: Path = CORE) -> str:
-    """A fingerprint of the kernels' texts; the compiled core carries that of the texts that it was made from."""
-    texts = [p.read_bytes() for p in sorted([*core.glob("*.py"), *core.glob("*.pxd")]) if p.stem != "__init__"]
+    """A fingerprint of the kernels' texts; the compiled core carries that of the texts that it was
+    made from.
+    """
+    texts = [
+        p.read_bytes()
+        for p in sorted([*core.glob("*.py"), *core.glob("*.pxd")])
+        if p.stem != "__init__"
+    ]
     return hashlib.sha256(b"".join(texts)).hexdigest()
 
 
@@ -73,15 +85,22 @@ def package_name(core: Path = CORE) -> str:
 
 
 def write_source(folder: Path, core: Path = CORE) -> Path:
-    """Write `compiled.py` and `compiled.pxd` below `folder`, only where they change; return the former.
+    """Write `compiled.py` and `compiled.pxd` below `folder`, only where they change; return the
+    former.
 
-    Their package is named after their digest. A compiled module enters itself in `sys.modules` under the name it was compiled with,
-    and an FMU's core must never be found there by another version of the package in the same process.
+    Their package is named after their digest. A compiled module enters itself in `sys.modules`
+    under the name it was compiled with, and an FMU's core must never be found there by another
+    version of the package in the same process.
     """
     sources = kernels(core)
     enum = "".join(f"    {name} = {value}\n" for name, value in layout_constants(core).items())
-    pxd = "from libc.math cimport cos, exp, expm1, fabs, log, pow, sin, sqrt, tanh\n\ncdef enum:\n" + enum
-    pxd += POINTER + "".join(p.with_suffix(".pxd").read_text() for p in sources if p.with_suffix(".pxd").exists())
+    pxd = (
+        "from libc.math cimport cos, exp, expm1, fabs, log, pow, sin, sqrt, tanh\n\ncdef enum:\n"
+        + enum
+    )
+    pxd += POINTER + "".join(
+        p.with_suffix(".pxd").read_text() for p in sources if p.with_suffix(".pxd").exists()
+    )
     texts = "".join(f"# {p.name}\n{without_imports(p.read_text())}" for p in sources)
     python = f'from cython import nogil\n\n{texts}SOURCE_DIGEST = "{digest(core)}"\n'
     package = folder / package_name(core)

@@ -1,7 +1,10 @@
-"""What each output depends on: the inputs at the same instant, and the parameters at the start. For the FMU's ModelStructure.
+"""What each output depends on: the inputs at the same instant, and the parameters at the start.
 
-Written down from the equations; `tests/fmu/test_description.py` finds the same sets by moving every input and parameter of the model.
-Outputs that are not named here are states or follow from states alone: no input changes them at once.
+For the FMU's ModelStructure.
+
+Written down from the equations; `tests/fmu/test_description.py` finds the same sets by moving every
+input and parameter of the model. Outputs that are not named here are states or follow from states
+alone: no input changes them at once.
 """
 
 from __future__ import annotations
@@ -12,8 +15,13 @@ LOADS = frozenset({"external.force_x", "external.force_y", "external.moment"})
 PLACE = frozenset({"ground.heave", "ground.tilt"})
 GROUND = PLACE | {"ground.heave_rate", "ground.tilt_rate"}
 
-# parameters: the footpads' place on the body, and what the free flight before the first contact is made of
-LEG = frozenset(f"{strut}.{what}" for strut in ("main_strut", "auxiliary_strut") for what in ("joint_radius", "joint_depth", "length"))
+# parameters: the footpads' place on the body, and what the free flight before the first contact is
+# made of
+LEG = frozenset(
+    f"{strut}.{what}"
+    for strut in ("main_strut", "auxiliary_strut")
+    for what in ("joint_radius", "joint_depth", "length")
+)
 PITCH = frozenset({"drop.tilt", "drop.pitch_rate", "drop.contact_time"})
 FLIGHT = PITCH | LEG | {"vehicle.mass", "vehicle.footpad_mass"}
 VX = FLIGHT | {"drop.horizontal_velocity"}
@@ -23,9 +31,18 @@ FOOT = VX | HEIGHT
 PENALTY = FOOT | {"ground.stiffness", "ground.exponent"}
 # friction starts from rest: only its damping acts at once
 CONTACT = PENALTY | {"ground.damping", "ground.damping_depth", "ground.stick_damping"}
-CHARGE = frozenset(f"main_strut.{what}" for what in ("charge_pressure", "ambient_pressure", "area_upper", "area_lower"))
-VOLUMES = frozenset(f"main_strut.{what}" for what in ("volume_upper", "volume_lower", "charge_pressure", "ambient_pressure"))
-LIQUID = VOLUMES | {f"main_strut.{what}" for what in ("air_fraction", "air_exponent", "bulk_modulus", "bulk_modulus_slope")}
+CHARGE = frozenset(
+    f"main_strut.{what}"
+    for what in ("charge_pressure", "ambient_pressure", "area_upper", "area_lower")
+)
+VOLUMES = frozenset(
+    f"main_strut.{what}"
+    for what in ("volume_upper", "volume_lower", "charge_pressure", "ambient_pressure")
+)
+LIQUID = VOLUMES | {
+    f"main_strut.{what}"
+    for what in ("air_fraction", "air_exponent", "bulk_modulus", "bulk_modulus_slope")
+}
 # the pushes of all legs' struts are equal at the start, so that they do not turn the body
 TURN = CONTACT | {"vehicle.inertia", "vehicle.transverse_load_at"}
 MARGIN = PITCH | LEG | {"vehicle.mass", "vehicle.footpad_mass", "drop.mode"}
@@ -55,7 +72,10 @@ PARAMETERS: dict[str, frozenset[str]] = {
     "body.ax": TURN | CHARGE,
     "body.ay": TURN | CHARGE,
     "body.pitch_acceleration": TURN,
-    "body.top_axial_acceleration": PITCH | LEG | CHARGE | {"vehicle.mass", "vehicle.top_height", "ground.gravity"},
+    "body.top_axial_acceleration": PITCH
+    | LEG
+    | CHARGE
+    | {"vehicle.mass", "vehicle.top_height", "ground.gravity"},
     "energy.kinetic": VX | VY | {"vehicle.inertia"},
     "energy.potential": HEIGHT,
     "energy.liquid": LIQUID,
@@ -87,6 +107,13 @@ def inputs_of(output: str) -> frozenset[str]:
 
 
 def known_at_start(output: str) -> frozenset[str]:
-    """The inputs and parameters that `output` depends on at the start. The footpads do not slide sideways then, whatever is set."""
+    """The inputs and parameters that `output` depends on at the start.
+
+    The footpads do not slide sideways then, whatever is set.
+    """
     name = _of_any_leg(output)
-    return frozenset() if name == "contact.force_z" else inputs_of(output) | PARAMETERS.get(name, frozenset())
+    return (
+        frozenset()
+        if name == "contact.force_z"
+        else inputs_of(output) | PARAMETERS.get(name, frozenset())
+    )

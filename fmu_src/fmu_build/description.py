@@ -1,6 +1,9 @@
-"""The FMU's description: what pythonfmu's lacks is added to it from the one table of quantities. Runs at build time only.
+"""The FMU's description: what pythonfmu's lacks is added to it from the one table of quantities.
 
-Units, types, bounds, nominal values and exact starts of the variables; dependencies of the outputs; attributes of the model.
+Runs at build time only.
+
+Units, types, bounds, nominal values and exact starts of the variables; dependencies of the outputs;
+attributes of the model.
 """
 
 from __future__ import annotations
@@ -10,7 +13,14 @@ from xml.etree.ElementTree import Element, SubElement
 
 from rlv_landing import __version__
 from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.quantities import BASE_UNITS, DISPLAY_UNITS, INPUT_QUANTITIES, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES, Quantity
+from rlv_landing.quantities import (
+    BASE_UNITS,
+    DISPLAY_UNITS,
+    INPUT_QUANTITIES,
+    OUTPUT_QUANTITIES,
+    STATISTIC_QUANTITIES,
+    Quantity,
+)
 
 from .dependencies import inputs_of, known_at_start
 
@@ -47,14 +57,26 @@ CAPABILITIES = {
     "canGetAndSetFMUstate": True,
     "canSerializeFMUstate": True,
 }
-QUANTITIES = {q.name: q for q in (*PARAMETER_QUANTITIES.values(), *INPUT_QUANTITIES, *OUTPUT_QUANTITIES, *STATISTIC_QUANTITIES)}
+QUANTITIES = {
+    q.name: q
+    for q in (
+        *PARAMETER_QUANTITIES.values(),
+        *INPUT_QUANTITIES,
+        *OUTPUT_QUANTITIES,
+        *STATISTIC_QUANTITIES,
+    )
+}
 
 
 def describe(root: Element, date: str) -> None:
-    """Complete pythonfmu's description `root` in place; `date` (ISO 8601, UTC) is what it says of the time of its making."""
+    """Complete pythonfmu's description `root` in place; `date` (ISO 8601, UTC) is what it says of
+    the time of its making.
+    """
     root.set("generationTool", f"rlv-landing {__version__} with {root.get('generationTool')}")
     root.set("generationDateAndTime", date)
-    simulation, variables, structure = (root.find(name) for name in ("CoSimulation", "ModelVariables", "ModelStructure"))
+    simulation, variables, structure = (
+        root.find(name) for name in ("CoSimulation", "ModelVariables", "ModelStructure")
+    )
     assert simulation is not None
     assert variables is not None
     assert structure is not None
@@ -69,7 +91,9 @@ def describe(root: Element, date: str) -> None:
 
 
 def type_name(q: Quantity) -> str:
-    """The type of a real quantity: its physical kind, and the unit that it is shown in where that is another."""
+    """The type of a real quantity: its physical kind, and the unit that it is shown in where that
+    is another.
+    """
     kind = PHYSICAL_KINDS[q.unit or DIMENSIONLESS]
     return f"{kind}_{q.display_unit.replace('/', '_per_')}" if q.display_unit else kind
 
@@ -101,7 +125,8 @@ def type_definitions() -> Element:
 def complete(variable: Element, q: Quantity) -> None:
     """Put type, unit, bounds, nominal value and start into the `variable` of the quantity `q`.
 
-    Units stand here as well as in the type, for importers that read no types. Starts are written with all digits.
+    Units stand here as well as in the type, for importers that read no types. Starts are written
+    with all digits.
     """
     typed = variable[0]
     if q.kind == "real":
@@ -124,11 +149,15 @@ def _set_units(typed: Element, q: Quantity) -> None:
 
 
 def unknowns(names: list[str]) -> list[Element]:
-    """Outputs with the inputs that they depend on at once, and their initial values with inputs and parameters."""
+    """Outputs with the inputs that they depend on at once, and their initial values with inputs and
+    parameters.
+    """
     index = {name: i for i, name in enumerate(names, start=1)}
     outputs, initial = Element("Outputs"), Element("InitialUnknowns")
     for q in OUTPUT_QUANTITIES:
         for node, known in ((outputs, inputs_of(q.name)), (initial, known_at_start(q.name))):
             numbers = sorted(index[name] for name in known)
-            SubElement(node, "Unknown", index=str(index[q.name]), dependencies=" ".join(map(str, numbers)))
+            SubElement(
+                node, "Unknown", index=str(index[q.name]), dependencies=" ".join(map(str, numbers))
+            )
     return [outputs, initial]

@@ -1,4 +1,6 @@
-"""What the FMU carries for people: documentation/index.html, licences, change log and the icon model.png. Runs at build time only."""
+"""What the FMU carries for people: documentation/index.html, licences, change log and the icon
+model.png. Runs at build time only.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,12 @@ from markupsafe import Markup
 from rlv_landing import Parameters, __version__
 from rlv_landing.figures.plots import inline_svg
 from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES, Quantity
+from rlv_landing.quantities import (
+    INPUT_QUANTITIES,
+    OUTPUT_QUANTITIES,
+    STATISTIC_QUANTITIES,
+    Quantity,
+)
 
 from .dependencies import inputs_of
 from .drawing import vehicle_figure
@@ -28,11 +35,15 @@ DOTS_PER_INCH = 100
 
 
 def write_documentation(files: Path, description: Element) -> None:
-    """Write all of it below `files`, the FMU's folder; `description` is the root of its modelDescription.xml."""
+    """Write all of it below `files`, the FMU's folder; `description` is the root of its
+    modelDescription.xml.
+    """
     documentation = files / "documentation"
     licences = documentation / "licenses"
     licences.mkdir(parents=True)
-    vehicle_figure(Parameters()).savefig(files / "model.png", dpi=DOTS_PER_INCH, metadata={"Software": None})
+    vehicle_figure(Parameters()).savefig(
+        files / "model.png", dpi=DOTS_PER_INCH, metadata={"Software": None}
+    )
     shutil.copyfile(ROOT / "CHANGELOG.md", documentation / "CHANGELOG.md")
     shutil.copyfile(ROOT / "LICENSE", licences / "LICENSE")
     (licences / f"{LICENCE_OF}-LICENSE").write_text(licence_text(LICENCE_OF), encoding="utf-8")
@@ -40,16 +51,23 @@ def write_documentation(files: Path, description: Element) -> None:
 
 
 def licence_text(package: str) -> str:
-    """The licence of an installed package, from its metadata. Raises SystemExit where it brings none."""
+    """The licence of an installed package, from its metadata.
+
+    Raises SystemExit where it brings none.
+    """
     for path in distribution(package).files or ():
         if path.name.upper().startswith("LICENSE") and ".dist-info" in path.parts[0]:
             return path.read_text(encoding="utf-8")
-    raise SystemExit(f"error: the installed {package} brings no licence text, which the FMU has to carry; install it from PyPI")
+    raise SystemExit(
+        f"error: the installed {package} brings no licence text, which the FMU has to carry; install it from PyPI"
+    )
 
 
 def render(files: Path, description: Element) -> str:
     """The page, self-contained, as well-formed XML as well."""
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
     environment.filters["math"] = lambda latex: Markup(convert(latex, display="block"))
     experiment = description.find("DefaultExperiment")
     simulation = description.find("CoSimulation")
@@ -61,20 +79,45 @@ def render(files: Path, description: Element) -> str:
         experiment=experiment.attrib,
         capabilities=simulation.attrib,
         cores=sorted(p.name for p in files.glob("resources/*/core/compiled.*")),
-        drawing=Markup(inline_svg(vehicle_figure(Parameters(), named=True), "vehicle", "The vehicle on its four legs")),
+        drawing=Markup(
+            inline_svg(
+                vehicle_figure(Parameters(), named=True), "vehicle", "The vehicle on its four legs"
+            )
+        ),
         pythonfmu=distribution("pythonfmu").version,
         tables=[
-            ("parameters", "Parameters", "fixed; set them before or in initialization mode", rows(PARAMETER_QUANTITIES.values())),
+            (
+                "parameters",
+                "Parameters",
+                "fixed; set them before or in initialization mode",
+                rows(PARAMETER_QUANTITIES.values()),
+            ),
             ("inputs", "Inputs", "continuous; 0 by default", rows(INPUT_QUANTITIES)),
-            ("outputs", "Outputs", "calculated; leg[1] stands for every leg, numbered as drawn", rows(outputs_of_one_leg())),
-            ("statistics", "Statistics", "local; what the integrator has done", rows(STATISTIC_QUANTITIES)),
+            (
+                "outputs",
+                "Outputs",
+                "calculated; leg[1] stands for every leg, numbered as drawn",
+                rows(outputs_of_one_leg()),
+            ),
+            (
+                "statistics",
+                "Statistics",
+                "local; what the integrator has done",
+                rows(STATISTIC_QUANTITIES),
+            ),
         ],
     )
 
 
 def outputs_of_one_leg() -> list[Quantity]:
-    """The outputs, of the legs the first one's only: those of the others differ in the leg's number alone."""
-    return [q for q in OUTPUT_QUANTITIES if not q.name.startswith("leg[") or q.name.startswith("leg[1].")]
+    """The outputs, of the legs the first one's only: those of the others differ in the leg's number
+    alone.
+    """
+    return [
+        q
+        for q in OUTPUT_QUANTITIES
+        if not q.name.startswith("leg[") or q.name.startswith("leg[1].")
+    ]
 
 
 def rows(quantities: Any) -> list[dict[str, str]]:
@@ -99,4 +142,12 @@ def rows(quantities: Any) -> list[dict[str, str]]:
 def _bounds(q: Quantity) -> str:
     """Both bounds, or the one that there is, or nothing."""
     lo, hi = math.isfinite(q.lo), math.isfinite(q.hi)
-    return f"{q.lo:g} ... {q.hi:g}" if lo and hi else f"at least {q.lo:g}" if lo else f"at most {q.hi:g}" if hi else ""
+    return (
+        f"{q.lo:g} ... {q.hi:g}"
+        if lo and hi
+        else f"at least {q.lo:g}"
+        if lo
+        else f"at most {q.hi:g}"
+        if hi
+        else ""
+    )

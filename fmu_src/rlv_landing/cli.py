@@ -1,4 +1,7 @@
-"""The command line `rlv-landing`. Commands of the ROS 2 bridge join by the entry-point group `rlv_landing.commands`."""
+"""The command line `rlv-landing`.
+
+Commands of the ROS 2 bridge join by the entry-point group `rlv_landing.commands`.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,12 @@ class Commands(click.Group):
     """Our commands and those that other packages add, loaded when they are called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return sorted({*super().list_commands(ctx), *(e.name for e in entry_points(group="rlv_landing.commands"))})
+        return sorted(
+            {
+                *super().list_commands(ctx),
+                *(e.name for e in entry_points(group="rlv_landing.commands")),
+            }
+        )
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         own = super().get_command(ctx, cmd_name)

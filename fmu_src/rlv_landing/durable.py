@@ -8,7 +8,8 @@ from pathlib import Path
 
 
 def write_durably(path: Path, data: bytes) -> None:
-    """Write `path` by a temporary name, with its folder's entry for it, onto the disk: after a crash the old file is there, or the new.
+    """Write `path` by a temporary name, with its folder's entry for it, onto the disk: after a
+    crash the old file is there, or the new.
 
     Raises OSError.
     """

@@ -1,4 +1,6 @@
-"""The errors that users see: one line that names the quantity, the value, the unit, the limit and what to do."""
+"""The errors that users see: one line that names the quantity, the value, the unit, the limit and
+what to do.
+"""
 
 from __future__ import annotations
 
@@ -22,12 +24,16 @@ def nearest(name: str, known: Iterable[str]) -> str:
         last: dict[str, str] = {}
         for k in known:
             last.setdefault(k.rsplit(".", 1)[-1], k)
-        close = [last[k] for k in get_close_matches(name.rsplit(".", 1)[-1], list(last), n=1, cutoff=0.6)]
+        close = [
+            last[k] for k in get_close_matches(name.rsplit(".", 1)[-1], list(last), n=1, cutoff=0.6)
+        ]
     return f"; did you mean {close[0]}?" if close else ""
 
 
 def unknown(what: str, name: object, known: Iterable[str]) -> LandingError:
     """The error for a `name` that is not among the `known`."""
     known = list(known)
-    hint = nearest(str(name), known) or (f"; known are {', '.join(known)}" if len(known) <= 8 else "")
+    hint = nearest(str(name), known) or (
+        f"; known are {', '.join(known)}" if len(known) <= 8 else ""
+    )
     return LandingError(f"unknown {what} {name!r}{hint}")

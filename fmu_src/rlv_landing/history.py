@@ -15,16 +15,23 @@ from .parameters import Parameters
 
 
 class History:
-    """Columns named as the FMU's variables, in SI units, over `time` [s]: `history["leg[1].main_strut.force"]` is an array (n,).
+    """Columns named as the FMU's variables, in SI units, over `time` [s]:
+    `history["leg[1].main_strut.force"]` is an array (n,).
 
     `parameters` are those of the landing, where they are known.
     """
 
     def __init__(
-        self, time: NDArray[np.float64], names: Sequence[str], data: NDArray[np.float64], parameters: Parameters | None = None
+        self,
+        time: NDArray[np.float64],
+        names: Sequence[str],
+        data: NDArray[np.float64],
+        parameters: Parameters | None = None,
     ) -> None:
         if data.shape != (len(time), len(names)):
-            raise LandingError(f"a history of {len(time)} times and {len(names)} names cannot hold an array of shape {data.shape}")
+            raise LandingError(
+                f"a history of {len(time)} times and {len(names)} names cannot hold an array of shape {data.shape}"
+            )
         self.time = time
         self.names = tuple(names)
         self.data = data

@@ -11,7 +11,15 @@ from typing import TYPE_CHECKING, Any
 from .core import DormandPrince, Exponential, Model, Solver, layout, output_size, state_size
 from .errors import LandingError, unknown
 from .parameters import PARAMETER_QUANTITIES, Parameters, azimuth, check_value
-from .quantities import INPUT_NAMES, INPUT_QUANTITIES, LEG_QUANTITIES, MODES, OUTPUT_NAMES, SHARED_QUANTITIES, Z_TURNS
+from .quantities import (
+    INPUT_NAMES,
+    INPUT_QUANTITIES,
+    LEG_QUANTITIES,
+    MODES,
+    OUTPUT_NAMES,
+    SHARED_QUANTITIES,
+    Z_TURNS,
+)
 from .touchdown import FreeFlight
 
 if TYPE_CHECKING:
@@ -34,7 +42,9 @@ RATE_INPUTS = {layout.HEAVE: layout.HEAVE_RATE, layout.TILT: layout.TILT_RATE}
 
 
 def build_model(parameters: Parameters, kind: type[Model] = Model) -> Model:
-    """The kernels' numbers from the user's parameters; `kind` is the compiled or the pure core's class."""
+    """The kernels' numbers from the user's parameters; `kind` is the compiled or the pure core's
+    class.
+    """
     groups = MODES[parameters.drop.mode]
     turns = [azimuth(g.azimuth) for g in groups]
     model = kind(
@@ -53,14 +63,21 @@ def build_model(parameters: Parameters, kind: type[Model] = Model) -> Model:
 
 
 def output_order(mode: str) -> list[tuple[int, float]]:
-    """For each of OUTPUT_NAMES: where the kernel's outputs hold it, and the factor (-1 turns Z of a mirror image)."""
+    """For each of OUTPUT_NAMES: where the kernel's outputs hold it, and the factor (-1 turns Z of a
+    mirror image).
+    """
     shared = len(SHARED_QUANTITIES)
     order = [(i, 1.0) for i in range(shared)]
     where = {leg: (group, side) for group, g in enumerate(MODES[mode]) for leg, side in g.legs}
     for leg in sorted(where):
         group, side = where[leg]
         for i, q in enumerate(LEG_QUANTITIES):
-            order.append((shared + len(LEG_QUANTITIES) * group + i, float(side) if q.name in Z_TURNS else 1.0))
+            order.append(
+                (
+                    shared + len(LEG_QUANTITIES) * group + i,
+                    float(side) if q.name in Z_TURNS else 1.0,
+                )
+            )
     return order
 
 
@@ -76,11 +93,14 @@ class Landing:
     Args:
         parameters: the vehicle, ground and drop; default is the preset `yue2022-figures`.
         mode: landing mode `2-2` or `1-2-1`; default is that of the parameters.
-        rtol: relative tolerance of the integrator, 1e-12 to 1e-2. The default keeps peak forces and strokes to 0.05 %.
-        method: `exponential`, or `dormand-prince`, the paper's ode45: slower, but not below rtol = 1e-7.
+        rtol: relative tolerance of the integrator, 1e-12 to 1e-2. The default keeps peak forces and
+            strokes to 0.05 %.
+        method: `exponential`, or `dormand-prince`, the paper's ode45: slower, but not below rtol =
+            1e-7.
 
     Raises:
-        LandingError: a value is out of bounds, not finite or of the wrong type, or the mode or method is unknown.
+        LandingError: a value is out of bounds, not finite or of the wrong type, or the mode or
+            method is unknown.
     """
 
     def __init__(
@@ -149,9 +169,11 @@ class Landing:
         self._out_time = inf
 
     def _start_state(self) -> array[float]:
-        """The state at time 0: the state at first contact taken back along the free flight of the rigid vehicle.
+        """The state at time 0: the state at first contact taken back along the free flight of the
+        rigid vehicle.
 
-        The ground's origin lies below the CG at first contact, where the lowest footpad just touches.
+        The ground's origin lies below the CG at first contact, where the lowest footpad just
+        touches.
         """
         p, drop = self.parameters, self.parameters.drop
         groups = len(MODES[drop.mode])
@@ -175,10 +197,12 @@ class Landing:
     def set_inputs(self, values: Mapping[str, Any], rates: Mapping[str, Any] | None = None) -> None:
         """Set inputs by name from now on; others go on as they were.
 
-        An input goes on from its value at its rate in `rates` [unit/s], else constant; heave and tilt of the ground always go on at
-        `ground.heave_rate` and `ground.tilt_rate`, and a rate given for them is taken for these.
+        An input goes on from its value at its rate in `rates` [unit/s], else constant; heave and
+        tilt of the ground always go on at `ground.heave_rate` and `ground.tilt_rate`, and a rate
+        given for them is taken for these.
 
-        Raises LandingError for an unknown name, NaN, or a value out of bounds; nothing is changed then.
+        Raises LandingError for an unknown name, NaN, or a value out of bounds; nothing is changed
+        then.
         """
         solver = self._solver
         solver.inputs_at(self._time)
@@ -189,7 +213,9 @@ class Landing:
         for name, rate in (rates or {}).items():
             i = _input_index(name)
             if not isfinite(rate):
-                raise LandingError(f"rate of {name} = {rate:g} {INPUT_QUANTITIES[i].unit}/s must be finite")
+                raise LandingError(
+                    f"rate of {name} = {rate:g} {INPUT_QUANTITIES[i].unit}/s must be finite"
+                )
             if i in RATE_INPUTS:
                 new[RATE_INPUTS[i]] = float(check_value(INPUT_QUANTITIES[RATE_INPUTS[i]], rate))
             else:
@@ -216,9 +242,14 @@ class Landing:
         self.advance_to(self._time + dt)
 
     def advance_to(self, time: float) -> None:
-        """Go on to `time` [s], not before the present time. Results do not depend on the steps by which one gets there."""
+        """Go on to `time` [s], not before the present time.
+
+        Results do not depend on the steps by which one gets there.
+        """
         if not (isfinite(time) and time >= self._time):
-            raise LandingError(f"time = {time:g} s is not a time from {self._time:g} s on; reset() starts again")
+            raise LandingError(
+                f"time = {time:g} s is not a time from {self._time:g} s on; reset() starts again"
+            )
         if not self._solver.advance(time):
             raise self._collapsed()
         self._time = time
@@ -245,23 +276,52 @@ class Landing:
         return self.values()[OUTPUT_NAMES.index(name)]
 
     def state(self) -> array[float]:
-        """The whole state, the integrator's included: what `restore` needs to go on with the very same digits."""
+        """The whole state, the integrator's included: what `restore` needs to go on with the very
+        same digits.
+        """
         s = self._solver
-        header = (self._time, s.t, s.t_old, s.t_input, s.h, s.error_old, s.energy_start, s.steps, s.rejected, s.rhs_calls)
+        header = (
+            self._time,
+            s.t,
+            s.t_old,
+            s.t_input,
+            s.h,
+            s.error_old,
+            s.energy_start,
+            s.steps,
+            s.rejected,
+            s.rhs_calls,
+        )
         return array("d", [*header, *s.u, *s.u_rate, *s.y, *s.dense])
 
     def restore(self, state: array[float]) -> None:
         """Take up a state that `state()` of a landing with the same parameters gave.
 
-        Raises LandingError if its length is not that of this landing's state or a number in it is not finite.
+        Raises LandingError if its length is not that of this landing's state or a number in it is
+        not finite.
         """
         s = self._solver
         expected = HEADER + 2 * layout.INPUTS + 6 * s.n
         if len(state) != expected:
-            raise LandingError(f"state has {len(state)} numbers, this landing's has {expected}; it comes from another mode or version")
+            raise LandingError(
+                f"state has {len(state)} numbers, this landing's has {expected}; it comes from another mode or version"
+            )
         if not all(isfinite(v) for i, v in enumerate(state) if i != 4):
-            raise LandingError("state holds numbers that are not finite; take one that state() gave")
-        self._time, s.t, s.t_old, s.t_input, s.h, s.error_old, s.energy_start, s.steps, s.rejected, s.rhs_calls = state[:HEADER]
+            raise LandingError(
+                "state holds numbers that are not finite; take one that state() gave"
+            )
+        (
+            self._time,
+            s.t,
+            s.t_old,
+            s.t_input,
+            s.h,
+            s.error_old,
+            s.energy_start,
+            s.steps,
+            s.rejected,
+            s.rhs_calls,
+        ) = state[:HEADER]
         at = HEADER
         for target in (s.u, s.u_rate, s.y, s.dense):
             for i in range(len(target)):
@@ -272,12 +332,18 @@ class Landing:
         s.rhs_calls = calls
         self._out_time = inf
 
-    def run(self, until: float = 1.0, every: float = 1e-3, progress: Callable[[float], object] | None = None) -> History:
-        """Land from now until `until` [s]; return the outputs every `every` [s], the present time included.
+    def run(
+        self,
+        until: float = 1.0,
+        every: float = 1e-3,
+        progress: Callable[[float], object] | None = None,
+    ) -> History:
+        """Land from now until `until` [s]; return the outputs every `every` [s], the present time
+        included.
 
-        Times are counted, now + k * every, never summed. Other threads run meanwhile: landings in several threads use several cores.
-        `progress` is called with the time reached, every SLICE samples. Raises LandingError unless `every` is above 0 and `until` is
-        ahead.
+        Times are counted, now + k * every, never summed. Other threads run meanwhile: landings in
+        several threads use several cores. `progress` is called with the time reached, every SLICE
+        samples. Raises LandingError unless `every` is above 0 and `until` is ahead.
         """
         import numpy as np
 
@@ -286,7 +352,9 @@ class Landing:
         if not 0.0 < every < inf:
             raise LandingError(f"every = {every:g} s must be finite and above 0 s")
         if not (isfinite(until) and until > self._time):
-            raise LandingError(f"until = {until:g} s must be finite and after the present time, {self._time:g} s")
+            raise LandingError(
+                f"until = {until:g} s must be finite and after the present time, {self._time:g} s"
+            )
         start, solver = self._time, self._solver
         samples = int((until - start) / every * (1.0 + 1e-12) + 1e-9) + 1
         rows = np.empty((samples, solver.row))
@@ -300,11 +368,14 @@ class Landing:
             self._time = start + (reached - 1) * every
             if progress is not None:
                 progress(self._time)
-        # a column of the history is contiguous: what studies make of it takes a fraction of the time
+        # a column of the history is contiguous: what studies make of it takes a fraction of the
+        # time
         columns = np.ascontiguousarray(rows.T)[[i for i, _ in self._order]]
         columns[self._turned] *= -1.0
         time: NDArray[float64] = np.array([start + k * every for k in range(samples)])
         return History(time, OUTPUT_NAMES, columns.T, self.parameters)
 
     def _collapsed(self) -> LandingError:
-        return LandingError(f"the integrator's step size has collapsed at t = {self._solver.t:g} s; soften the parameters or the loads")
+        return LandingError(
+            f"the integrator's step size has collapsed at t = {self._solver.t:g} s; soften the parameters or the loads"
+        )

@@ -1,7 +1,7 @@
 """The vehicle, its ground and its drop: annotated values, checked at the door.
 
-The defaults are the preset `yue2022-figures`; `source` tells the paper's own values from identified ones. Lengths down from the CG
-are given as positive depths, as in the paper's Table 1.
+The defaults are the preset `yue2022-figures`; `source` tells the paper's own values from identified
+ones. Lengths down from the CG are given as positive depths, as in the paper's Table 1.
 """
 
 from __future__ import annotations
@@ -95,7 +95,9 @@ class Ground:
 
 @dataclass(frozen=True)
 class Drop:
-    """How the vehicle comes down: its state at the first contact, and how long it has flown freely by then."""
+    """How the vehicle comes down: its state at the first contact, and how long it has flown freely
+    by then.
+    """
 
     mode: Annotated[str, Q("", "landing mode: legs that touch first - second - third", source="paper", choices=tuple(MODES))] = "2-2"
     contact_time: Annotated[float, Q("s", "time of the first contact; the flight before it is free", 0.0, 60.0, source="identified")] = 0.08965464
@@ -122,35 +124,48 @@ def _table() -> dict[str, Quantity]:
         for f in fields(owner):
             q: Quantity = get_args(hints[f.name])[1]
             name = f"{group}.{f.name}"
-            table[name] = replace(q, name=name, default=f.default, kind="string" if q.choices else "real")  # type: ignore[arg-type]
+            table[name] = replace(
+                q, name=name, default=f.default, kind="string" if q.choices else "real"
+            )  # type: ignore[arg-type]
     return table
 
 
 PARAMETER_QUANTITIES: dict[str, Quantity] = _table()
 # name -> its group, its field there
-_PLACES: dict[str, tuple[str, str]] = {name: (name.split(".")[0], name.split(".")[1]) for name in PARAMETER_QUANTITIES}
+_PLACES: dict[str, tuple[str, str]] = {
+    name: (name.split(".")[0], name.split(".")[1]) for name in PARAMETER_QUANTITIES
+}
 
 
 def check_value(q: Quantity, value: Any) -> float | str:
     """`value` as the quantity `q` takes it.
 
-    Raises LandingError naming quantity, value, unit and limit where the type is wrong, the value is not finite or out of bounds.
+    Raises LandingError naming quantity, value, unit and limit where the type is wrong, the value is
+    not finite or out of bounds.
     """
     if q.choices:
         if not isinstance(value, str) or value not in q.choices:
             raise LandingError(f"{q.name} = {value!r} is not one of {', '.join(q.choices)}")
         return value
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise LandingError(f"{q.name} = {value!r} is not a number; give it in {q.unit or 'plain numbers'}")
+        raise LandingError(
+            f"{q.name} = {value!r} is not a number; give it in {q.unit or 'plain numbers'}"
+        )
     if not q.lo <= value <= q.hi:
-        raise LandingError(f"{q.name} = {value:g} {q.unit}".rstrip() + f" is outside [{q.lo:g}, {q.hi:g}] {q.unit}".rstrip())
+        raise LandingError(
+            f"{q.name} = {value:g} {q.unit}".rstrip()
+            + f" is outside [{q.lo:g}, {q.hi:g}] {q.unit}".rstrip()
+        )
     return float(value)
 
 
 @dataclass(frozen=True)
 class Parameters:
-    """All that a landing needs to be told. `by_mode` holds values that belong to one landing mode only; `sources` says where values come
-    from that are not the table's defaults."""
+    """All that a landing needs to be told.
+
+    `by_mode` holds values that belong to one landing mode only; `sources` says where values come
+    from that are not the table's defaults.
+    """
 
     vehicle: Vehicle = field(default_factory=Vehicle)
     main_strut: MainStrut = field(default_factory=MainStrut)
@@ -182,17 +197,29 @@ class Parameters:
         """Where the value of `name` comes from."""
         return self.sources.get(name, PARAMETER_QUANTITIES[name].source)
 
-    def with_values(self, values: Mapping[str, Any], source: str | Mapping[str, str] = "user") -> Parameters:
-        """A copy with `values` by name, each checked; they hold in every mode. `source` is one for all, or by name (default `user`).
+    def with_values(
+        self, values: Mapping[str, Any], source: str | Mapping[str, str] = "user"
+    ) -> Parameters:
+        """A copy with `values` by name, each checked; they hold in every mode.
+
+        `source` is one for all, or by name (default `user`).
 
         Raises LandingError for an unknown name or a bad value.
         """
         changed = self._replaced(values, _sources(values, source))
-        by_mode = {mode: {n: v for n, v in own.items() if n not in values} for mode, own in self.by_mode.items()}
+        by_mode = {
+            mode: {n: v for n, v in own.items() if n not in values}
+            for mode, own in self.by_mode.items()
+        }
         return replace(changed, by_mode=by_mode)
 
-    def with_mode_values(self, values: Mapping[str, Mapping[str, Any]], source: str | Mapping[str, str] = "user") -> Parameters:
-        """A copy with `values` that belong to one mode each: mode -> name -> value. They come in with `for_mode`. `source` as above."""
+    def with_mode_values(
+        self, values: Mapping[str, Mapping[str, Any]], source: str | Mapping[str, str] = "user"
+    ) -> Parameters:
+        """A copy with `values` that belong to one mode each: mode -> name -> value.
+
+        They come in with `for_mode`. `source` as above.
+        """
         by_mode = {mode: dict(own) for mode, own in self.by_mode.items()}
         sources = dict(self.sources)
         for mode, own in values.items():
@@ -214,7 +241,9 @@ class Parameters:
                 raise unknown("parameter", name, PARAMETER_QUANTITIES)
             group, what = _PLACES[name]
             grouped.setdefault(group, {})[what] = check_value(PARAMETER_QUANTITIES[name], value)
-        parts: dict[str, Any] = {group: replace(getattr(self, group), **changed) for group, changed in grouped.items()}
+        parts: dict[str, Any] = {
+            group: replace(getattr(self, group), **changed) for group, changed in grouped.items()
+        }
         return replace(self, **parts, sources={**self.sources, **sources})
 
     def _check_together(self) -> None:
@@ -229,7 +258,9 @@ class Parameters:
             raise LandingError(
                 f"main_strut.area_upper = {m.area_upper:g} m2 (annulus) is above main_strut.area_lower = {m.area_lower:g} m2 (bore)"
             )
-        apart = ((m.joint_radius - a.joint_radius) ** 2 + (m.joint_depth - a.joint_depth) ** 2) ** 0.5
+        apart = (
+            (m.joint_radius - a.joint_radius) ** 2 + (m.joint_depth - a.joint_depth) ** 2
+        ) ** 0.5
         if not abs(m.length - a.length) < apart < m.length + a.length:
             raise LandingError(
                 f"main_strut.length = {m.length:g} m and auxiliary_strut.length = {a.length:g} m do not meet at a footpad: "

@@ -1,7 +1,9 @@
-"""The one table of quantities: what the model takes and gives, with unit, meaning, bounds and source.
+"""The one table of quantities: what the model takes and gives, with unit, meaning, bounds and
+source.
 
-Everything that names a quantity is made from here or from the annotated parameters in `parameters.py`: the FMU's variables, the
-TOML reader, `--set`, the columns of a history and the reference pages.
+Everything that names a quantity is made from here or from the annotated parameters in
+`parameters.py`: the FMU's variables, the TOML reader, `--set`, the columns of a history and the
+reference pages.
 """
 
 from __future__ import annotations
@@ -17,9 +19,10 @@ Source = Literal["paper", "derived", "closure", "identified", "user"]
 class Quantity:
     """One named number (or choice) of the model.
 
-    `unit` is SI and what the number is in; `display_unit` what people like to read. `lo <= value <= hi` must hold. `symbol` is the
-    paper's, and the kernel's, name. `source` says where a default comes from: the paper, derived from it, a closure that the paper
-    leaves open, or identified from the paper's printed numbers. `nominal` is the order of magnitude of inputs and outputs.
+    `unit` is SI and what the number is in; `display_unit` what people like to read. `lo <= value <=
+    hi` must hold. `symbol` is the paper's, and the kernel's, name. `source` says where a default
+    comes from: the paper, derived from it, a closure that the paper leaves open, or identified from
+    the paper's printed numbers. `nominal` is the order of magnitude of inputs and outputs.
     """
 
     unit: str
@@ -36,7 +39,9 @@ class Quantity:
 
     @property
     def nominal(self) -> float:
-        """Order of magnitude [SI unit], by the unit that people read the quantity in; 1 for plain numbers."""
+        """Order of magnitude [SI unit], by the unit that people read the quantity in; 1 for plain
+        numbers.
+        """
         return NOMINALS.get(self.display_unit or self.unit, 1.0)
 
 
@@ -54,11 +59,24 @@ DISPLAY_UNITS = {
 
 def shown(q: Quantity) -> tuple[str, float]:
     """The unit that people read the quantity in, and how much of the SI unit one of it is."""
-    return (q.display_unit, DISPLAY_UNITS[q.display_unit][1]) if q.display_unit in DISPLAY_UNITS else (q.unit, 1.0)
+    return (
+        (q.display_unit, DISPLAY_UNITS[q.display_unit][1])
+        if q.display_unit in DISPLAY_UNITS
+        else (q.unit, 1.0)
+    )
 
 
 # unit that a quantity is read in -> its order of magnitude [SI unit]; 1 where none is listed
-NOMINALS = {"mm": 1e-2, "deg": 0.1, "kN": 1e3, "N.m": 1e3, "MPa": 1e6, "J": 100.0, "m/s2": 10.0, "rad/s2": 10.0}
+NOMINALS = {
+    "mm": 1e-2,
+    "deg": 0.1,
+    "kN": 1e3,
+    "N.m": 1e3,
+    "MPa": 1e6,
+    "J": 100.0,
+    "m/s2": 10.0,
+    "rad/s2": 10.0,
+}
 
 # SI unit -> exponents of its base units, for FMI's UnitDefinitions
 BASE_UNITS: dict[str, dict[str, int]] = {
@@ -112,7 +130,11 @@ BODY_QUANTITIES: tuple[Quantity, ...] = (
 
 ENERGY_QUANTITIES: tuple[Quantity, ...] = (
     Quantity("J", "kinetic energy of body and footpads", 0.0, name="energy.kinetic"),
-    Quantity("J", "potential energy of body and footpads above the inertial origin", name="energy.potential"),
+    Quantity(
+        "J",
+        "potential energy of body and footpads above the inertial origin",
+        name="energy.potential",
+    ),
     Quantity("J", "energy held by the dampers' liquid", name="energy.liquid"),
     Quantity("J", "energy held by the auxiliary struts' springs", 0.0, name="energy.auxiliary"),
     Quantity("J", "energy held by the ground's normal elasticity", 0.0, name="energy.contact"),
@@ -120,14 +142,32 @@ ENERGY_QUANTITIES: tuple[Quantity, ...] = (
     Quantity("J", "dissipated so far in the orifices", name="energy.dissipated_orifice"),
     Quantity("J", "dissipated so far by seal friction", name="energy.dissipated_seal"),
     Quantity("J", "dissipated so far by the end stops", name="energy.dissipated_stop"),
-    Quantity("J", "dissipated so far by the auxiliary struts' dampers", name="energy.dissipated_auxiliary"),
-    Quantity("J", "dissipated so far by the ground's normal damping", name="energy.dissipated_contact"),
-    Quantity("J", "taken so far by ground friction (a little of it held while sticking)", name="energy.dissipated_friction"),
+    Quantity(
+        "J",
+        "dissipated so far by the auxiliary struts' dampers",
+        name="energy.dissipated_auxiliary",
+    ),
+    Quantity(
+        "J", "dissipated so far by the ground's normal damping", name="energy.dissipated_contact"
+    ),
+    Quantity(
+        "J",
+        "taken so far by ground friction (a little of it held while sticking)",
+        name="energy.dissipated_friction",
+    ),
     Quantity("J", "work done so far by the external force and moment", name="energy.work_external"),
     Quantity("J", "work done so far by the moving ground", name="energy.work_ground"),
-    Quantity("J", "work created so far by transverse_load_at = joint (0 for footpad)", name="energy.work_transverse"),
+    Quantity(
+        "J",
+        "work created so far by transverse_load_at = joint (0 for footpad)",
+        name="energy.work_transverse",
+    ),
     Quantity("J", "sum of all that was dissipated", name="energy.dissipated"),
-    Quantity("J", "energy balance: held + dissipated - work - held at the start; 0 but for the integrator's error", name="energy.balance"),
+    Quantity(
+        "J",
+        "energy balance: held + dissipated - work - held at the start; 0 but for the integrator's error",
+        name="energy.balance",
+    ),
 )
 
 STATUS_QUANTITIES: tuple[Quantity, ...] = (
@@ -136,22 +176,60 @@ STATUS_QUANTITIES: tuple[Quantity, ...] = (
 )  # fmt: skip
 
 LEG_QUANTITIES: tuple[Quantity, ...] = (
-    Quantity("N", "axial force, negative in compression", name="main_strut.force", display_unit="kN"),
-    Quantity("m", "damper stroke, positive in compression", name="main_strut.stroke", display_unit="mm"),
+    Quantity(
+        "N", "axial force, negative in compression", name="main_strut.force", display_unit="kN"
+    ),
+    Quantity(
+        "m", "damper stroke, positive in compression", name="main_strut.stroke", display_unit="mm"
+    ),
     Quantity("m/s", "stroke rate, positive in compression", name="main_strut.stroke_rate"),
-    Quantity("Pa", "absolute pressure in the upper chamber (1)", 0.0, name="main_strut.pressure_upper", display_unit="MPa"),
-    Quantity("Pa", "absolute pressure in the lower chamber (2)", 0.0, name="main_strut.pressure_lower", display_unit="MPa"),
+    Quantity(
+        "Pa",
+        "absolute pressure in the upper chamber (1)",
+        0.0,
+        name="main_strut.pressure_upper",
+        display_unit="MPa",
+    ),
+    Quantity(
+        "Pa",
+        "absolute pressure in the lower chamber (2)",
+        0.0,
+        name="main_strut.pressure_lower",
+        display_unit="MPa",
+    ),
     Quantity("kg", "mass of the liquid in both chambers", 0.0, name="main_strut.liquid_mass"),
     Quantity("N", "axial force, tension positive", name="auxiliary_strut.force", display_unit="kN"),
-    Quantity("m", "stroke, positive in compression", name="auxiliary_strut.stroke", display_unit="mm"),
+    Quantity(
+        "m", "stroke, positive in compression", name="auxiliary_strut.stroke", display_unit="mm"
+    ),
     Quantity("m/s", "stroke rate, positive in compression", name="auxiliary_strut.stroke_rate"),
     Quantity("m", "position along inertial x", name="footpad.x"),
     Quantity("m", "position along inertial y (up)", name="footpad.y"),
     Quantity("m", "position along inertial z", name="footpad.z"),
-    Quantity("N", "force of the ground on the footpad along inertial x", name="contact.force_x", display_unit="kN"),
-    Quantity("N", "force of the ground on the footpad along inertial y (up)", name="contact.force_y", display_unit="kN"),
-    Quantity("N", "force of the ground on the footpad along inertial z", name="contact.force_z", display_unit="kN"),
-    Quantity("m", "penetration of the ground, positive in contact", name="contact.penetration", display_unit="mm"),
+    Quantity(
+        "N",
+        "force of the ground on the footpad along inertial x",
+        name="contact.force_x",
+        display_unit="kN",
+    ),
+    Quantity(
+        "N",
+        "force of the ground on the footpad along inertial y (up)",
+        name="contact.force_y",
+        display_unit="kN",
+    ),
+    Quantity(
+        "N",
+        "force of the ground on the footpad along inertial z",
+        name="contact.force_z",
+        display_unit="kN",
+    ),
+    Quantity(
+        "m",
+        "penetration of the ground, positive in contact",
+        name="contact.penetration",
+        display_unit="mm",
+    ),
     Quantity("", "whether the footpad touches the ground", name="contact.active", kind="boolean"),
 )
 
@@ -162,30 +240,57 @@ Z_TURNS = ("footpad.z", "contact.force_z")
 def _leg_quantity(leg: int, q: Quantity) -> Quantity:
     owner, what = q.name.split(".")
     meaning = f"leg {leg}, {owner.replace('_', ' ')}: {q.meaning}"
-    return Quantity(q.unit, meaning, q.lo, q.hi, name=f"leg[{leg}].{owner}.{what}", display_unit=q.display_unit, kind=q.kind)
+    return Quantity(
+        q.unit,
+        meaning,
+        q.lo,
+        q.hi,
+        name=f"leg[{leg}].{owner}.{what}",
+        display_unit=q.display_unit,
+        kind=q.kind,
+    )
 
 
 SHARED_QUANTITIES = BODY_QUANTITIES + ENERGY_QUANTITIES + STATUS_QUANTITIES
-OUTPUT_QUANTITIES: tuple[Quantity, ...] = SHARED_QUANTITIES + tuple(_leg_quantity(leg, q) for leg in LEGS for q in LEG_QUANTITIES)
+OUTPUT_QUANTITIES: tuple[Quantity, ...] = SHARED_QUANTITIES + tuple(
+    _leg_quantity(leg, q) for leg in LEGS for q in LEG_QUANTITIES
+)
 OUTPUT_NAMES: tuple[str, ...] = tuple(q.name for q in OUTPUT_QUANTITIES)
 # What the integrator has done: `Landing.statistics`.
 STATISTIC_QUANTITIES: tuple[Quantity, ...] = (
-    Quantity("", "steps of the integrator since the start", 0.0, name="solver.steps", kind="integer"),
-    Quantity("", "steps that the integrator has rejected and tried again shorter", 0.0, name="solver.rejected", kind="integer"),
-    Quantity("", "calls of the right-hand side since the start", 0.0, name="solver.rhs_calls", kind="integer"),
+    Quantity(
+        "", "steps of the integrator since the start", 0.0, name="solver.steps", kind="integer"
+    ),
+    Quantity(
+        "",
+        "steps that the integrator has rejected and tried again shorter",
+        0.0,
+        name="solver.rejected",
+        kind="integer",
+    ),
+    Quantity(
+        "",
+        "calls of the right-hand side since the start",
+        0.0,
+        name="solver.rhs_calls",
+        kind="integer",
+    ),
 )
 INPUT_NAMES: tuple[str, ...] = tuple(q.name for q in INPUT_QUANTITIES)
 
 
 @dataclass(frozen=True)
 class LegGroup:
-    """Legs that are each other's mirror image: `legs` of (number, side), side -1 where Z is turned; `azimuth` [deg] of side +1."""
+    """Legs that are each other's mirror image: `legs` of (number, side), side -1 where Z is turned;
+    `azimuth` [deg] of side +1.
+    """
 
     azimuth: int
     legs: tuple[tuple[int, int], ...] = field(default=())
 
 
-# The landing modes. Legs are numbered round the body; the mode exists in this table and nowhere else.
+# The landing modes. Legs are numbered round the body; the mode exists in this table and nowhere
+# else.
 MODES: dict[str, tuple[LegGroup, ...]] = {
     "2-2": (LegGroup(135, ((1, 1), (2, -1))), LegGroup(45, ((4, 1), (3, -1)))),
     "1-2-1": (LegGroup(180, ((1, 1),)), LegGroup(90, ((4, 1), (2, -1))), LegGroup(0, ((3, 1),))),

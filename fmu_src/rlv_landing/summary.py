@@ -12,7 +12,8 @@ OUTCOMES = ("falling", "in contact, not yet at rest", "settled", "toppled")
 
 
 def summarise(history: History) -> dict[str, Any]:
-    """Outcome, end time [s], smallest stability margin [m], and per leg: contact time, peak forces [N] and stroke [m] with times [s].
+    """Outcome, end time [s], smallest stability margin [m], and per leg: contact time, peak forces
+    [N] and stroke [m] with times [s].
 
     What the history has no column for is left out (a log has no stability margin).
     """
@@ -46,5 +47,7 @@ def summarise(history: History) -> dict[str, Any]:
     result["legs"] = legs
     if history.parameters is not None:
         limit = history.parameters.main_strut.stroke_max
-        result["bottomed_out"] = [leg["leg"] for leg in legs if leg["main_strut_stroke_max"] > limit]
+        result["bottomed_out"] = [
+            leg["leg"] for leg in legs if leg["main_strut_stroke_max"] > limit
+        ]
     return result

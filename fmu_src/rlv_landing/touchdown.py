@@ -1,4 +1,6 @@
-"""The state at first contact, and before it: the free flight of the vehicle with its legs fully extended."""
+"""The state at first contact, and before it: the free flight of the vehicle with its legs fully
+extended.
+"""
 
 from __future__ import annotations
 
@@ -12,12 +14,18 @@ FLIGHT_CHECKS = tuple(i / 64.0 for i in range(65))
 
 
 def footpad_at_rest(parameters: Parameters) -> tuple[float, float]:
-    """Radius and height (body axes, from the CG) [m] of a footpad whose struts are both at full length: the outer meeting point."""
-    return footpad_between(parameters, parameters.main_strut.length, parameters.auxiliary_strut.length)
+    """Radius and height (body axes, from the CG) [m] of a footpad whose struts are both at full
+    length: the outer meeting point.
+    """
+    return footpad_between(
+        parameters, parameters.main_strut.length, parameters.auxiliary_strut.length
+    )
 
 
 def footpad_between(parameters: Parameters, main: float, auxiliary: float) -> tuple[float, float]:
-    """Radius and height (body axes, from the CG) [m] of a footpad whose struts have these lengths [m]: the outer meeting point."""
+    """Radius and height (body axes, from the CG) [m] of a footpad whose struts have these lengths
+    [m]: the outer meeting point.
+    """
     m, a = parameters.main_strut, parameters.auxiliary_strut
     x1, y1, x2, y2 = m.joint_radius, -m.joint_depth, a.joint_radius, -a.joint_depth
     dx, dy = x2 - x1, y2 - y1
@@ -25,13 +33,18 @@ def footpad_between(parameters: Parameters, main: float, auxiliary: float) -> tu
     along = (main**2 - auxiliary**2 + apart**2) / (2.0 * apart)
     off = (main**2 - along**2) ** 0.5
     mid_x, mid_y = x1 + along * dx / apart, y1 + along * dy / apart
-    return max((mid_x - off * dy / apart, mid_y + off * dx / apart), (mid_x + off * dy / apart, mid_y - off * dx / apart))
+    return max(
+        (mid_x - off * dy / apart, mid_y + off * dx / apart),
+        (mid_x + off * dy / apart, mid_y - off * dx / apart),
+    )
 
 
 class FreeFlight:
-    """The flight of the vehicle with its legs fully extended, and where it ends: at the first contact. [derived]
+    """The flight of the vehicle with its legs fully extended, and where it ends: at the first
+    contact. [derived]
 
-    The whole vehicle's CG flies a parabola and the pitch rate is constant. At contact the body's CG is above the ground's origin.
+    The whole vehicle's CG flies a parabola and the pitch rate is constant. At contact the body's CG
+    is above the ground's origin.
     """
 
     def __init__(self, parameters: Parameters) -> None:
@@ -49,15 +62,29 @@ class FreeFlight:
         self._vy = drop.vertical_velocity - self._rate * arm * sin(self._end)
 
     def clearance(self, x: float, y: float, pitch: float) -> float:
-        """Height [m] of the lowest footpad above the ground at rest, along its normal, with the CG at (`x`, `y`)."""
+        """Height [m] of the lowest footpad above the ground at rest, along its normal, with the CG
+        at (`x`, `y`).
+        """
         s, c = sin(pitch), cos(pitch)
         across, up = self._normal
         height = self._height
-        return min([(x + along * c + height * s) * across + (y + height * c - along * s) * up for along in self._along])
+        return min(
+            [
+                (x + along * c + height * s) * across + (y + height * c - along * s) * up
+                for along in self._along
+            ]
+        )
 
     def before_contact(self, t: float) -> tuple[float, float, float, float, float, float]:
         """Body state (x, y, pitch, vx, vy, pitch rate) `t` [s] before the first contact."""
-        arm, rate, end, g, vx, vy = self._arm, self._rate, self._end, self._gravity, self._vx, self._vy
+        arm, rate, end, g, vx, vy = (
+            self._arm,
+            self._rate,
+            self._end,
+            self._gravity,
+            self._vx,
+            self._vy,
+        )
         pitch = end - rate * t
         x = arm * sin(end) - vx * t - arm * sin(pitch)
         y = self._contact_y + arm * cos(end) - vy * t - 0.5 * g * t * t - arm * cos(pitch)

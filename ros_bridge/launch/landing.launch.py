@@ -1,6 +1,7 @@
 """Lands once: the node, its log, and on request a view of it.
 
-ros2 launch rlv_ros_bridge landing.launch.py fmu:=/path/RlvLanding.fmu mode:=1-2-1 record:=true view:=true
+ros2 launch rlv_ros_bridge landing.launch.py fmu:=/path/RlvLanding.fmu mode:=1-2-1 record:=true
+view:=true
 """
 
 from launch.actions import DeclareLaunchArgument, EmitEvent, RegisterEventHandler
@@ -44,7 +45,16 @@ def generate_launch_description() -> LaunchDescription:
                 "mode": ParameterValue(value["mode"], value_type=str),
                 "realtime_factor": ParameterValue(value["realtime_factor"], value_type=float),
                 "log_root": ParameterValue(
-                    PythonExpression(["'", value["log_root"], "' if '", value["record"], "'.lower() == 'true' else ''"]), value_type=str
+                    PythonExpression(
+                        [
+                            "'",
+                            value["log_root"],
+                            "' if '",
+                            value["record"],
+                            "'.lower() == 'true' else ''",
+                        ]
+                    ),
+                    value_type=str,
                 ),
                 "autostart": ParameterValue(value["autostart"], value_type=bool),
             },
@@ -58,9 +68,16 @@ def generate_launch_description() -> LaunchDescription:
     )
     return LaunchDescription(
         [
-            *(DeclareLaunchArgument(name, default_value=default, description=meaning) for name, default, meaning in ARGUMENTS),
+            *(
+                DeclareLaunchArgument(name, default_value=default, description=meaning)
+                for name, default, meaning in ARGUMENTS
+            ),
             node,
             view,
-            RegisterEventHandler(OnProcessExit(target_action=node, on_exit=[EmitEvent(event=Shutdown(reason="landed"))])),
+            RegisterEventHandler(
+                OnProcessExit(
+                    target_action=node, on_exit=[EmitEvent(event=Shutdown(reason="landed"))]
+                )
+            ),
         ]
     )

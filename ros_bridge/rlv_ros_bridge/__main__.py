@@ -1,4 +1,6 @@
-"""`python -m rlv_ros_bridge node|replay|log|animate|view`: the bridge's commands without the `rlv-landing` front."""
+"""`python -m rlv_ros_bridge node|replay|log|animate|view`: the bridge's commands without the
+`rlv-landing` front.
+"""
 
 from __future__ import annotations
 

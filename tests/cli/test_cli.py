@@ -17,11 +17,20 @@ from rlv_landing.quantities import OUTPUT_NAMES
 
 def run(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-c", "from rlv_landing.cli import main; main()", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd, timeout=120, env={**os.environ, "COLUMNS": "120"})
+    return subprocess.run(
+        command,
+        capture_output=True,
+        text=True,
+        cwd=cwd,
+        timeout=120,
+        env={**os.environ, "COLUMNS": "120"},
+    )
 
 
 def test_simulate_writes_csv_with_landings_digits_and_a_picture(tmp_path, mode):
-    done = run("simulate", "--mode", mode, "--output", "l.csv", "--plot", "l.png", "--json", cwd=tmp_path)
+    done = run(
+        "simulate", "--mode", mode, "--output", "l.csv", "--plot", "l.png", "--json", cwd=tmp_path
+    )
     assert done.returncode == 0, done.stderr
     summary = json.loads(done.stdout)
     history = Landing(load_preset("yue2022-figures"), mode).run(1.0)
@@ -47,7 +56,10 @@ def test_parameters_as_toml_come_back_as_parameters(tmp_path):
     values = {record["name"]: record for record in json.loads(back.stdout)}
     assert values["ground.friction"]["value"] == 0.3
     assert values["ground.friction"]["source"] == "user"
-    assert values["drop.contact_time"]["value"] == load_preset("yue2022-figures", "1-2-1").drop.contact_time
+    assert (
+        values["drop.contact_time"]["value"]
+        == load_preset("yue2022-figures", "1-2-1").drop.contact_time
+    )
     assert values["drop.mode"]["value"] == "1-2-1"
 
 
@@ -102,4 +114,7 @@ def test_files_are_not_overwritten_unless_told(tmp_path):
     assert done.returncode == 2
     assert "l.csv exists; --force overwrites it" in done.stderr
     assert (tmp_path / "l.csv").read_text() == "precious"
-    assert run("simulate", "--until", "0.1", "--output", "l.csv", "--force", cwd=tmp_path).returncode == 0
+    assert (
+        run("simulate", "--until", "0.1", "--output", "l.csv", "--force", cwd=tmp_path).returncode
+        == 0
+    )

@@ -1,4 +1,6 @@
-"""Nothing inside a step calls Python: every kernel is declared for C, and Cython's annotation finds no Python in it."""
+"""Nothing inside a step calls Python: every kernel is declared for C, and Cython's annotation finds
+no Python in it.
+"""
 
 import ast
 import re
@@ -13,13 +15,26 @@ from annotate import ROOT, annotate, lines
 CORE = ROOT / "fmu_src" / "rlv_landing" / "core"
 
 # called from Python once a step of the caller's, or once at all; what they call is compiled
-ENTRIES = {"inputs_at", "derivatives", "restart", "refresh", "advance", "interpolate", "outputs_at", "record"}
+ENTRIES = {
+    "inputs_at",
+    "derivatives",
+    "restart",
+    "refresh",
+    "advance",
+    "interpolate",
+    "outputs_at",
+    "record",
+}
 SETTING_UP = {"__init__", "state_size", "output_size"}
-KERNELS = [path for path in sorted(CORE.glob("*.py")) if path.stem not in ("__init__", "layout", "pointer")]
+KERNELS = [
+    path for path in sorted(CORE.glob("*.py")) if path.stem not in ("__init__", "layout", "pointer")
+]
 
 
 def functions(path: Path) -> list[ast.FunctionDef]:
-    return [node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.FunctionDef)]
+    return [
+        node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.FunctionDef)
+    ]
 
 
 @pytest.mark.parametrize("path", KERNELS, ids=lambda path: path.stem)
@@ -41,7 +56,11 @@ def test_no_line_of_a_kernel_calls_python(tmp_path):
     for function in functions(html.with_suffix(".py")):
         for number in range(function.lineno, function.end_lineno + 1):
             where[number] = (function.name, number == function.lineno)
-    inside = [line for line in lines(html) if line.number in where and where[line.number][0] not in SETTING_UP]
+    inside = [
+        line
+        for line in lines(html)
+        if line.number in where and where[line.number][0] not in SETTING_UP
+    ]
     # once a call: one holds the model while it hands it on, one lets other threads run
     allowed = {"outputs_at": 2, "record": 14}
     assert len(inside) > 400

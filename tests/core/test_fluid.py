@@ -9,7 +9,9 @@ from rlv_landing.core.fluid import fluid, strain_energy
 
 PA = 101300.0
 pressures = st.floats(2e3, 5e7)
-constants = st.tuples(st.floats(1e-6, 0.05), st.floats(1.05, 1.6), st.floats(3e8, 3e9), st.floats(2.0, 12.0))
+constants = st.tuples(
+    st.floats(1e-6, 0.05), st.floats(1.05, 1.6), st.floats(3e8, 3e9), st.floats(2.0, 12.0)
+)
 
 
 @given(constants)
@@ -36,7 +38,9 @@ def test_flow_energy_is_the_integral_of_volume_over_pressure(P, c):
 @given(pressures, constants)
 def test_strain_energy_is_the_work_of_compression(P, c):
     """Work on a fixed mass of 1e-4 m3 at ambient pressure: integral of (p - Pa) (-dV)."""
-    expected, _ = quad(lambda p: (p - PA) * -fluid(p, *c, PA)[1], PA, P, epsabs=0.0, epsrel=1e-10, limit=200)
+    expected, _ = quad(
+        lambda p: (p - PA) * -fluid(p, *c, PA)[1], PA, P, epsabs=0.0, epsrel=1e-10, limit=200
+    )
     V = 1e-4 * fluid(P, *c, PA)[0]
     assert strain_energy(P, V, *c, PA) == approx(1e-4 * expected, rel=1e-6, abs=1e-9)
 

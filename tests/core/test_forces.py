@@ -72,7 +72,9 @@ def test_damper_dissipates_in_orifice_and_seal(s, v, P1, P2):
 def test_orifice_slope_is_the_flows_derivative(dP):
     step = 1e-4 * (P.dP_lam + abs(dP))
     assume((dP - step) * (dP + step) > 0.0)  # the two areas make a kink at zero
-    assert orifice_slope(dP, 1.0, P) == approx((orifice_flow(dP + step, 1.0, P) - orifice_flow(dP - step, 1.0, P)) / (2.0 * step), rel=1e-5)
+    assert orifice_slope(dP, 1.0, P) == approx(
+        (orifice_flow(dP + step, 1.0, P) - orifice_flow(dP - step, 1.0, P)) / (2.0 * step), rel=1e-5
+    )
 
 
 @given(st.floats(0.0, 0.03), st.floats(2e3, 1e7), st.sampled_from((1.0, -1.0)))
@@ -104,7 +106,9 @@ def test_damping_ramp_is_smooth_at_both_ends():
     assert damping_ramp(0.0, P) == 0.0
     assert damping_ramp(P.d_ramp, P) == 1.0
     for end in (1e-6, 1.0 - 1e-6):
-        slope = (damping_ramp((end + 1e-7) * P.d_ramp, P) - damping_ramp((end - 1e-7) * P.d_ramp, P)) / 2e-7
+        slope = (
+            damping_ramp((end + 1e-7) * P.d_ramp, P) - damping_ramp((end - 1e-7) * P.d_ramp, P)
+        ) / 2e-7
         assert slope == approx(0.0, abs=1e-4)
 
 

@@ -1,4 +1,6 @@
-"""The integration methods: order conditions, convergence, stiffness, and the same digits compiled and pure."""
+"""The integration methods: order conditions, convergence, stiffness, and the same digits compiled
+and pure.
+"""
 
 import os
 import subprocess
@@ -33,7 +35,9 @@ def test_nodes_are_those_of_the_scheme():
 
 
 def order_conditions(b):
-    """Left side minus right side of every order condition up to order 5, by order (Hairer, Norsett, Wanner, II.2)."""
+    """Left side minus right side of every order condition up to order 5, by order (Hairer, Norsett,
+    Wanner, II.2).
+    """
     Ac = A @ C
     return {
         1: [b.sum() - 1.0],
@@ -69,17 +73,30 @@ def test_the_exponential_methods_functions_are_their_integrals(z):
     """phi_k(-z) is the integral over [0, 1] of exp(-(1 - x) z) x^(k - 1)/(k - 1)!."""
     f1, f2 = phi1(z), phi2(z, phi1(z))
     for k, ours in ((1, f1), (2, f2), (3, phi3(z, f2))):
-        wanted, _ = quad(lambda x, k=k: exp(-(1.0 - x) * z) * x ** (k - 1) / factorial(k - 1), 0.0, 1.0, epsabs=1e-13)
+        wanted, _ = quad(
+            lambda x, k=k: exp(-(1.0 - x) * z) * x ** (k - 1) / factorial(k - 1),
+            0.0,
+            1.0,
+            epsabs=1e-13,
+        )
         assert ours == approx(wanted, rel=1e-12)
 
 
 def test_the_methods_agree(mode):
     """To what friction lets any two solvers agree in; see `convergence`."""
-    ours, papers = (Landing(load_preset("yue2022-figures"), mode, 1e-8, method) for method in METHODS)
+    ours, papers = (
+        Landing(load_preset("yue2022-figures"), mode, 1e-8, method) for method in METHODS
+    )
     for t in (0.15, 0.3, 0.6):
         ours.advance_to(t)
         papers.advance_to(t)
-        for name in ("body.x", "body.y", "body.pitch", "leg[1].main_strut.stroke", "leg[3].main_strut.stroke"):
+        for name in (
+            "body.x",
+            "body.y",
+            "body.pitch",
+            "leg[1].main_strut.stroke",
+            "leg[3].main_strut.stroke",
+        ):
             assert ours.get(name) == approx(papers.get(name), abs=1e-6)
 
 
@@ -88,7 +105,9 @@ def test_a_stiff_orifice_does_not_hold_the_exponential_method():
 
     def work(method, laminar_pressure):
         values = {"main_strut.laminar_pressure": laminar_pressure}
-        landing = Landing(load_preset("yue2022-figures").with_values(values), rtol=1e-4, method=method)
+        landing = Landing(
+            load_preset("yue2022-figures").with_values(values), rtol=1e-4, method=method
+        )
         landing.advance_to(1.0)
         return landing.statistics["rhs_calls"]
 
@@ -109,7 +128,12 @@ def test_friction_displacements_never_pass_the_slip_limit(mode):
 
 def in_flight(rtol: float, method: str) -> Landing:
     """A vehicle turning fast in free flight, its struts ringing: smooth, no contact."""
-    values = {"drop.contact_time": 0.5, "drop.pitch_rate": 2.0, "drop.vertical_velocity": -12.0, "main_strut.seal_coulomb": 0.0}
+    values = {
+        "drop.contact_time": 0.5,
+        "drop.pitch_rate": 2.0,
+        "drop.vertical_velocity": -12.0,
+        "main_strut.seal_coulomb": 0.0,
+    }
     return Landing(load_preset("yue2022-figures").with_values(values), rtol=rtol, method=method)
 
 
@@ -164,7 +188,12 @@ print(" ".join(float(v).hex() for v in [*values, *landing.values(), *landing.sta
 def probe(mode: str, method: str, pure: str) -> list[str]:
     environment = {**os.environ, "RLV_LANDING_PURE": pure}
     done = subprocess.run(
-        [sys.executable, "-c", PROBE, mode, method], capture_output=True, text=True, env=environment, timeout=120, check=True
+        [sys.executable, "-c", PROBE, mode, method],
+        capture_output=True,
+        text=True,
+        env=environment,
+        timeout=120,
+        check=True,
     )
     return done.stdout.splitlines()
 
@@ -179,7 +208,9 @@ def test_compiled_and_pure_core_give_the_same_digits(mode, method):
 
 @pytest.mark.skipif(not core.COMPILED, reason="measured on the pure core")
 def test_other_threads_run_during_a_run():
-    """The interpreter does not switch threads of itself here: the other one gets on only where the core lets it."""
+    """The interpreter does not switch threads of itself here: the other one gets on only where the
+    core lets it.
+    """
     solver = Landing()._solver
     rows = np.empty(1000 * solver.row)
     turns, waiting, done = [0], threading.Event(), threading.Event()

@@ -13,7 +13,10 @@ from work_precision import Run, cost
 
 def runs(*peaks: float) -> list[Run]:
     """At tolerances 1e-2, 1e-3, ...: each ten times as slow as the one before."""
-    return [Run(OURS[0], 10.0 ** -(k + 2), Error(p, p * 1e-3), "", 10.0**k, 0.0, 100 * 10**k) for k, p in enumerate(peaks)]
+    return [
+        Run(OURS[0], 10.0 ** -(k + 2), Error(p, p * 1e-3), "", 10.0**k, 0.0, 100 * 10**k)
+        for k, p in enumerate(peaks)
+    ]
 
 
 def test_cost_is_interpolated_in_logarithms():

@@ -31,8 +31,15 @@ def test_the_landing_in_c_takes_the_cores_steps_to_the_same_states(mode, rtol):
 
 def test_the_landing_in_c_has_the_cores_inputs_slope_and_stops(mode):
     """With the transverse load at the footpads, on a slope, so fast that a strut reaches both ends."""
-    values = {"vehicle.transverse_load_at": "footpad", "ground.slope": 0.03, "drop.vertical_velocity": -4.0, "main_strut.stroke_max": 0.03}
-    landing, start, watched = (Landing(load_preset("yue2022-figures").with_values(values), mode, 1e-4) for _ in range(3))
+    values = {
+        "vehicle.transverse_load_at": "footpad",
+        "ground.slope": 0.03,
+        "drop.vertical_velocity": -4.0,
+        "main_strut.stroke_max": 0.03,
+    }
+    landing, start, watched = (
+        Landing(load_preset("yue2022-figures").with_values(values), mode, 1e-4) for _ in range(3)
+    )
     landing.set_inputs(INPUTS, RATES)
     landing._solver.rhs_calls = 1.0  # the C landing starts with the inputs, so it has no restart
     assert disagreement(landing, Yardstick(start, 1e-4, inputs=INPUTS, rates=RATES), 0.3) < 1e-9
@@ -44,12 +51,21 @@ def test_the_landing_in_c_has_the_cores_inputs_slope_and_stops(mode):
 
 def test_a_landing_in_c_of_another_vehicle_is_told_from_the_cores(mode):
     heavier = load_preset("yue2022-figures").with_values({"vehicle.inertia": 250.0})
-    assert disagreement(Landing(load_preset("yue2022-figures"), mode), Yardstick(Landing(heavier, mode), 1e-5), 0.2) > 1e-3
+    assert (
+        disagreement(
+            Landing(load_preset("yue2022-figures"), mode),
+            Yardstick(Landing(heavier, mode), 1e-5),
+            0.2,
+        )
+        > 1e-3
+    )
 
 
 @pytest.mark.parametrize("method", [ADAMS, BDF])
 def test_cvode_lands_as_the_core_does(mode, method):
-    """An integrator that shares nothing with ours finds the same peaks; friction lets late strokes differ by some micrometres."""
+    """An integrator that shares nothing with ours finds the same peaks; friction lets late strokes
+    differ by some micrometres.
+    """
     problem = Problem(mode)
     found = problem.error(CvodeInC(problem, 1e-8, method, 2e-3, 500_000).states(TIMES))
     assert found.peaks < 1e-3

@@ -22,7 +22,9 @@ AT_REST = {"heave_amplitude": 0.0, "tilt_amplitude": 0.0}
 
 
 def run(fmus, until, landing=system.DROP, deck=AT_REST, engine=NO_ENGINE):
-    return simulate(fmus, system.CONNECTIONS, {"landing": landing, "deck": deck, "engine": engine}, until=until)
+    return simulate(
+        fmus, system.CONNECTIONS, {"landing": landing, "deck": deck, "engine": engine}, until=until
+    )
 
 
 def normal_forces(result):
@@ -32,17 +34,26 @@ def normal_forces(result):
 def test_command_writes_fmus_system_results_and_picture_and_says_what_happened(ran):
     out, said = ran
     files = {"ShipDeck.fmu", "EngineTailOff.fmu", "calm.ssp", "moving.ssp", "ship_deck.png"}
-    assert {p.name for p in out.iterdir()} == files | {f"{d}-{i}.csv" for d in ("calm", "moving") for i in ("fmpy", "ecos")}
+    assert {p.name for p in out.iterdir()} == files | {
+        f"{d}-{i}.csv" for d in ("calm", "moving") for i in ("fmpy", "ecos")
+    }
     assert imread(out / "ship_deck.png").shape[0] > 500
-    touched = {name: float(time) for name, time in re.findall(r"(\w+) deck: touches at ([\d.]+) s", said)}
+    touched = {
+        name: float(time) for name, time in re.findall(r"(\w+) deck: touches at ([\d.]+) s", said)
+    }
     assert touched["moving"] < touched["calm"], "the deck rises towards the vehicle"
 
 
 @pytest.mark.parametrize("deck", ["calm", "moving"])
 def test_ecos_gives_the_python_masters_trajectory_from_the_ssp_file(ran, deck):
-    """Both are Jacobi masters with the same communication points: 1e-9 of every output's largest value."""
+    """Both are Jacobi masters with the same communication points: 1e-9 of every output's largest
+    value.
+    """
     out, _ = ran
-    ours, theirs = (np.genfromtxt(out / f"{deck}-{i}.csv", delimiter=",", names=True, deletechars="") for i in ("fmpy", "ecos"))
+    ours, theirs = (
+        np.genfromtxt(out / f"{deck}-{i}.csv", delimiter=",", names=True, deletechars="")
+        for i in ("fmpy", "ecos")
+    )
     assert len(ours) == 1001
     assert len(ours.dtype.names) == len(theirs.dtype.names) > 90
     for name in ours.dtype.names:
@@ -53,7 +64,9 @@ def test_ecos_command_line_a_cpp_program_runs_the_same_system(ran, simulated_by_
     """Three FMUs made with Python in a program without; it writes six decimals."""
     out, _ = ran
     ours = np.genfromtxt(out / "moving-fmpy.csv", delimiter=",", names=True, deletechars="")
-    theirs = simulated_by_ecos(out / "moving.ssp", "--stopTime", "1.0005", "--parameterSet", "start")
+    theirs = simulated_by_ecos(
+        out / "moving.ssp", "--stopTime", "1.0005", "--parameterSet", "start"
+    )
     assert len(theirs) == len(ours)
     for name in ours.dtype.names[1:]:
         component, output = name.split(".", 1)
@@ -67,7 +80,10 @@ def test_ssp_file_is_valid_and_its_connections_are_those_of_the_system(ran, deck
     out, _ = ran
     with SSP(out / f"{deck}.ssp", mode="r") as archive, archive.system_structure as structure:
         structure.__check_compliance__()
-        read = {((c.start_element, c.start_connector), (c.end_element, c.end_connector)) for c in structure.connections()}
+        read = {
+            ((c.start_element, c.start_connector), (c.end_element, c.end_connector))
+            for c in structure.connections()
+        }
         assert read == set(system.CONNECTIONS.items())
         assert structure.check_connections(unconnected_inputs=True) == []
         assert {component.name: component.source for component in structure.system.elements} == {
@@ -77,7 +93,12 @@ def test_ssp_file_is_valid_and_its_connections_are_those_of_the_system(ran, deck
 
 def test_missing_fmu_is_an_error_that_says_how_to_build_it(example, tmp_path):
     shutil.copytree(example, tmp_path / "examples" / "ship_deck")
-    command = [sys.executable, str(tmp_path / "examples" / "ship_deck" / "run.py"), "--out", str(tmp_path / "out")]
+    command = [
+        sys.executable,
+        str(tmp_path / "examples" / "ship_deck" / "run.py"),
+        "--out",
+        str(tmp_path / "out"),
+    ]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert done.returncode == 1
     assert "RlvLanding.fmu is missing: run make build/RlvLanding.fmu" in done.stderr
@@ -97,12 +118,16 @@ def test_deck_starts_at_rest_and_its_rates_are_those_of_its_positions(fmus):
     for name in ("heave", "tilt"):
         value, rate = result[f"deck.{name}"], result[f"deck.{name}_rate"]
         assert value[0] == rate[0] == 0.0
-        # the acceleration jumps at the end of the fade, which a difference over 2 ms sees by half its step
-        assert np.abs(np.gradient(value, 1e-3)[1:-1] - rate[1:-1]).max() <= 2e-3 * np.abs(rate).max()
+        # the acceleration jumps at the end of the fade, which a difference over 2 ms sees by half
+        # its step
+        assert (
+            np.abs(np.gradient(value, 1e-3)[1:-1] - rate[1:-1]).max() <= 2e-3 * np.abs(rate).max()
+        )
 
 
 def test_only_the_speed_relative_to_the_deck_counts(fmus):
-    """A deck that rises steadily at 0.3 m/s is a deck at rest for a vehicle that falls 0.3 m/s faster (Galileo).
+    """A deck that rises steadily at 0.3 m/s is a deck at rest for a vehicle that falls 0.3 m/s
+    faster (Galileo).
 
     The deck is 1 s of a wave of 400 s: steady within 1.3e-4 of its speed.
     """
@@ -110,12 +135,33 @@ def test_only_the_speed_relative_to_the_deck_counts(fmus):
     time, speed = system.DROP["drop.contact_time"], system.DROP["drop.vertical_velocity"]
     start, height = speed + gravity * time, -speed * time - 0.5 * gravity * time**2
     faster = -sqrt((start - rise) ** 2 + 2.0 * gravity * height)
-    drop = {**system.DROP, "drop.vertical_velocity": faster, "drop.contact_time": (start - rise - faster) / gravity}
-    moving = run(fmus, 1.0, deck={**AT_REST, "heave_amplitude": rise * 400.0 / (2.0 * pi), "heave_period": 400.0, "start_up": 0.0})
+    drop = {
+        **system.DROP,
+        "drop.vertical_velocity": faster,
+        "drop.contact_time": (start - rise - faster) / gravity,
+    }
+    moving = run(
+        fmus,
+        1.0,
+        deck={
+            **AT_REST,
+            "heave_amplitude": rise * 400.0 / (2.0 * pi),
+            "heave_period": 400.0,
+            "start_up": 0.0,
+        },
+    )
     resting, slower = run(fmus, 1.0, landing=drop), run(fmus, 1.0)
-    assert np.abs(moving["landing.body.y"] - moving["deck.heave"] - resting["landing.body.y"]).max() < 1e-5
+    assert (
+        np.abs(moving["landing.body.y"] - moving["deck.heave"] - resting["landing.body.y"]).max()
+        < 1e-5
+    )
     for leg in (1, 3):
-        for quantity in ("main_strut.stroke", "main_strut.pressure_lower", "auxiliary_strut.force", "contact.force_y"):
+        for quantity in (
+            "main_strut.stroke",
+            "main_strut.pressure_lower",
+            "auxiliary_strut.force",
+            "contact.force_y",
+        ):
             name = f"landing.leg[{leg}].{quantity}"
             assert moving[name].max() == approx(resting[name].max(), rel=1e-3), name
     hits = [normal_forces(result).max(axis=0) for result in (moving, resting, slower)]
@@ -124,24 +170,38 @@ def test_only_the_speed_relative_to_the_deck_counts(fmus):
 
 
 def test_a_vehicle_that_stands_goes_with_the_deck(fmus):
-    """At the end: height above the deck, speed and pitch are the deck's, but for what struts and friction give under 4 % of g."""
+    """At the end: height above the deck, speed and pitch are the deck's, but for what struts and
+    friction give under 4 % of g.
+    """
     result = run(fmus, 5.0, deck={}, engine={})
     standing = result["time"] > 2.5
     end = {name: values[standing] for name, values in result.items()}
     assert np.ptp(end["deck.heave"]) > 0.2
     deck_below = end["deck.heave"] - end["landing.body.x"] * np.tan(end["deck.tilt"])
     assert np.ptp(end["landing.body.y"] - deck_below) < 5e-3
-    assert np.abs(end["landing.body.vy"] - end["deck.heave_rate"]).max() < 0.03 * np.abs(end["deck.heave_rate"]).max()
-    assert np.abs(end["landing.body.pitch"] - end["deck.tilt"]).max() < 0.2 * np.abs(end["deck.tilt"]).max()
+    assert (
+        np.abs(end["landing.body.vy"] - end["deck.heave_rate"]).max()
+        < 0.03 * np.abs(end["deck.heave_rate"]).max()
+    )
+    assert (
+        np.abs(end["landing.body.pitch"] - end["deck.tilt"]).max()
+        < 0.2 * np.abs(end["deck.tilt"]).max()
+    )
     assert np.abs(end["landing.energy.balance"]).max() < 1e-3
     assert normal_forces(end).sum(axis=0) == approx(np.full(standing.sum(), WEIGHT), rel=0.05)
 
 
 def test_thrust_and_tail_off_do_the_work_that_the_energy_books_say(fmus):
-    """Force times way of every step, force held: that is `energy.work_external`. In the flight, impulse less weight is momentum."""
+    """Force times way of every step, force held: that is `energy.work_external`.
+
+    In the flight, impulse less weight is momentum.
+    """
     result = run(fmus, 1.0, engine={"direction": 0.05, "arm": 0.02})
     ways = {"force_x": "body.x", "force_y": "body.y", "moment": "body.pitch"}
-    steps = sum(result[f"engine.{load}"][:-1] * np.diff(result[f"landing.{way}"]) for load, way in ways.items())
+    steps = sum(
+        result[f"engine.{load}"][:-1] * np.diff(result[f"landing.{way}"])
+        for load, way in ways.items()
+    )
     booked = result["landing.energy.work_external"]
     assert np.abs(np.cumsum(steps) - booked[1:]).max() <= 1e-6 * np.abs(booked).max()
     time, thrust, speed = result["time"], result["engine.force_y"], result["landing.body.vy"]

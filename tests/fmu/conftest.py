@@ -1,4 +1,6 @@
-"""What the tests of the FMU share: its description, its unpacked files, an instance, and hosts written in C."""
+"""What the tests of the FMU share: its description, its unpacked files, an instance, and hosts
+written in C.
+"""
 
 from __future__ import annotations
 
@@ -52,7 +54,17 @@ def host(tmp_path_factory) -> Callable[[str], Path]:
     def compiled(name: str) -> Path:
         program = folder / name
         if not program.exists():
-            command = ["gcc", "-std=gnu11", "-Wall", "-Wextra", "-Werror", "-isystem", str(HEADERS), "-o", str(program)]
+            command = [
+                "gcc",
+                "-std=gnu11",
+                "-Wall",
+                "-Wextra",
+                "-Werror",
+                "-isystem",
+                str(HEADERS),
+                "-o",
+                str(program),
+            ]
             subprocess.run([*command, str(HOSTS / f"{name}.c"), "-ldl", "-lpthread"], check=True)
         return program
 

@@ -12,14 +12,20 @@ OK, WARNING, DISCARD, ERROR = range(4)
 
 
 class Instance:
-    """An instance of the FMU in `folder`. Methods raise FMPy's FMICallException; `status` returns a call's bare status instead."""
+    """An instance of the FMU in `folder`.
+
+    Methods raise FMPy's FMICallException; `status` returns a call's bare status instead.
+    """
 
     def __init__(self, description, folder: Path) -> None:
         self.vr = {v.name: v.valueReference for v in description.modelVariables}
         self.log: list[tuple[int, str]] = []
         self.categories: list[str] = []
         self.slave = fmi2.FMU2Slave(
-            guid=description.guid, unzipDirectory=str(folder), modelIdentifier=description.coSimulation.modelIdentifier, instanceName="test"
+            guid=description.guid,
+            unzipDirectory=str(folder),
+            modelIdentifier=description.coSimulation.modelIdentifier,
+            instanceName="test",
         )
         self.callbacks = fmi2.fmi2CallbackFunctions()
         self.callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(self._note)
@@ -28,7 +34,9 @@ class Instance:
         self.slave.instantiate(callbacks=self.callbacks, loggingOn=True)
         self.freed = False
 
-    def _note(self, _environment: Any, _name: bytes, status: int, category: bytes, message: bytes, *_: Any) -> None:
+    def _note(
+        self, _environment: Any, _name: bytes, status: int, category: bytes, message: bytes, *_: Any
+    ) -> None:
         self.log.append((status, message.decode()))
         self.categories.append(category.decode())
 
@@ -51,7 +59,13 @@ class Instance:
 
     def set_rate(self, name: str, value: float, order: int = 1) -> int:
         """Status of fmi2SetRealInputDerivatives."""
-        return self.status("fmi2SetRealInputDerivatives", (c_uint * 1)(self.vr[name]), 1, (c_int * 1)(order), (c_double * 1)(value))
+        return self.status(
+            "fmi2SetRealInputDerivatives",
+            (c_uint * 1)(self.vr[name]),
+            1,
+            (c_int * 1)(order),
+            (c_double * 1)(value),
+        )
 
     def get(self, name: str) -> float:
         return self.slave.getReal([self.vr[name]])[0]

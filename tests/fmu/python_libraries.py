@@ -8,17 +8,23 @@ import sysconfig
 from pathlib import Path
 
 # a host's whole environment: no variable that says where Python is
-BARE = {name: os.environ[name] for name in ("HOME",) if name in os.environ} | {"PATH": "/usr/bin:/bin"}
+BARE = {name: os.environ[name] for name in ("HOME",) if name in os.environ} | {
+    "PATH": "/usr/bin:/bin"
+}
 
 
 def python_libraries() -> list[str]:
-    """The Python libraries, 3.10 to 3.13, of this machine: of the running Python, beside it, and those that the loader finds."""
+    """The Python libraries, 3.10 to 3.13, of this machine: of the running Python, beside it, and
+    those that the loader finds.
+    """
     found = {}
     here = Path(sysconfig.get_config_var("LIBDIR") or "/usr/lib")
     for minor in range(10, 14):
         name = f"libpython3.{minor}.so.1.0"
         places = [here / name, *sorted(here.parent.parent.glob(f"3.{minor}*/lib/{name}"))]
-        path = next((str(p) for p in places if p.is_file()), "") or (ctypes.util.find_library(f"python3.{minor}") and name)
+        path = next((str(p) for p in places if p.is_file()), "") or (
+            ctypes.util.find_library(f"python3.{minor}") and name
+        )
         if path:
             found[minor] = path
     return list(found.values())

@@ -30,7 +30,9 @@ def test_build_script_writes_where_it_is_told_and_says_what_it_checked(tmp_path)
     assert fmpy.read_model_description(str(target)).modelName == "RlvLanding"
 
 
-def test_the_front_compiles_without_a_warning_and_exports_fmi_functions_only(unpacked, tmp_path, monkeypatch):
+def test_the_front_compiles_without_a_warning_and_exports_fmi_functions_only(
+    unpacked, tmp_path, monkeypatch
+):
     monkeypatch.syspath_prepend(ROOT / "fmu_src")
     from fmu_build import binary
 
@@ -38,9 +40,16 @@ def test_the_front_compiles_without_a_warning_and_exports_fmi_functions_only(unp
     (tmp_path / "variables.h").write_text(binary.variables_header(root, "stock.so"))
     monkeypatch.setattr(binary, "FLAGS", [*binary.FLAGS, "-Werror", "-Wpedantic"])
     binary.compile_front(tmp_path / "front.so", tmp_path)
-    listed = subprocess.run(["nm", "-D", "--defined-only", tmp_path / "front.so"], capture_output=True, text=True, check=True).stdout
+    listed = subprocess.run(
+        ["nm", "-D", "--defined-only", tmp_path / "front.so"],
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
     names = {line.split()[-1] for line in listed.splitlines()}
-    declared = re.findall(r"#define (fmi2\w+) +fmi2FullName", (binary.HEADERS / "fmi2Functions.h").read_text())
+    declared = re.findall(
+        r"#define (fmi2\w+) +fmi2FullName", (binary.HEADERS / "fmi2Functions.h").read_text()
+    )
     assert names == {name for name in declared if not OF_MODEL_EXCHANGE.search(name)}
 
 

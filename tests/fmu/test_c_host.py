@@ -23,16 +23,32 @@ def land(host, unpacked, description):
     """Lands the FMU in `folder` in a C host of its own process."""
     first = {v.name: v.valueReference for v in description.modelVariables}["body.x"]
 
-    def run(folder: Path = unpacked, uri: str = "", steps: int = STEPS, **environment: str) -> subprocess.CompletedProcess[str]:
-        command = [host("land"), folder / "binaries" / "linux64" / "RlvLanding.so", uri or (folder / "resources").as_uri()]
+    def run(
+        folder: Path = unpacked, uri: str = "", steps: int = STEPS, **environment: str
+    ) -> subprocess.CompletedProcess[str]:
+        command = [
+            host("land"),
+            folder / "binaries" / "linux64" / "RlvLanding.so",
+            uri or (folder / "resources").as_uri(),
+        ]
         numbers = [description.guid, str(steps), str(min(steps, EVERY)), str(first), "10"]
-        return subprocess.run([*command, *numbers], capture_output=True, text=True, env=BARE | environment, timeout=120)
+        return subprocess.run(
+            [*command, *numbers],
+            capture_output=True,
+            text=True,
+            env=BARE | environment,
+            timeout=120,
+        )
 
     return run
 
 
-def assert_landed_or_said_what_it_lacks(done: subprocess.CompletedProcess[str], steps: int = STEPS) -> None:
-    """The host's numbers are `Landing`'s; on a machine without any libpython, the host lives and its log names what was tried."""
+def assert_landed_or_said_what_it_lacks(
+    done: subprocess.CompletedProcess[str], steps: int = STEPS
+) -> None:
+    """The host's numbers are `Landing`'s; on a machine without any libpython, the host lives and
+    its log names what was tried.
+    """
     if not python_libraries() and done.returncode == 1:
         assert MISSING in done.stdout
         assert all(f"libpython3.{minor}.so.1.0" in done.stdout for minor in range(10, 14))
@@ -51,7 +67,9 @@ def assert_landed_or_said_what_it_lacks(done: subprocess.CompletedProcess[str], 
 
 @pytest.mark.parametrize("library", python_libraries() or ["/nowhere/libpython3.13.so.1.0"])
 def test_a_c_host_lands_like_landing_with_every_python_of_the_machine(land, library):
-    """With the compiled core where the FMU has one for it: built by Python 3.11 or newer, for all from 3.11 on."""
+    """With the compiled core where the FMU has one for it: built by Python 3.11 or newer, for all
+    from 3.11 on.
+    """
     done = land(RLV_LANDING_LIBPYTHON=library)
     if library.startswith("/nowhere/"):
         assert done.returncode == 1
@@ -68,20 +86,28 @@ def test_fifty_c_hosts_in_a_row_end_well_without_any_variable_set(land):
         assert_landed_or_said_what_it_lacks(land(steps=5), steps=5)
 
 
-@pytest.mark.parametrize("name", ["two words", "ü", "(1)", "a#b", "50%", "%41", "quote'\"", "+&;$=@,~"])
+@pytest.mark.parametrize(
+    "name", ["two words", "ü", "(1)", "a#b", "50%", "%41", "quote'\"", "+&;$=@,~"]
+)
 @pytest.mark.parametrize("escaped", [True, False])
 def test_folders_may_have_any_name(land, unpacked, tmp_path, name, escaped):
     folder = tmp_path / name
     shutil.copytree(unpacked, folder)
-    done = land(folder, (folder / "resources").as_uri() if escaped else str(folder / "resources"), steps=20)
+    done = land(
+        folder, (folder / "resources").as_uri() if escaped else str(folder / "resources"), steps=20
+    )
     assert_landed_or_said_what_it_lacks(done, steps=20)
     left = Path("/tmp").glob("rlv_landing_*/resources")
-    assert [link for link in left if link.is_symlink() and link.readlink() == folder / "resources"] == []
+    assert [
+        link for link in left if link.is_symlink() and link.readlink() == folder / "resources"
+    ] == []
 
 
 @pytest.mark.parametrize("form", ["file://{}", "file:{}", "file://localhost{}", "{}"])
 def test_the_resources_may_be_named_in_every_usual_form(land, unpacked, form):
-    assert_landed_or_said_what_it_lacks(land(uri=form.format(unpacked / "resources"), steps=5), steps=5)
+    assert_landed_or_said_what_it_lacks(
+        land(uri=form.format(unpacked / "resources"), steps=5), steps=5
+    )
 
 
 def test_wrong_resources_are_an_error_that_names_them(land):
@@ -93,22 +119,39 @@ def test_wrong_resources_are_an_error_that_names_them(land):
 
 @pytest.mark.parametrize(
     ("library", "fault"),
-    [("/nowhere/libpython3.12.so.1.0", "no such file"), ("libm.so.6", "not Python 3.10 or newer"), ("/etc/passwd", "cannot be loaded")],
+    [
+        ("/nowhere/libpython3.12.so.1.0", "no such file"),
+        ("libm.so.6", "not Python 3.10 or newer"),
+        ("/etc/passwd", "cannot be loaded"),
+    ],
 )
 def test_a_bad_library_is_an_error_that_names_it_and_the_remedy(land, library, fault):
     done = land(RLV_LANDING_LIBPYTHON=library)
     assert done.returncode == 1
-    assert f"{MISSING}; RLV_LANDING_LIBPYTHON = {library}: {fault}; set RLV_LANDING_LIBPYTHON to the path of one" in done.stdout
+    assert (
+        f"{MISSING}; RLV_LANDING_LIBPYTHON = {library}: {fault}; set RLV_LANDING_LIBPYTHON to the path of one"
+        in done.stdout
+    )
 
 
-@pytest.mark.parametrize("environment", [{"PYTHONHOME": "/nowhere"}, {"PYTHONPATH": "/nowhere"}, {"LC_ALL": "C"}, {"LC_ALL": "C.UTF-8"}])
+@pytest.mark.parametrize(
+    "environment",
+    [
+        {"PYTHONHOME": "/nowhere"},
+        {"PYTHONPATH": "/nowhere"},
+        {"LC_ALL": "C"},
+        {"LC_ALL": "C.UTF-8"},
+    ],
+)
 def test_the_hosts_environment_does_not_reach_the_fmus_python(land, environment):
     assert_landed_or_said_what_it_lacks(land(steps=5, **environment), steps=5)
 
 
 @pytest.fixture
 def dying_venv(tmp_path) -> Path:
-    """A venv whose site-packages end every Python that reads them: what a `.pth` that starts Python anew does to an embedded Python."""
+    """A venv whose site-packages end every Python that reads them: what a `.pth` that starts Python
+    anew does to an embedded Python.
+    """
     venv = tmp_path / "venv"
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(venv)], check=True)
     site_packages = next(venv.glob("lib/python3*/site-packages"))
@@ -120,11 +163,15 @@ def dying_venv(tmp_path) -> Path:
 def test_a_pth_that_ends_or_restarts_python_does_not_reach_the_host(land, dying_venv):
     for venv in (dying_venv, Path(sys.prefix)):
         path = f"{venv}/bin{os.pathsep}{BARE['PATH']}"
-        assert_landed_or_said_what_it_lacks(land(steps=5, PATH=path, VIRTUAL_ENV=str(venv)), steps=5)
+        assert_landed_or_said_what_it_lacks(
+            land(steps=5, PATH=path, VIRTUAL_ENV=str(venv)), steps=5
+        )
 
 
 def test_the_library_of_python3_on_path_is_the_last_resort(land, unpacked, tmp_path):
-    """Where the FMU was not built, and the loader knows no usable libpython: pyenv's and conda's are not where it looks."""
+    """Where the FMU was not built, and the loader knows no usable libpython: pyenv's and conda's
+    are not where it looks.
+    """
     folder, empty, shims = tmp_path / "fmu", tmp_path / "empty", tmp_path / "shims"
     shutil.copytree(unpacked, folder)
     (folder / "resources" / "libpython.txt").unlink(missing_ok=True)
@@ -132,12 +179,22 @@ def test_the_library_of_python3_on_path_is_the_last_resort(land, unpacked, tmp_p
     for minor in range(10, 14):
         (empty / f"libpython3.{minor}.so.1.0").touch()
     shims.mkdir()
-    (shims / "python3").write_text(f'#!/bin/sh\nunset LD_LIBRARY_PATH\nexec "{sys.executable}" "$@"\n')
+    (shims / "python3").write_text(
+        f'#!/bin/sh\nunset LD_LIBRARY_PATH\nexec "{sys.executable}" "$@"\n'
+    )
     (shims / "python3").chmod(0o755)
-    done = land(folder, steps=5, LD_LIBRARY_PATH=str(empty), PATH=f"{shims}{os.pathsep}{BARE['PATH']}")
+    done = land(
+        folder, steps=5, LD_LIBRARY_PATH=str(empty), PATH=f"{shims}{os.pathsep}{BARE['PATH']}"
+    )
     assert_landed_or_said_what_it_lacks(done, steps=5)
     without = land(folder, steps=5, LD_LIBRARY_PATH=str(empty), PATH="/nowhere")
     assert without.returncode == 1
     assert "RLV_LANDING_LIBPYTHON: not set; the loader's libpython3." in without.stdout
-    assert all(f"; the loader's libpython3.{minor}.so.1.0: cannot be loaded" in without.stdout for minor in range(10, 14))
-    assert "; python3 on PATH: none that names its library; set RLV_LANDING_LIBPYTHON" in without.stdout
+    assert all(
+        f"; the loader's libpython3.{minor}.so.1.0: cannot be loaded" in without.stdout
+        for minor in range(10, 14)
+    )
+    assert (
+        "; python3 on PATH: none that names its library; set RLV_LANDING_LIBPYTHON"
+        in without.stdout
+    )

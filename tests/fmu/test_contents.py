@@ -1,4 +1,6 @@
-"""What the FMU file holds: nothing that is not needed, licences, a page that stands alone, the same bytes from the same sources."""
+"""What the FMU file holds: nothing that is not needed, licences, a page that stands alone, the same
+bytes from the same sources.
+"""
 
 from __future__ import annotations
 
@@ -48,24 +50,38 @@ def test_every_file_serves_the_run_the_reader_or_the_licence(archive):
         "slavemodule.txt",
         "libpython.txt",
     }
-    assert {n.split("/")[0] for n in names} == {"binaries", "documentation", "model.png", "modelDescription.xml", "resources"}
+    assert {n.split("/")[0] for n in names} == {
+        "binaries",
+        "documentation",
+        "model.png",
+        "modelDescription.xml",
+        "resources",
+    }
 
 
 def test_entries_are_sorted_deflated_of_one_date_and_with_modes(archive, fmu):
-    made = datetime.fromisoformat(fmpy.read_model_description(str(fmu)).generationDateAndTime.replace("Z", "+00:00"))
+    made = datetime.fromisoformat(
+        fmpy.read_model_description(str(fmu)).generationDateAndTime.replace("Z", "+00:00")
+    )
     entries = archive.infolist()
     assert [e.filename for e in entries] == sorted(e.filename for e in entries)
     for e in entries:
         assert e.compress_type == ZIP_DEFLATED
         assert abs((datetime(*e.date_time, tzinfo=timezone.utc) - made).total_seconds()) < 2.0
-        assert e.external_attr >> 16 == (0o100755 if e.filename.endswith((".so", ".dll")) else 0o100644), e.filename
+        assert e.external_attr >> 16 == (
+            0o100755 if e.filename.endswith((".so", ".dll")) else 0o100644
+        ), e.filename
 
 
 def test_licences_and_changes_are_in_it(archive):
     assert archive.read("documentation/licenses/LICENSE") == (ROOT / "LICENSE").read_bytes()
     installed = [p for p in distribution("pythonfmu").files or () if p.name == "LICENSE"]
-    assert archive.read("documentation/licenses/pythonfmu-LICENSE").decode() == installed[0].read_text(encoding="utf-8")
-    assert b"Permission is hereby granted" in archive.read("documentation/licenses/pythonfmu-LICENSE")
+    assert archive.read("documentation/licenses/pythonfmu-LICENSE").decode() == installed[
+        0
+    ].read_text(encoding="utf-8")
+    assert b"Permission is hereby granted" in archive.read(
+        "documentation/licenses/pythonfmu-LICENSE"
+    )
     assert archive.read("documentation/CHANGELOG.md").startswith(b"# Changelog")
 
 
@@ -91,16 +107,30 @@ def test_page_shows_a_drawing_and_the_equations(page):
     math = "{http://www.w3.org/1998/Math/MathML}math"
     assert len(page.findall(f".//{math}")) == 13
     texts = set(page.xpath("//figure//*[local-name()='text']/text()"))
-    assert {"main strut with damper", "auxiliary strut", "footpad", "CG of the upper mass", "1", "2", "3", "4"} <= {
-        t.strip() for t in texts
-    }
+    assert {
+        "main strut with damper",
+        "auxiliary strut",
+        "footpad",
+        "CG of the upper mass",
+        "1",
+        "2",
+        "3",
+        "4",
+    } <= {t.strip() for t in texts}
 
 
-def test_page_lists_every_variable_with_unit_bounds_and_default_as_the_description_has_them(page, fmu):
+def test_page_lists_every_variable_with_unit_bounds_and_default_as_the_description_has_them(
+    page, fmu
+):
     """Leg 1 stands for all legs."""
-    shown = {row[0].text: [cell.text or "" for cell in row] for row in page.xpath("//tbody/tr[td[@class='id']]")}
+    shown = {
+        row[0].text: [cell.text or "" for cell in row]
+        for row in page.xpath("//tbody/tr[td[@class='id']]")
+    }
     variables = {v.name: v for v in fmpy.read_model_description(str(fmu)).modelVariables}
-    assert set(shown) == {name for name in variables if not name.startswith(("leg[2]", "leg[3]", "leg[4]"))}
+    assert set(shown) == {
+        name for name in variables if not name.startswith(("leg[2]", "leg[3]", "leg[4]"))
+    }
     for name, cells in shown.items():
         v = variables[name]
         assert cells[1] == v.type
@@ -111,7 +141,9 @@ def test_page_lists_every_variable_with_unit_bounds_and_default_as_the_descripti
             assert float(cells[2]) == pytest.approx(float(v.start), rel=1e-5)
             assert [float(b) for b in cells[5].split(" ... ")] == [float(v.min), float(v.max)]
         if v.causality == "output":
-            assert cells[4] == ("0 ... 3" if name == "status.phase" else "" if v.min is None else "at least 0")
+            assert cells[4] == (
+                "0 ... 3" if name == "status.phase" else "" if v.min is None else "at least 0"
+            )
     assert {q.name for q in INPUT_QUANTITIES} <= set(shown)
 
 
@@ -132,9 +164,18 @@ def test_two_builds_of_the_same_sources_give_the_same_bytes(tmp_path):
     (tmp_path / "elsewhere").mkdir()
     date = {"SOURCE_DATE_EPOCH": "1700000001"}
     first = build(tmp_path / "a.fmu", PYTHONHASHSEED="1", TZ="UTC", **date)
-    second = build(tmp_path / "b.fmu", PYTHONHASHSEED="2", TZ="Asia/Tokyo", TMPDIR=str(tmp_path / "elsewhere"), **date)
+    second = build(
+        tmp_path / "b.fmu",
+        PYTHONHASHSEED="2",
+        TZ="Asia/Tokyo",
+        TMPDIR=str(tmp_path / "elsewhere"),
+        **date,
+    )
     assert first == second
-    assert fmpy.read_model_description(str(tmp_path / "a.fmu")).generationDateAndTime == "2023-11-14T22:13:21Z"
+    assert (
+        fmpy.read_model_description(str(tmp_path / "a.fmu")).generationDateAndTime
+        == "2023-11-14T22:13:21Z"
+    )
 
 
 DATE = "from fmu_build import build; print(build.source_date().isoformat())"
@@ -149,7 +190,9 @@ DATE = "from fmu_build import build; print(build.source_date().isoformat())"
         (True, "0", "1980-01-01T00:00:00+00:00"),
     ],
 )
-def test_date_is_that_of_the_environment_else_of_the_last_commit_else_a_constant(tmp_path, committed, epoch, expected):
+def test_date_is_that_of_the_environment_else_of_the_last_commit_else_a_constant(
+    tmp_path, committed, epoch, expected
+):
     done = source_date(tmp_path, committed, epoch)
     assert (done.returncode, done.stdout.strip()) == (0, expected), done.stderr
 
@@ -164,13 +207,43 @@ def test_bad_source_date_is_refused_with_what_to_do(tmp_path, epoch):
 
 def source_date(folder: Path, committed: bool, epoch: str) -> subprocess.CompletedProcess[str]:
     """The date that a copy of the build scripts finds in `folder`, a git repository or none."""
-    shutil.copytree(ROOT / "fmu_src" / "fmu_build", folder / "fmu_src" / "fmu_build", ignore=shutil.ignore_patterns("__pycache__"))
-    environment = {**os.environ, "SOURCE_DATE_EPOCH": epoch, "GIT_CEILING_DIRECTORIES": str(folder.parent)}
+    shutil.copytree(
+        ROOT / "fmu_src" / "fmu_build",
+        folder / "fmu_src" / "fmu_build",
+        ignore=shutil.ignore_patterns("__pycache__"),
+    )
+    environment = {
+        **os.environ,
+        "SOURCE_DATE_EPOCH": epoch,
+        "GIT_CEILING_DIRECTORIES": str(folder.parent),
+    }
     if committed:
-        git = ["git", "-c", "user.name=n", "-c", "user.email=e@example.org", "-c", "commit.gpgsign=false"]
+        git = [
+            "git",
+            "-c",
+            "user.name=n",
+            "-c",
+            "user.email=e@example.org",
+            "-c",
+            "commit.gpgsign=false",
+        ]
         subprocess.run([*git, "init", "-q", "."], cwd=folder, check=True)
-        dated = {**environment, "GIT_COMMITTER_DATE": "2020-02-03T05:05:06+01:00", "GIT_AUTHOR_DATE": "2019-01-01T00:00:00+00:00"}
-        subprocess.run([*git, "commit", "-q", "--allow-empty", "--no-verify", "-m", "a date"], cwd=folder, check=True, env=dated)
+        dated = {
+            **environment,
+            "GIT_COMMITTER_DATE": "2020-02-03T05:05:06+01:00",
+            "GIT_AUTHOR_DATE": "2019-01-01T00:00:00+00:00",
+        }
+        subprocess.run(
+            [*git, "commit", "-q", "--allow-empty", "--no-verify", "-m", "a date"],
+            cwd=folder,
+            check=True,
+            env=dated,
+        )
     return subprocess.run(
-        [sys.executable, "-c", DATE], cwd=folder / "fmu_src", capture_output=True, text=True, env=environment, timeout=120
+        [sys.executable, "-c", DATE],
+        cwd=folder / "fmu_src",
+        capture_output=True,
+        text=True,
+        env=environment,
+        timeout=120,
     )

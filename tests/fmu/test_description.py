@@ -1,4 +1,6 @@
-"""The FMU's description, read by FMPy, against pint's units and against what the model itself does when it is moved."""
+"""The FMU's description, read by FMPy, against pint's units and against what the model itself does
+when it is moved.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,8 @@ from rlv_landing.quantities import INPUT_QUANTITIES, LEGS, MODES, OUTPUT_NAMES, 
 
 FIGURES = "yue2022-figures"
 SCALE = {q.name: q.nominal if q.kind == "real" else 1.0 for q in OUTPUT_QUANTITIES}
-# far enough that footpads leave the ground, or touch it, and that a vehicle at rest is not at rest any more
+# far enough that footpads leave the ground, or touch it, and that a vehicle at rest is not at rest
+# any more
 STEPS = dict(zip((q.name for q in INPUT_QUANTITIES), (1e4, 1e4, 1e3, 0.05, 1.0, 0.05, 1.0)))
 # pressed-up struts, a deep damping layer, and a flight in which every parameter of it counts
 MOVED = {
@@ -33,14 +36,28 @@ MOVED = {
     "ground.stick_damping": 100.0,
     "main_strut.charge_pressure": 2e6,
 }
-LOADS = {"external.force_x": 500.0, "external.force_y": -300.0, "external.moment": 50.0, "ground.heave_rate": 0.3, "ground.tilt_rate": 0.05}
+LOADS = {
+    "external.force_x": 500.0,
+    "external.force_y": -300.0,
+    "external.moment": 50.0,
+    "ground.heave_rate": 0.3,
+    "ground.tilt_rate": 0.05,
+}
 # standing on the ground at less than 2 mm/s
-STANDING = {**MOVED, "drop.contact_time": 1e-4, "drop.pitch_rate": 1e-4, "drop.vertical_velocity": -1e-3, "drop.horizontal_velocity": 5e-4}
+STANDING = {
+    **MOVED,
+    "drop.contact_time": 1e-4,
+    "drop.pitch_rate": 1e-4,
+    "drop.vertical_velocity": -1e-3,
+    "drop.horizontal_velocity": 5e-4,
+}
 
 
 @pytest.fixture(scope="module")
 def description(fmu: Path):
-    return fmpy.read_model_description(str(fmu), validate=True, validate_variable_names=True, validate_model_structure=True)
+    return fmpy.read_model_description(
+        str(fmu), validate=True, validate_variable_names=True, validate_model_structure=True
+    )
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +73,9 @@ def test_model_is_described(description):
     assert "rlv-landing authors" in description.copyright
     assert description.generationTool == f"rlv-landing {__version__} with PythonFMU 0.7.0"
     experiment = description.defaultExperiment
-    assert [float(getattr(experiment, n)) for n in ("startTime", "stopTime", "stepSize", "tolerance")] == [0.0, 1.0, 1e-3, 1e-5]
+    assert [
+        float(getattr(experiment, n)) for n in ("startTime", "stopTime", "stepSize", "tolerance")
+    ] == [0.0, 1.0, 1e-3, 1e-5]
 
 
 @pytest.mark.parametrize(
@@ -83,11 +102,16 @@ def test_units_and_display_units_are_pints(description):
     for defined in description.unitDefinitions:
         base = defined.baseUnit
         if defined.name == "1":
-            assert all(getattr(base, exponent) == 0 for exponent in ("kg", "m", "s", "A", "K", "mol", "cd", "rad"))
+            assert all(
+                getattr(base, exponent) == 0
+                for exponent in ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
+            )
             continue
         powers = {n: getattr(base, n) for n in ("kg", "m", "s", "rad") if getattr(base, n)}
         written = "*".join(f"{n}**{e}" for n, e in powers.items())
-        assert one(defined.name).to(written).magnitude == pytest.approx(1.0, rel=1e-15), defined.name
+        assert one(defined.name).to(written).magnitude == pytest.approx(1.0, rel=1e-15), (
+            defined.name
+        )
         for shown in defined.displayUnits:
             factor = one(defined.name).to(one(shown.name).units).magnitude
             assert float(shown.factor) == pytest.approx(factor, rel=1e-14), shown.name
@@ -125,7 +149,9 @@ def test_variables_have_the_attributes_that_their_causality_asks_for(variables):
 
 def test_inputs_state_no_initial(fmu):
     root = etree.fromstring(ZipFile(fmu).read("modelDescription.xml"))
-    assert root.xpath("//ScalarVariable[@causality='input']/@name") == [q.name for q in INPUT_QUANTITIES]
+    assert root.xpath("//ScalarVariable[@causality='input']/@name") == [
+        q.name for q in INPUT_QUANTITIES
+    ]
     assert root.xpath("//ScalarVariable[@causality='input']/@initial") == []
 
 
@@ -155,7 +181,9 @@ def declared(unknowns) -> dict[str, set[str]]:
 
 def changed(before: list[float], after: list[float]) -> set[str]:
     """Outputs that differ by more than rounding: a billionth of their nominal value."""
-    return {name for name, a, b in zip(OUTPUT_NAMES, before, after) if abs(a - b) > 1e-9 * SCALE[name]}
+    return {
+        name for name, a, b in zip(OUTPUT_NAMES, before, after) if abs(a - b) > 1e-9 * SCALE[name]
+    }
 
 
 def note(found: dict[str, set[str]], cause: str, outputs: Iterable[str]) -> None:
@@ -202,7 +230,11 @@ def others(name: str, value: float | str) -> list[float | str]:
     return [v for v in near if q.lo <= v <= q.hi]
 
 
-def observe_parameters(values: dict[str, float | str], inputs: dict[str, float], note_changes: Callable[[str, set[str]], None]) -> None:
+def observe_parameters(
+    values: dict[str, float | str],
+    inputs: dict[str, float],
+    note_changes: Callable[[str, set[str]], None],
+) -> None:
     """Move each parameter by itself and note which outputs change at time 0."""
     base, before = Parameters().with_values(values), start(values, inputs)
     for name in PARAMETER_QUANTITIES:
@@ -214,7 +246,9 @@ def raised(values: dict[str, float | str], leg: int, depth: float) -> dict[str, 
     """The lift of the ground at which the footpad of `leg` is `depth` [m] in it at time 0."""
     landing = Landing(Parameters().with_values(values))
     slope = landing.parameters.ground.slope
-    return {"ground.heave": (landing.get(f"leg[{leg}].contact.penetration") - depth) / -math.cos(slope)}
+    return {
+        "ground.heave": (landing.get(f"leg[{leg}].contact.penetration") - depth) / -math.cos(slope)
+    }
 
 
 def deepest(values: dict[str, float | str]) -> dict[str, float]:
@@ -223,7 +257,9 @@ def deepest(values: dict[str, float | str]) -> dict[str, float]:
 
 
 def on_the_verge(values: dict[str, float | str]) -> dict[str, float]:
-    """Inputs at which the body's accelerations are a hair below the limit of a vehicle at rest (0.05 in sum, to 5e-11)."""
+    """Inputs at which the body's accelerations are a hair below the limit of a vehicle at rest
+    (0.05 in sum, to 5e-11).
+    """
     names = ("external.force_x", "external.force_y", "external.moment")
     lifted = deepest(values)
 
@@ -234,25 +270,37 @@ def on_the_verge(values: dict[str, float | str]) -> dict[str, float]:
     target, loads = np.array([0.02, 0.02, 0.01 - 5e-11]), np.zeros(3)
     for _ in range(2):
         now = accelerations(loads)
-        gains = np.array([(accelerations(loads + 100.0 * row) - now) / 100.0 for row in np.eye(3)]).T
+        gains = np.array(
+            [(accelerations(loads + 100.0 * row) - now) / 100.0 for row in np.eye(3)]
+        ).T
         loads = loads + np.linalg.solve(gains, target - now)
     return {**lifted, **dict(zip(names, loads.tolist()))}
 
 
-def test_initial_values_depend_on_the_parameters_and_inputs_that_are_declared_and_on_no_other(description):
+def test_initial_values_depend_on_the_parameters_and_inputs_that_are_declared_and_on_no_other(
+    description,
+):
     found: dict[str, set[str]] = {name: set() for name in OUTPUT_NAMES}
     for mode, where in product(MODES, PARAMETER_QUANTITIES["vehicle.transverse_load_at"].choices):
         choice: dict[str, float | str] = {"drop.mode": mode, "vehicle.transverse_load_at": where}
         values = {**MOVED, **choice}
-        observe_parameters(values, {**LOADS, **deepest(values)}, lambda name, outputs: note(found, name, outputs))
+        observe_parameters(
+            values, {**LOADS, **deepest(values)}, lambda name, outputs: note(found, name, outputs)
+        )
         standing = {**STANDING, **choice}
         verge = on_the_verge(standing)
         assert dict(zip(OUTPUT_NAMES, start(standing, verge)))["status.phase"] == 2.0
-        observe_parameters(standing, verge, lambda name, outputs: note(found, name, outputs & {"status.phase"}))
+        observe_parameters(
+            standing, verge, lambda name, outputs: note(found, name, outputs & {"status.phase"})
+        )
         for leg in LEGS:
             active = f"leg[{leg}].contact.active"
             just = {**LOADS, **raised(values, leg, 1e-11)}
-            observe_parameters(values, just, lambda name, outputs, active=active: note(found, name, outputs & {active}))
+            observe_parameters(
+                values,
+                just,
+                lambda name, outputs, active=active: note(found, name, outputs & {active}),
+            )
         for begun, inputs in ((values, {}), (values, deepest(values)), (standing, verge)):
             landing = Landing(Parameters().with_values(begun))
             landing.set_inputs(inputs)
@@ -262,5 +310,7 @@ def test_initial_values_depend_on_the_parameters_and_inputs_that_are_declared_an
 
 
 def test_dependencies_stand_in_ascending_order(fmu):
-    for text in etree.fromstring(ZipFile(fmu).read("modelDescription.xml")).xpath("//Unknown/@dependencies"):
+    for text in etree.fromstring(ZipFile(fmu).read("modelDescription.xml")).xpath(
+        "//Unknown/@dependencies"
+    ):
         assert all(a < b for a, b in pairwise(int(number) for number in text.split()))

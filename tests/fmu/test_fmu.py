@@ -15,14 +15,23 @@ from fmpy.validation import validate_fmu
 
 from rlv_landing import Landing, __version__, load_preset
 from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_NAMES, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES
+from rlv_landing.quantities import (
+    INPUT_QUANTITIES,
+    OUTPUT_NAMES,
+    OUTPUT_QUANTITIES,
+    STATISTIC_QUANTITIES,
+)
 
 FIGURES = "yue2022-figures"
 
 
 def drop_values(mode: str) -> dict[str, float | str]:
     """What an importer sets to get the drop test of `mode`."""
-    return {name: value for name, value in load_preset(FIGURES, mode).items() if name.startswith("drop.")}
+    return {
+        name: value
+        for name, value in load_preset(FIGURES, mode).items()
+        if name.startswith("drop.")
+    }
 
 
 def test_fmpy_validate_reports_nothing(fmu):
@@ -44,7 +53,12 @@ def test_every_quantity_is_a_variable_with_its_unit_causality_and_start(descript
             v = variables[q.name]
             assert v.causality == causality
             assert v.description == q.meaning
-            assert v.type == {"real": "Real", "string": "String", "integer": "Integer", "boolean": "Boolean"}[q.kind]
+            assert (
+                v.type
+                == {"real": "Real", "string": "String", "integer": "Integer", "boolean": "Boolean"}[
+                    q.kind
+                ]
+            )
             assert v.unit == ((q.unit or "1") if q.kind == "real" else None)
             assert v.unit is None or v.unit in units
     for name, value in load_preset(FIGURES, "2-2").items():
@@ -65,7 +79,12 @@ def test_names_in_the_fmu_carry_the_version(fmu):
 def test_fmpy_simulate_gives_landings_numbers_at_any_communication_step(fmu, mode, step):
     """To 1e-9 of each quantity's largest value."""
     result = fmpy.simulate_fmu(
-        str(fmu), stop_time=1.0, step_size=step, output_interval=step, start_values=drop_values(mode), output=list(OUTPUT_NAMES)
+        str(fmu),
+        stop_time=1.0,
+        step_size=step,
+        output_interval=step,
+        start_values=drop_values(mode),
+        output=list(OUTPUT_NAMES),
     )
     landing = Landing(load_preset(FIGURES), mode)
     rows = []
@@ -101,11 +120,16 @@ def test_state_goes_back_and_forth_serialised_too(instance):
     saved = instance.slave.getFMUState()
     data = instance.slave.serializeFMUstate(saved)
     instance.steps(150, 400)
-    expected = [instance.get(n) for n in ("body.x", "body.y", "leg[3].main_strut.stroke", "energy.balance")]
+    expected = [
+        instance.get(n) for n in ("body.x", "body.y", "leg[3].main_strut.stroke", "energy.balance")
+    ]
     for state in (saved, instance.slave.deSerializeFMUstate(data)):
         instance.slave.setFMUState(state)
         instance.steps(150, 400)
-        assert [instance.get(n) for n in ("body.x", "body.y", "leg[3].main_strut.stroke", "energy.balance")] == expected
+        assert [
+            instance.get(n)
+            for n in ("body.x", "body.y", "leg[3].main_strut.stroke", "energy.balance")
+        ] == expected
     instance.slave.freeFMUState(saved)
 
 
@@ -131,7 +155,10 @@ def test_bad_input_is_refused_with_a_reason_and_the_landing_goes_on_after(instan
     instance.set("external.force_x", value)
     with pytest.raises(FMICallException, match="discard"):
         instance.slave.doStep(10e-3, 1e-3)
-    assert any("external.force_x" in message and "[-1e+07, 1e+07] N" in message for _, message in instance.log)
+    assert any(
+        "external.force_x" in message and "[-1e+07, 1e+07] N" in message
+        for _, message in instance.log
+    )
     instance.set("external.force_x", 0.0)
     instance.steps(10, 20)
     landing = Landing()
@@ -139,7 +166,10 @@ def test_bad_input_is_refused_with_a_reason_and_the_landing_goes_on_after(instan
     assert instance.get("body.y") == landing.get("body.y")
 
 
-@pytest.mark.parametrize(("time", "step"), [(10e-3, 0.0), (10e-3, -1e-3), (10e-3, float("nan")), (5e-3, 1e-3), (0.5, 1e-3)])
+@pytest.mark.parametrize(
+    ("time", "step"),
+    [(10e-3, 0.0), (10e-3, -1e-3), (10e-3, float("nan")), (5e-3, 1e-3), (0.5, 1e-3)],
+)
 def test_bad_steps_are_refused_with_a_reason_and_the_landing_goes_on_after(instance, time, step):
     instance.start()
     instance.steps(0, 10)
@@ -166,11 +196,17 @@ print(third_party, " ".join(v.hex() for v in slave.get_real(slave._output_refere
 
 @pytest.mark.parametrize("pure", ["0", "1"])
 def test_the_fmu_needs_no_package_of_the_host_and_falls_back_to_the_pure_core(fmu, tmp_path, pure):
-    """A Python without site-packages runs the slave; compiled and pure core give `Landing`'s digits."""
+    """A Python without site-packages runs the slave; compiled and pure core give `Landing`'s
+    digits.
+    """
     fmpy.extract(str(fmu), str(tmp_path))
     environment = {**os.environ, "RLV_LANDING_PURE": pure}
     done = subprocess.run(
-        [sys.executable, "-S", "-c", HOST, str(tmp_path / "resources")], capture_output=True, text=True, env=environment, timeout=120
+        [sys.executable, "-S", "-c", HOST, str(tmp_path / "resources")],
+        capture_output=True,
+        text=True,
+        env=environment,
+        timeout=120,
     )
     assert done.returncode == 0, done.stderr
     landing = Landing()

@@ -12,7 +12,14 @@ from fmu_instance import DISCARD, OK
 
 from rlv_landing import Landing
 
-SEEN = ("body.x", "body.y", "body.pitch", "energy.work_external", "energy.work_ground", "leg[1].main_strut.force")
+SEEN = (
+    "body.x",
+    "body.y",
+    "body.pitch",
+    "energy.work_external",
+    "energy.work_ground",
+    "leg[1].main_strut.force",
+)
 FORCE, MOMENT, HEAVE = "external.force_x", "external.moment", "ground.heave"
 
 
@@ -100,7 +107,9 @@ def test_pending_values_and_rates_are_part_of_the_state(instance):
 
 
 @pytest.mark.parametrize("interpolated", [True, False])
-def test_fmpys_interpolated_input_lands_on_the_exact_ramp_where_a_held_one_does_not(instance, description, interpolated):
+def test_fmpys_interpolated_input_lands_on_the_exact_ramp_where_a_held_one_does_not(
+    instance, description, interpolated
+):
     """A side load that grows by 800 N/s, in 10 ms steps."""
     signal = np.array([(-1.0, -800.0), (1.0, 800.0)], dtype=[("time", float), (FORCE, float)])
     ramp = Input(instance.slave, description, signal, set_input_derivatives=interpolated)

@@ -19,12 +19,25 @@ SEEN = ("body.x", "body.y", "body.pitch")
 
 @pytest.fixture
 def run(host, unpacked, description):
-    """Runs a C host with an environment of its own, or of a Python library; None where this machine has no such library."""
+    """Runs a C host with an environment of its own, or of a Python library; None where this machine
+    has no such library.
+    """
 
     def hosted(name: str, *arguments: object, library: str = "") -> str:
-        command = [host(name), unpacked / "binaries" / "linux64" / "RlvLanding.so", (unpacked / "resources").as_uri(), description.guid]
+        command = [
+            host(name),
+            unpacked / "binaries" / "linux64" / "RlvLanding.so",
+            (unpacked / "resources").as_uri(),
+            description.guid,
+        ]
         environment = BARE | ({"RLV_LANDING_LIBPYTHON": library} if library else {})
-        done = subprocess.run([*command, *map(str, arguments)], capture_output=True, text=True, env=environment, timeout=240)
+        done = subprocess.run(
+            [*command, *map(str, arguments)],
+            capture_output=True,
+            text=True,
+            env=environment,
+            timeout=240,
+        )
         assert done.returncode == (0 if python_libraries() else 1), done.stdout + done.stderr
         return done.stdout
 
@@ -42,7 +55,9 @@ def test_instances_in_eight_threads_of_a_c_host_land_like_landing(run, descripti
     landing.advance_to(119 * 1e-3 + 1e-3)
     assert len(lines) == 16
     for line in lines:
-        assert [float.fromhex(v) for v in line.split()] == pytest.approx([landing.get(n) for n in SEEN], rel=1e-9, abs=1e-9)
+        assert [float.fromhex(v) for v in line.split()] == pytest.approx(
+            [landing.get(n) for n in SEEN], rel=1e-9, abs=1e-9
+        )
 
 
 @pytest.mark.parametrize("with_state", [0, 1])
@@ -119,7 +134,9 @@ print("landed again", flush=True)
 def test_ctrl_c_reaches_the_hosts_python_and_the_instance_can_be_reset(unpacked):
     for _ in range(5):
         command = [sys.executable, "-c", STEPPING, str(Path(__file__).parent), str(unpacked)]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        with subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        ) as process:
             assert process.stdout is not None
             assert process.stdout.readline() == "stepping\n"
             process.send_signal(signal.SIGINT)

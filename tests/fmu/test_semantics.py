@@ -1,4 +1,6 @@
-"""What the FMU does with calls that are wrong: a status, a reason in the log, and an instance that goes on."""
+"""What the FMU does with calls that are wrong: a status, a reason in the log, and an instance that
+goes on.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,9 @@ def assert_lands_as_ever(instance: Instance, first: int = 0) -> None:
     landing = Landing()
     landing.advance_to((first + 19) * 1e-3 + 1e-3)
     vrs = [instance.vr[n] for n in ("body.x", "body.pitch", "leg[2].footpad.y")]
-    assert instance.slave.getReal(vrs) == [landing.get(n) for n in ("body.x", "body.pitch", "leg[2].footpad.y")]
+    assert instance.slave.getReal(vrs) == [
+        landing.get(n) for n in ("body.x", "body.pitch", "leg[2].footpad.y")
+    ]
 
 
 # -- initialisation
@@ -46,7 +50,9 @@ BAD_PARAMETERS = [
 
 
 @pytest.mark.parametrize(("name", "value", "reason"), BAD_PARAMETERS)
-def test_bad_start_value_is_an_error_with_its_reason_and_others_may_be_set_at_once(instance, name, value, reason):
+def test_bad_start_value_is_an_error_with_its_reason_and_others_may_be_set_at_once(
+    instance, name, value, reason
+):
     good = instance.get(name)
     with pytest.raises(FMICallException, match="error"):
         instance.start(**{name: value})
@@ -107,17 +113,33 @@ def test_calls_out_of_order_are_errors_that_say_so_and_change_nothing(instance):
     before, during = "before fmi2EnterInitializationMode", "in initialization mode"
     after, ended = "after fmi2ExitInitializationMode", "after fmi2Terminate"
     setup = (0, c_double(0.0), c_double(0.0), 0, c_double(0.0))
-    for function, arguments in (("fmi2DoStep", step), ("fmi2ExitInitializationMode", ()), ("fmi2Terminate", ())):
+    for function, arguments in (
+        ("fmi2DoStep", step),
+        ("fmi2ExitInitializationMode", ()),
+        ("fmi2Terminate", ()),
+    ):
         refused(function, before, *arguments)
     instance.slave.enterInitializationMode()
-    for function, arguments in (("fmi2DoStep", step), ("fmi2EnterInitializationMode", ()), ("fmi2SetupExperiment", setup)):
+    for function, arguments in (
+        ("fmi2DoStep", step),
+        ("fmi2EnterInitializationMode", ()),
+        ("fmi2SetupExperiment", setup),
+    ):
         refused(function, during, *arguments)
     instance.slave.exitInitializationMode()
-    for function, arguments in (("fmi2EnterInitializationMode", ()), ("fmi2ExitInitializationMode", ()), ("fmi2SetupExperiment", setup)):
+    for function, arguments in (
+        ("fmi2EnterInitializationMode", ()),
+        ("fmi2ExitInitializationMode", ()),
+        ("fmi2SetupExperiment", setup),
+    ):
         refused(function, after, *arguments)
     assert_lands_as_ever(instance)
     instance.slave.terminate()
-    for function, arguments in (("fmi2DoStep", step), ("fmi2Terminate", ()), ("fmi2SetReal", (refs(0), 1, reals(0.0)))):
+    for function, arguments in (
+        ("fmi2DoStep", step),
+        ("fmi2Terminate", ()),
+        ("fmi2SetReal", (refs(0), 1, reals(0.0))),
+    ):
         refused(function, ended, *arguments)
     assert instance.get("body.y") < 3.0
     instance.slave.reset()
@@ -131,13 +153,19 @@ def test_parameters_are_fixed_after_initialisation_and_outputs_are_never_set(ins
     assert "body.y is no parameter or input" in instance.reason()
     instance.start()
     assert instance.status("fmi2SetReal", refs(instance.vr["ground.friction"]), 1, value) == ERROR
-    assert "ground.friction is a fixed parameter: set it before fmi2ExitInitializationMode, or reset" in instance.reason()
+    assert (
+        "ground.friction is a fixed parameter: set it before fmi2ExitInitializationMode, or reset"
+        in instance.reason()
+    )
     assert_lands_as_ever(instance)
 
 
 @pytest.mark.parametrize("start", [math.nan, math.inf])
 def test_start_time_must_be_finite(instance, start):
-    assert instance.status("fmi2SetupExperiment", 0, c_double(0.0), c_double(start), 0, c_double(0.0)) == ERROR
+    assert (
+        instance.status("fmi2SetupExperiment", 0, c_double(0.0), c_double(start), 0, c_double(0.0))
+        == ERROR
+    )
     assert "startTime" in instance.reason()
 
 
@@ -152,39 +180,107 @@ def bad_arguments(vr):
         ("fmi2SetReal", (one, 1, None), "fmi2SetReal: value is NULL"),
         ("fmi2GetReal", (None, 1, reals(0.0)), "fmi2GetReal: vr is NULL"),
         ("fmi2GetReal", (one, 1, None), "fmi2GetReal: value is NULL"),
-        ("fmi2GetReal", (refs(100_000), 1, reals(0.0)), "value reference 100000 is not one of 0 to"),
-        ("fmi2SetReal", (refs(2**32 - 1), 1, reals(0.0)), "value reference 4294967295 is not one of 0 to"),
-        ("fmi2SetReal", (refs(2_000_000), 1, reals(0.0)), "value reference 2000000 is not one of 0 to"),
-        ("fmi2SetReal", (text, 1, reals(0.0)), f"drop.mode (value reference {vr[TEXT]}) is a String"),
+        (
+            "fmi2GetReal",
+            (refs(100_000), 1, reals(0.0)),
+            "value reference 100000 is not one of 0 to",
+        ),
+        (
+            "fmi2SetReal",
+            (refs(2**32 - 1), 1, reals(0.0)),
+            "value reference 4294967295 is not one of 0 to",
+        ),
+        (
+            "fmi2SetReal",
+            (refs(2_000_000), 1, reals(0.0)),
+            "value reference 2000000 is not one of 0 to",
+        ),
+        (
+            "fmi2SetReal",
+            (text, 1, reals(0.0)),
+            f"drop.mode (value reference {vr[TEXT]}) is a String",
+        ),
         ("fmi2GetReal", (text, 1, reals(0.0)), "is a String"),
         ("fmi2SetInteger", (one, 1, (c_int * 1)(0)), "is a Real"),
         ("fmi2GetInteger", (one, 1, (c_int * 1)(0)), "is a Real"),
         ("fmi2SetBoolean", (one, 1, (c_int * 1)(0)), "is a Real"),
         ("fmi2GetBoolean", (refs(vr["status.phase"]), 1, (c_int * 1)(0)), "is an Integer"),
-        ("fmi2SetBoolean", (refs(vr["leg[1].contact.active"]), 1, (c_int * 1)(1)), "is no parameter or input"),
+        (
+            "fmi2SetBoolean",
+            (refs(vr["leg[1].contact.active"]), 1, (c_int * 1)(1)),
+            "is no parameter or input",
+        ),
         ("fmi2GetString", (one, 1, (c_char_p * 1)()), "is a Real"),
         ("fmi2SetString", (text, 1, (c_char_p * 1)(None)), "the value of drop.mode is NULL"),
-        ("fmi2SetString", (text, 1, (c_char_p * 1)(b"\xff\xfe")), "the value of drop.mode is not UTF-8"),
-        ("fmi2SetString", (text, 1, (c_char_p * 1)(b"\xed\xa0\x80")), "the value of drop.mode is not UTF-8"),
+        (
+            "fmi2SetString",
+            (text, 1, (c_char_p * 1)(b"\xff\xfe")),
+            "the value of drop.mode is not UTF-8",
+        ),
+        (
+            "fmi2SetString",
+            (text, 1, (c_char_p * 1)(b"\xed\xa0\x80")),
+            "the value of drop.mode is not UTF-8",
+        ),
         ("fmi2GetFMUstate", (None,), "fmi2GetFMUstate: FMUstate is NULL"),
         ("fmi2SetFMUstate", (None,), "fmi2SetFMUstate: FMUstate is NULL"),
         ("fmi2SetFMUstate", (c_void_p(4096),), "FMUstate is no state of this FMU, or was freed"),
-        ("fmi2FreeFMUstate", (byref(c_void_p(4096)),), "FMUstate is no state of this FMU, or was freed"),
+        (
+            "fmi2FreeFMUstate",
+            (byref(c_void_p(4096)),),
+            "FMUstate is no state of this FMU, or was freed",
+        ),
         ("fmi2SerializedFMUstateSize", (state, byref(size)), "FMUstate is NULL"),
-        ("fmi2SerializeFMUstate", (c_void_p(4096), (fmi2.fmi2Byte * 4)(), 4), "FMUstate is no state of this FMU, or was freed"),
+        (
+            "fmi2SerializeFMUstate",
+            (c_void_p(4096), (fmi2.fmi2Byte * 4)(), 4),
+            "FMUstate is no state of this FMU, or was freed",
+        ),
         ("fmi2DeSerializeFMUstate", (None, 4, byref(state)), "serializedState is NULL"),
         ("fmi2DeSerializeFMUstate", ((fmi2.fmi2Byte * 4)(), 4, None), "FMUstate is NULL"),
         ("fmi2SetDebugLogging", (1, 1, None), "categories is NULL"),
-        ("fmi2SetDebugLogging", (1, 1, (c_char_p * 1)(b"logNonsense")), "logNonsense is no log category of this FMU"),
-        ("fmi2SetDebugLogging", (1, 1, (c_char_p * 1)(None)), "NULL is no log category of this FMU"),
+        (
+            "fmi2SetDebugLogging",
+            (1, 1, (c_char_p * 1)(b"logNonsense")),
+            "logNonsense is no log category of this FMU",
+        ),
+        (
+            "fmi2SetDebugLogging",
+            (1, 1, (c_char_p * 1)(None)),
+            "NULL is no log category of this FMU",
+        ),
         ("fmi2GetRealStatus", (2, None), "value is NULL"),
         ("fmi2SetRealInputDerivatives", (one, 1, None, reals(0.0)), "order is NULL"),
-        ("fmi2SetRealInputDerivatives", (one, 1, (c_int * 1)(2), reals(0.0)), "only the first derivative is taken"),
-        ("fmi2SetRealInputDerivatives", (one, 1, (c_int * 1)(0), reals(0.0)), "only the first derivative is taken"),
-        ("fmi2SetRealInputDerivatives", (refs(vr["body.y"]), 1, (c_int * 1)(1), reals(0.0)), "body.y is no input"),
-        ("fmi2SetRealInputDerivatives", (refs(vr["ground.friction"]), 1, (c_int * 1)(1), reals(0.0)), "ground.friction is no input"),
-        ("fmi2GetRealOutputDerivatives", (refs(vr["body.y"]), 1, (c_int * 1)(1), reals(0.0)), "this FMU has no derivatives of outputs"),
-        ("fmi2GetDirectionalDerivative", (one, 1, one, 1, reals(1.0), reals(1.0)), "this FMU has no directional derivatives"),
+        (
+            "fmi2SetRealInputDerivatives",
+            (one, 1, (c_int * 1)(2), reals(0.0)),
+            "only the first derivative is taken",
+        ),
+        (
+            "fmi2SetRealInputDerivatives",
+            (one, 1, (c_int * 1)(0), reals(0.0)),
+            "only the first derivative is taken",
+        ),
+        (
+            "fmi2SetRealInputDerivatives",
+            (refs(vr["body.y"]), 1, (c_int * 1)(1), reals(0.0)),
+            "body.y is no input",
+        ),
+        (
+            "fmi2SetRealInputDerivatives",
+            (refs(vr["ground.friction"]), 1, (c_int * 1)(1), reals(0.0)),
+            "ground.friction is no input",
+        ),
+        (
+            "fmi2GetRealOutputDerivatives",
+            (refs(vr["body.y"]), 1, (c_int * 1)(1), reals(0.0)),
+            "this FMU has no derivatives of outputs",
+        ),
+        (
+            "fmi2GetDirectionalDerivative",
+            (one, 1, one, 1, reals(1.0), reals(1.0)),
+            "this FMU has no directional derivatives",
+        ),
         ("fmi2CancelStep", (), "no step is pending"),
     ]
 
@@ -222,7 +318,10 @@ def test_calls_without_an_instance_are_errors(instance):
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        ({"guid": b"{00000000-0000-0000-0000-000000000000}"}, "description and binary are of different builds"),
+        (
+            {"guid": b"{00000000-0000-0000-0000-000000000000}"},
+            "description and binary are of different builds",
+        ),
         ({"guid": None}, "fmuGUID is NULL"),
         ({"name": None}, "instanceName is NULL"),
         ({"name": b"\xff"}, "instanceName is not UTF-8"),
@@ -233,7 +332,9 @@ def test_calls_without_an_instance_are_errors(instance):
         ({"resources": b"file:///" + b"x" * 10_000}, "no slavemodule.txt there"),
     ],
 )
-def test_an_instance_that_cannot_be_is_null_with_the_reason_logged(instance, unpacked, description, change, reason):
+def test_an_instance_that_cannot_be_is_null_with_the_reason_logged(
+    instance, unpacked, description, change, reason
+):
     good = {
         "name": b"one",
         "kind": fmi2.fmi2CoSimulation,
@@ -242,14 +343,24 @@ def test_an_instance_that_cannot_be_is_null_with_the_reason_logged(instance, unp
     }
     arguments = good | change
     instantiate = instance.slave.dll.fmi2Instantiate
-    made = instantiate(arguments["name"], arguments["kind"], arguments["guid"], arguments["resources"], byref(instance.callbacks), 0, 1)
+    made = instantiate(
+        arguments["name"],
+        arguments["kind"],
+        arguments["guid"],
+        arguments["resources"],
+        byref(instance.callbacks),
+        0,
+        1,
+    )
     assert not made
     assert reason in instance.reason()
     assert instance.log[-1][0] == ERROR
 
 
 def test_a_host_without_callbacks_is_told_on_standard_error(instance, capfd):
-    assert not instance.slave.dll.fmi2Instantiate(b"mute", fmi2.fmi2CoSimulation, b"wrong", b"file:///x", None, 0, 1)
+    assert not instance.slave.dll.fmi2Instantiate(
+        b"mute", fmi2.fmi2CoSimulation, b"wrong", b"file:///x", None, 0, 1
+    )
     assert "RlvLanding (mute): fmi2Instantiate: fmuGUID = wrong" in capfd.readouterr().err
 
 
@@ -329,7 +440,10 @@ def test_results_are_the_same_for_steps_from_10_us_to_100_ms_in_any_order(make):
         vrs, time, found = [instance.vr[n] for n in reals], 0.0, []
         for k in range(1, 11):
             if longest == 1e-5:
-                times = [*(k * 0.1 - 0.1 + 1e-5 * generator.uniform(1.0, 2.0, 200).cumsum()), k * 0.1]
+                times = [
+                    *(k * 0.1 - 0.1 + 1e-5 * generator.uniform(1.0, 2.0, 200).cumsum()),
+                    k * 0.1,
+                ]
             else:
                 cuts = generator.uniform(k * 0.1 - 0.1, k * 0.1, int(0.1 / longest))
                 times = [*np.unique(cuts), k * 0.1]
@@ -338,7 +452,10 @@ def test_results_are_the_same_for_steps_from_10_us_to_100_ms_in_any_order(make):
                     instance.slave.doStep(time, goal - time)
                     time = goal
             found.append(instance.slave.getReal(vrs))
-        assert np.all(np.abs(np.array(found) - expected) <= 1e-9 * np.maximum(1.0, np.abs(expected).max(axis=0)))
+        assert np.all(
+            np.abs(np.array(found) - expected)
+            <= 1e-9 * np.maximum(1.0, np.abs(expected).max(axis=0))
+        )
 
 
 # -- the importer's tolerance
@@ -351,7 +468,9 @@ def test_the_importers_tolerance_is_the_integrators(instance):
     instance.steps(0, 300)
     landing = Landing(rtol=1e-8)
     landing.advance_to(299e-3 + 1e-3)
-    assert [instance.get(n) for n in ("body.x", "energy.balance")] == [landing.get(n) for n in ("body.x", "energy.balance")]
+    assert [instance.get(n) for n in ("body.x", "energy.balance")] == [
+        landing.get(n) for n in ("body.x", "energy.balance")
+    ]
 
 
 def test_a_tolerance_that_the_integrator_does_not_know_is_an_error(instance):
@@ -386,12 +505,18 @@ def read_one_by_one(instance: Instance) -> list[float]:
     """All outputs, each by its own call of the function of its type."""
     found = []
     for q in OUTPUT_QUANTITIES:
-        read = {"real": instance.slave.getReal, "integer": instance.slave.getInteger, "boolean": instance.slave.getBoolean}[q.kind]
+        read = {
+            "real": instance.slave.getReal,
+            "integer": instance.slave.getInteger,
+            "boolean": instance.slave.getBoolean,
+        }[q.kind]
         found += read([instance.vr[q.name]])
     return found
 
 
-def test_outputs_are_those_of_the_present_however_often_and_in_whatever_order_they_are_read(instance):
+def test_outputs_are_those_of_the_present_however_often_and_in_whatever_order_they_are_read(
+    instance,
+):
     landing = Landing()
     instance.start()
     assert read_one_by_one(instance) == landing.values()
@@ -411,7 +536,12 @@ def test_outputs_are_those_of_the_present_however_often_and_in_whatever_order_th
     assert read_one_by_one(instance) == before
     mixed = [instance.vr[name] for name in ("body.y", REAL, "vehicle.mass", "body.x")]
     body = dict(zip(OUTPUT_NAMES, before))
-    assert instance.slave.getReal(mixed) == [body["body.y"], 0.0, Landing().parameters["vehicle.mass"], body["body.x"]]
+    assert instance.slave.getReal(mixed) == [
+        body["body.y"],
+        0.0,
+        Landing().parameters["vehicle.mass"],
+        body["body.x"],
+    ]
     instance.slave.terminate()
     instance.slave.reset()
     assert instance.get("body.y") == Landing().get("body.y")
@@ -424,11 +554,15 @@ def test_the_solver_tells_what_it_has_done_and_a_state_holds_it(instance):
     instance.steps(0, 200)
     landing.advance_to(199e-3 + 1e-3)
     told = instance.slave.getInteger([instance.vr[name] for name in names])
-    assert dict(zip(names, told)) == {f"solver.{name}": count for name, count in landing.statistics.items()}
+    assert dict(zip(names, told)) == {
+        f"solver.{name}": count for name, count in landing.statistics.items()
+    }
     assert told[0] > 0
     state = instance.slave.getFMUState()
     instance.steps(200, 250)
     instance.slave.setFMUState(state)
     assert instance.slave.getInteger([instance.vr[name] for name in names]) == told
-    assert instance.status("fmi2SetInteger", refs(instance.vr[names[0]]), 1, (c_int * 1)(0)) == ERROR
+    assert (
+        instance.status("fmi2SetInteger", refs(instance.vr[names[0]]), 1, (c_int * 1)(0)) == ERROR
+    )
     assert "solver.steps is no parameter or input" in instance.reason()

@@ -1,4 +1,6 @@
-"""The FMU's whole state: taken, restored, turned to bytes, taken up by another process, and bytes that are no state."""
+"""The FMU's whole state: taken, restored, turned to bytes, taken up by another process, and bytes
+that are no state.
+"""
 
 from __future__ import annotations
 
@@ -45,7 +47,9 @@ def data(instance) -> bytes:
 
 def deserialise(instance, data: bytes) -> tuple[int, c_void_p]:
     state = c_void_p()
-    return instance.status("fmi2DeSerializeFMUstate", (fmi2.fmi2Byte * len(data))(*data), len(data), byref(state)), state
+    return instance.status(
+        "fmi2DeSerializeFMUstate", (fmi2.fmi2Byte * len(data))(*data), len(data), byref(state)
+    ), state
 
 
 def checksum(data: bytes) -> int:
@@ -67,7 +71,15 @@ def test_another_process_goes_on_with_the_very_same_digits(instance, data, unpac
     instance.steps(150, 400)
     file = tmp_path / "state"
     file.write_bytes(data)
-    command = [sys.executable, "-c", OTHER_PROCESS, str(Path(__file__).parent), str(unpacked), str(file), *SEEN]
+    command = [
+        sys.executable,
+        "-c",
+        OTHER_PROCESS,
+        str(Path(__file__).parent),
+        str(unpacked),
+        str(file),
+        *SEEN,
+    ]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr
     assert done.stdout.split() == [instance.get(name).hex() for name in SEEN]
@@ -82,7 +94,9 @@ def test_bytes_are_no_program(data):
 
 def test_damaged_bytes_are_an_error_with_a_reason_and_the_landing_goes_on(instance, data):
     generator = random.Random(1)
-    bad = [data[:n] for n in (0, 1, 8, HEADER.size - 1, HEADER.size, HEADER.size + 1, len(data) - 1)]
+    bad = [
+        data[:n] for n in (0, 1, 8, HEADER.size - 1, HEADER.size, HEADER.size + 1, len(data) - 1)
+    ]
     bad += [generator.randbytes(n) for n in (1, 100, 10_000)]
     for _ in range(60):
         at = generator.randrange(len(data))
@@ -118,7 +132,9 @@ def test_a_state_of_another_build_is_refused_by_name(instance, data):
         b"[" * 100_000,
     ],
 )
-def test_content_that_is_no_state_is_an_error_with_a_reason_and_changes_nothing(instance, data, content):
+def test_content_that_is_no_state_is_an_error_with_a_reason_and_changes_nothing(
+    instance, data, content
+):
     good = json.loads(data[HEADER.size :])
     changed = {
         b"NUMBERS": good | {"landing": ["a"] * len(good["landing"])},
@@ -165,7 +181,9 @@ def test_bytes_need_room(instance):
     assert instance.status("fmi2SerializedFMUstateSize", state, byref(size)) == OK
     room = (fmi2.fmi2Byte * size.value)()
     assert instance.status("fmi2SerializeFMUstate", state, room, size.value - 1) == ERROR
-    assert f"size = {size.value - 1} bytes is too small, {size.value} are needed" in instance.reason()
+    assert (
+        f"size = {size.value - 1} bytes is too small, {size.value} are needed" in instance.reason()
+    )
     assert instance.status("fmi2SerializeFMUstate", state, room, size.value) == OK
 
 
@@ -191,7 +209,11 @@ def test_a_landing_that_has_broken_off_says_so_until_a_state_is_restored(instanc
     instance.start()
     instance.steps(0, 150)
     good, time, failed = instance.slave.getFMUState(), 0.15, OK
-    for name, value in (("external.force_x", 1e7), ("external.force_y", -1e7), ("external.moment", 1e7)):
+    for name, value in (
+        ("external.force_x", 1e7),
+        ("external.force_y", -1e7),
+        ("external.moment", 1e7),
+    ):
         instance.set(name, value)
     while failed == OK and time < 1.0:
         failed = instance.step(time, 1e-3)
@@ -200,7 +222,15 @@ def test_a_landing_that_has_broken_off_says_so_until_a_state_is_restored(instanc
     assert "step size has collapsed" in instance.reason()
     assert "the landing has ended there: restore a state, or reset" in instance.reason()
     assert instance.step(time - 1e-3, 1e-3) == ERROR
-    assert instance.status("fmi2GetReal", (fmi2.fmi2ValueReference * 1)(instance.vr["body.y"]), 1, (fmi2.fmi2Real * 1)()) == ERROR
+    assert (
+        instance.status(
+            "fmi2GetReal",
+            (fmi2.fmi2ValueReference * 1)(instance.vr["body.y"]),
+            1,
+            (fmi2.fmi2Real * 1)(),
+        )
+        == ERROR
+    )
     instance.slave.setFMUState(good)
     instance.steps(150, 160)
     landing = Landing()

@@ -1,4 +1,6 @@
-"""The FMU's Windows library, read by objdump: the front where mingw-w64 is on this machine, else pythonfmu's own."""
+"""The FMU's Windows library, read by objdump: the front where mingw-w64 is on this machine, else
+pythonfmu's own.
+"""
 
 import re
 import shutil
@@ -11,7 +13,9 @@ import pythonfmu
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 OF_WINDOWS = {"kernel32.dll", "advapi32.dll", "shell32.dll", "msvcrt.dll", "ucrtbase.dll"}
-STOCK = Path(pythonfmu.__file__).parent / "resources" / "binaries" / "win64" / "pythonfmu-export.dll"
+STOCK = (
+    Path(pythonfmu.__file__).parent / "resources" / "binaries" / "win64" / "pythonfmu-export.dll"
+)
 
 
 @pytest.fixture
@@ -36,11 +40,13 @@ def files(unpacked, tmp_path) -> Path:
 
 def tables(library: Path) -> tuple[set[str], set[str]]:
     """The names that a DLL exports, and the libraries that it needs."""
-    text = subprocess.run(["objdump", "-p", library], capture_output=True, text=True, check=True).stdout
+    text = subprocess.run(
+        ["objdump", "-p", library], capture_output=True, text=True, check=True
+    ).stdout
     imports, exports = text.split("[Ordinal/Name Pointer] Table", 1)
-    return set(re.findall(r"^\s*\[ *\d+\] (?:\+base\[ *\d+\] +[0-9a-f]+ )?(\S+)$", exports, re.M)), {
-        name.lower() for name in re.findall(r"DLL Name: (\S+)", imports)
-    }
+    return set(
+        re.findall(r"^\s*\[ *\d+\] (?:\+base\[ *\d+\] +[0-9a-f]+ )?(\S+)$", exports, re.M)
+    ), {name.lower() for name in re.findall(r"DLL Name: (\S+)", imports)}
 
 
 def test_without_mingw_the_windows_library_is_pythonfmus_own(fmu_binary, files, monkeypatch):
@@ -51,11 +57,17 @@ def test_without_mingw_the_windows_library_is_pythonfmus_own(fmu_binary, files, 
 
 
 def test_windows_library_exports_what_linuxs_does_and_needs_windows_only(fmu_binary, files):
-    """With mingw-w64 on this machine. Without it the library is pythonfmu's, which has the functions too, and needs Python."""
+    """With mingw-w64 on this machine.
+
+    Without it the library is pythonfmu's, which has the functions too, and needs Python.
+    """
     fmu_binary.replace_binaries(files)
     exports, needs = tables(files / "binaries" / "win64" / "RlvLanding.dll")
     listed = subprocess.run(
-        ["nm", "-D", "--defined-only", files / "binaries" / "linux64" / "RlvLanding.so"], capture_output=True, text=True, check=True
+        ["nm", "-D", "--defined-only", files / "binaries" / "linux64" / "RlvLanding.so"],
+        capture_output=True,
+        text=True,
+        check=True,
     )
     of_linux = {line.split()[-1] for line in listed.stdout.splitlines()}
     assert len(of_linux) == 34
@@ -70,7 +82,9 @@ def test_windows_library_exports_what_linuxs_does_and_needs_windows_only(fmu_bin
     assert beside[0].name.encode() in (files / "binaries" / "win64" / "RlvLanding.dll").read_bytes()
 
 
-def test_the_front_for_windows_compiles_without_a_warning_or_names_the_missing_compiler(fmu_binary, unpacked, tmp_path, monkeypatch):
+def test_the_front_for_windows_compiles_without_a_warning_or_names_the_missing_compiler(
+    fmu_binary, unpacked, tmp_path, monkeypatch
+):
     root = ElementTree.parse(unpacked / "modelDescription.xml").getroot()
     (tmp_path / "variables.h").write_text(fmu_binary.variables_header(root, "stock.dll"))
     monkeypatch.setattr(fmu_binary, "FLAGS", [*fmu_binary.FLAGS, "-Werror", "-Wpedantic"])

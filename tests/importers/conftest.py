@@ -24,16 +24,28 @@ Landed = Callable[..., np.ndarray]
 
 @pytest.fixture
 def landed_by(fmu: Path, ecos_environment: dict[str, str], tmp_path: Path) -> Landed:
-    """`landed_by(host, job, outputs, file)`: the rows that `hosts/with_HOST.py` gives of the FMU `file`, by default the built one."""
+    """`landed_by(host, job, outputs, file)`: the rows that `hosts/with_HOST.py` gives of the FMU
+    `file`, by default the built one.
+    """
 
-    def run(name: str, job: Job, outputs: Sequence[str] = OUTPUT_NAMES, file: Path = fmu) -> np.ndarray:
+    def run(
+        name: str, job: Job, outputs: Sequence[str] = OUTPUT_NAMES, file: Path = fmu
+    ) -> np.ndarray:
         (tmp_path / "job.json").write_text(json.dumps(job.told(outputs)), encoding="utf-8")
         environment = ecos_environment
         if name == "cofmupy":
             assert COFMUPY.is_dir(), f"{COFMUPY} is missing: run make build/cofmupy/.packages"
             environment = {**ecos_environment, "PYTHONPATH": str(COFMUPY)}
-        command = [sys.executable, str(HOSTS / f"with_{name}.py"), str(file), "job.json", "result.npy"]
-        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300)
+        command = [
+            sys.executable,
+            str(HOSTS / f"with_{name}.py"),
+            str(file),
+            "job.json",
+            "result.npy",
+        ]
+        done = subprocess.run(
+            command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300
+        )
         assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
         return np.load(tmp_path / "result.npy")
 

@@ -1,4 +1,6 @@
-"""The landings that every importer is asked for, and what `Landing` makes of them at the importer's own communication points."""
+"""The landings that every importer is asked for, and what `Landing` makes of them at the importer's
+own communication points.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,9 @@ from rlv_landing.quantities import OUTPUT_NAMES, OUTPUT_QUANTITIES
 
 @dataclass(frozen=True)
 class Job:
-    """A landing with these parameters; the inputs are 0 up to the end of step `inputs_after`, and constant from there."""
+    """A landing with these parameters; the inputs are 0 up to the end of step `inputs_after`, and
+    constant from there.
+    """
 
     parameters: dict[str, float | str] = field(default_factory=dict)
     inputs: dict[str, float] = field(default_factory=dict)
@@ -23,7 +27,10 @@ class Job:
 
     def told(self, outputs: Sequence[str] = OUTPUT_NAMES) -> dict[str, object]:
         """What a host is told."""
-        return {**asdict(self), "outputs": {q.name: q.kind for q in OUTPUT_QUANTITIES if q.name in outputs}}
+        return {
+            **asdict(self),
+            "outputs": {q.name: q.kind for q in OUTPUT_QUANTITIES if q.name in outputs},
+        }
 
     def landed(self, times: np.ndarray) -> np.ndarray:
         """All outputs of `Landing` at `times`, the ends of the steps, a row each."""
@@ -39,11 +46,20 @@ class Job:
 
 def drop_of(mode: str) -> dict[str, float | str]:
     """The parameters of the drop test of `mode`, the string `drop.mode` among them."""
-    return {name: value for name, value in load_preset("yue2022-figures", mode).items() if name.startswith("drop.")}
+    return {
+        name: value
+        for name, value in load_preset("yue2022-figures", mode).items()
+        if name.startswith("drop.")
+    }
 
 
 # heave and tilt are set in the flight: the deck has moved before the first footpad meets it
-LOADS_AND_DECK = {"external.force_x": 400.0, "external.moment": 30.0, "ground.heave": 0.005, "ground.tilt": 0.01}
+LOADS_AND_DECK = {
+    "external.force_x": 400.0,
+    "external.moment": 30.0,
+    "ground.heave": 0.005,
+    "ground.tilt": 0.01,
+}
 SLIPPERY = Job({"ground.friction": 0.05, "vehicle.mass": 200.0}, LOADS_AND_DECK)
 JOBS = {
     "2-2, slippery, loads, moved deck": SLIPPERY,
@@ -51,8 +67,12 @@ JOBS = {
 }
 
 
-def assert_same(result: np.ndarray, job: Job, outputs: Sequence[str] = OUTPUT_NAMES, rounding: float = 0.0) -> None:
-    """`result` (time, outputs) is the job's landing within 1e-9 of each quantity's largest value, and a text writer's `rounding`."""
+def assert_same(
+    result: np.ndarray, job: Job, outputs: Sequence[str] = OUTPUT_NAMES, rounding: float = 0.0
+) -> None:
+    """`result` (time, outputs) is the job's landing within 1e-9 of each quantity's largest value,
+    and a text writer's `rounding`.
+    """
     assert result.shape == (job.steps, 1 + len(outputs))
     assert np.allclose(result[:, 0], np.arange(1, job.steps + 1) * job.step, rtol=0.0, atol=1e-9)
     expected = dict(zip(OUTPUT_NAMES, job.landed(result[:, 0]).T))

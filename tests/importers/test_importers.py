@@ -1,4 +1,6 @@
-"""The FMU in importers that share no code with each other: the trajectory of `Landing` from each, parameters and inputs set."""
+"""The FMU in importers that share no code with each other: the trajectory of `Landing` from each,
+parameters and inputs set.
+"""
 
 import subprocess
 import sys
@@ -16,7 +18,12 @@ REALS = [q.name for q in OUTPUT_QUANTITIES if q.kind == "real"]
 
 def fmutool(*options: str) -> str:
     """What `fmutool` says; it must succeed."""
-    done = subprocess.run([str(Path(sys.executable).parent / "fmutool"), *options], capture_output=True, text=True, timeout=120)
+    done = subprocess.run(
+        [str(Path(sys.executable).parent / "fmutool"), *options],
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
     assert done.returncode == 0, done.stdout
     assert "ERROR" not in done.stdout, done.stdout
     return done.stdout
@@ -28,31 +35,50 @@ def test_importer_gives_landings_trajectory(landed_by, importer, job):
     assert_same(landed_by(importer, job), job)
 
 
-def test_cofmupy_that_sets_every_input_at_every_step_gives_landings_trajectory(landed_by, fmu, tmp_path):
-    """CoFmuPy 1.0.0 reads every output as a Real, which FMI forbids: fmutool takes the others out. It sets no strings."""
+def test_cofmupy_that_sets_every_input_at_every_step_gives_landings_trajectory(
+    landed_by, fmu, tmp_path
+):
+    """CoFmuPy 1.0.0 reads every output as a Real, which FMI forbids: fmutool takes the others out.
+
+    It sets no strings.
+    """
     reals_only = tmp_path / "RealsOnly.fmu"
     others = r"^(status\.phase|leg\[.\]\.contact\.active)$"
-    fmutool("-input", str(fmu), "-output", str(reals_only), "-only-outputs", "-remove-regexp", others)
+    fmutool(
+        "-input", str(fmu), "-output", str(reals_only), "-only-outputs", "-remove-regexp", others
+    )
     assert_same(landed_by("cofmupy", SLIPPERY, REALS, reals_only), SLIPPERY, REALS)
 
 
 @pytest.mark.parametrize("job", JOBS.values(), ids=list(JOBS))
-def test_ecos_command_line_a_cpp_program_gives_landings_trajectory(simulated_by_ecos, fmu, tmp_path, job):
+def test_ecos_command_line_a_cpp_program_gives_landings_trajectory(
+    simulated_by_ecos, fmu, tmp_path, job
+):
     """Parameters from an SSP file, inputs by a scenario; the program writes six decimals."""
     ssp.write(tmp_path / "one.ssp", {"landing": fmu}, {}, {"landing": job.parameters}, until=1.0)
     settings = "".join(
-        f'<ecos:variable id="landing::{name}"><ecos:real value="{value!r}"/></ecos:variable>' for name, value in job.inputs.items()
+        f'<ecos:variable id="landing::{name}"><ecos:real value="{value!r}"/></ecos:variable>'
+        for name, value in job.inputs.items()
     )
     (tmp_path / "inputs.xml").write_text(
         '<ecos:Scenario xmlns:ecos="http://github.com/Ecos-platform/libecos/resources/schema/ScenarioConfig">'
         f'<ecos:action t="{job.inputs_after * job.step!r}" eps="1e-6">{settings}</ecos:action></ecos:Scenario>',
         encoding="utf-8",
     )
-    options = ("--stopTime", "1.0005", "--parameterSet", ssp.PARAMETER_SET, "--scenarioConfig", "inputs.xml")
+    options = (
+        "--stopTime",
+        "1.0005",
+        "--parameterSet",
+        ssp.PARAMETER_SET,
+        "--scenarioConfig",
+        "inputs.xml",
+    )
     table = simulated_by_ecos(tmp_path / "one.ssp", *options)[1:]
     kinds = {"real": "REAL", "integer": "INT", "boolean": "BOOL"}
     columns = [f"landing::{q.name}[{kinds[q.kind]}]" for q in OUTPUT_QUANTITIES]
-    rows = np.array([np.cumsum(np.full(len(table), job.step)), *(table[column] for column in columns)]).T
+    rows = np.array(
+        [np.cumsum(np.full(len(table), job.step)), *(table[column] for column in columns)]
+    ).T
     assert np.abs(table["time"] - rows[:, 0]).max() < 1e-6
     assert_same(rows, job, rounding=5.01e-7)
 

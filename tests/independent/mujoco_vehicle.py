@@ -1,8 +1,10 @@
-"""The same vehicle in MuJoCo, with linear struts: its own multibody dynamics and, where asked for, its own contact.
+"""The same vehicle in MuJoCo, with linear struts: its own multibody dynamics and, where asked for,
+its own contact.
 
-The legs are built as the mechanism is, not as the kernels' coordinates are: the footpad is a body on a hinge at the auxiliary strut's
-joint and on a slide along that strut (spring and damper), so the transverse force is the hinge's. The main strut is a tendon from its
-joint to the footpad. The stage is free in space. Axes are the model's: y up, z = x cross y, pitch clockwise positive.
+The legs are built as the mechanism is, not as the kernels' coordinates are: the footpad is a body
+on a hinge at the auxiliary strut's joint and on a slide along that strut (spring and damper), so
+the transverse force is the hinge's. The main strut is a tendon from its joint to the footpad. The
+stage is free in space. Axes are the model's: y up, z = x cross y, pitch clockwise positive.
 """
 
 from __future__ import annotations
@@ -17,18 +19,24 @@ from vehicle_3d import AZIMUTHS, Array, pitch_of
 from rlv_landing import Parameters
 from rlv_landing.touchdown import footpad_at_rest
 
-STIFFNESS, DAMPING = 2.3e5, 3000.0  # main strut, N/m and N s/m: about the identified damper's secant stiffness
+STIFFNESS, DAMPING = (
+    2.3e5,
+    3000.0,
+)  # main strut, N/m and N s/m: about the identified damper's secant stiffness
 RADIUS = 1e-4  # of the footpads' spheres, m; the plane lies as much lower
 NAMES = ("x", "y", "z", "pitch", "stroke", "main_force", "aux_force")
 
 
 def linear_struts(parameters: Parameters) -> Parameters:
-    """The parameters with struts that are linear springs and dampers, as nearly as the kernels' laws can be.
+    """The parameters with struts that are linear springs and dampers, as nearly as the kernels'
+    laws can be.
 
-    Main strut: two large chambers of almost equal area A, so that a steady stroke only squeezes the area difference dA into the liquid,
-    K = dA^2 B/(V1 + V2), and a moving one drives A v through an orifice in its laminar range, C = A^2 sqrt(dP_lam rho/2)/(Cd Ao).
-    What is left: the liquid stiffens by 6e-4 at 30 mm, the damper lags by C V/(2 A^2 B) = 2e-5 s, and the stop at full extension
-    cannot be softer than 1 kN/m (4e-3 of the spring, only in tension). Ambient pressure 10 MPa, so that nothing cavitates.
+    Main strut: two large chambers of almost equal area A, so that a steady stroke only squeezes the
+    area difference dA into the liquid, K = dA^2 B/(V1 + V2), and a moving one drives A v through an
+    orifice in its laminar range, C = A^2 sqrt(dP_lam rho/2)/(Cd Ao). What is left: the liquid
+    stiffens by 6e-4 at 30 mm, the damper lags by C V/(2 A^2 B) = 2e-5 s, and the stop at full
+    extension cannot be softer than 1 kN/m (4e-3 of the spring, only in tension). Ambient pressure
+    10 MPa, so that nothing cavitates.
     """
     area, volume, modulus, pressure, density = 0.02, 0.05, 1e10, 1e7, 1000.0
     difference = sqrt(STIFFNESS * 2.0 * volume / modulus)
@@ -39,16 +47,30 @@ def linear_struts(parameters: Parameters) -> Parameters:
         "bulk_modulus_slope": 1.5, "orifice_area_compression": orifice, "orifice_area_rebound": orifice, "laminar_pressure": pressure,
         "seal_coulomb": 0.0, "seal_stribeck": 0.0, "seal_pressure": 0.0, "stroke_max": 0.2, "stop_stiffness": 1e3, "stop_damping": 0.0,
     }  # fmt: skip
-    return parameters.with_values({"auxiliary_strut.exponent": 1.0, **{f"main_strut.{name}": value for name, value in main.items()}})
+    return parameters.with_values(
+        {
+            "auxiliary_strut.exponent": 1.0,
+            **{f"main_strut.{name}": value for name, value in main.items()},
+        }
+    )
 
 
 def _text(*numbers: float) -> str:
     return " ".join(repr(float(n)) for n in numbers)
 
 
-def build(parameters: Parameters, timestep: float, contact: tuple[float, float] | None = None) -> mujoco.MjModel:
-    """The vehicle; `contact` (time constant [s], damping ratio) turns MuJoCo's own contact and Coulomb friction on."""
-    v, m, a, g = parameters.vehicle, parameters.main_strut, parameters.auxiliary_strut, parameters.ground
+def build(
+    parameters: Parameters, timestep: float, contact: tuple[float, float] | None = None
+) -> mujoco.MjModel:
+    """The vehicle; `contact` (time constant [s], damping ratio) turns MuJoCo's own contact and
+    Coulomb friction on.
+    """
+    v, m, a, g = (
+        parameters.vehicle,
+        parameters.main_strut,
+        parameters.auxiliary_strut,
+        parameters.ground,
+    )
     r, h = footpad_at_rest(parameters)
     normal = np.array([np.sin(g.slope), np.cos(g.slope), 0.0])
     legs, tendons = "", ""
@@ -94,7 +116,9 @@ def build(parameters: Parameters, timestep: float, contact: tuple[float, float] 
 
 
 def ground_law(parameters: Parameters, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-    """Our frictionless ground with a linear spring as a passive force on the footpads, worked out from MuJoCo's own kinematics."""
+    """Our frictionless ground with a linear spring as a passive force on the footpads, worked out
+    from MuJoCo's own kinematics.
+    """
     g = parameters.ground
     normal = np.array([np.sin(g.slope), np.cos(g.slope), 0.0])
     jacobian = np.zeros((3, model.nv))
@@ -118,10 +142,11 @@ def land(
     force: tuple[float, float] = (0.0, 0.0),
     moment: float = 0.0,
 ) -> dict[str, Array]:
-    """Motion and loads every millisecond, and the time of each footpad's `first_touch` (inf without one).
+    """Motion and loads every millisecond, and the time of each footpad's `first_touch` (inf without
+    one).
 
-    `body` is (x, y, pitch, vx, vy, pitch rate) at time 0, with the legs at full length and at rest in it. With `contact` the ground is
-    MuJoCo's, without it the footpads feel `ground_law`.
+    `body` is (x, y, pitch, vx, vy, pitch rate) at time 0, with the legs at full length and at rest
+    in it. With `contact` the ground is MuJoCo's, without it the footpads feel `ground_law`.
     """
     model = build(parameters, timestep, contact)
     data = mujoco.MjData(model)
@@ -150,7 +175,9 @@ def land(
                         float(pitch_of(data.qpos[3:7])),
                         stroke,
                         -(STIFFNESS * stroke - DAMPING * data.ten_velocity),
-                        -np.array([a.stiffness * data.qpos[p] + a.damping * data.qvel[v] for p, v in legs]),
+                        -np.array(
+                            [a.stiffness * data.qpos[p] + a.damping * data.qvel[v] for p, v in legs]
+                        ),
                     ]
                 )
             mujoco.mj_step(model, data)
@@ -158,4 +185,7 @@ def land(
             first_touch[touches & np.isinf(first_touch)] = data.time
     finally:
         mujoco.set_mjcb_passive(None)
-    return {"first_touch": first_touch, **{name: np.array([row[i] for row in rows]).T for i, name in enumerate(NAMES)}}
+    return {
+        "first_touch": first_touch,
+        **{name: np.array([row[i] for row in rows]).T for i, name in enumerate(NAMES)},
+    }

@@ -1,13 +1,15 @@
-"""The vehicle again, as a full three-dimensional Newton-Euler model: a second opinion that shares no code with the kernels.
+"""The vehicle again, as a full three-dimensional Newton-Euler model: a second opinion that shares
+no code with the kernels.
 
-A rigid body with six degrees of freedom (quaternion, full inertia about its axes) carries four separate legs. Each footpad is a point
-mass held in a plane fixed in the body by a transverse constraint force N. Nothing is eliminated by hand: Newton's law of the body (3),
-Euler's (3) and Newton's law of four footpads (12) are 18 linear equations for 18 unknowns, the accelerations of the body (3 + 3) and of
-the footpads in their planes (4 + 4), and N (4). They are solved as they stand, with all four legs on their own: no groups, no mirror
-images, no symmetric plane.
+A rigid body with six degrees of freedom (quaternion, full inertia about its axes) carries four
+separate legs. Each footpad is a point mass held in a plane fixed in the body by a transverse
+constraint force N. Nothing is eliminated by hand: Newton's law of the body (3), Euler's (3) and
+Newton's law of four footpads (12) are 18 linear equations for 18 unknowns, the accelerations of the
+body (3 + 3) and of the footpads in their planes (4 + 4), and N (4). They are solved as they stand,
+with all four legs on their own: no groups, no mirror images, no symmetric plane.
 
-Axes: inertial x, y up, z = x cross y; pitch is clockwise positive, so a pitch psi is a turn about z by -psi. SI units. Arrays of vectors
-are (3, 4): component, leg.
+Axes: inertial x, y up, z = x cross y; pitch is clockwise positive, so a pitch psi is a turn about z
+by -psi. SI units. Arrays of vectors are (3, 4): component, leg.
 """
 
 from __future__ import annotations
@@ -32,12 +34,16 @@ LEGS = 13
 LEG_STATES = ("r", "h", "r_rate", "h_rate", "upper", "lower", "slip_x", "slip_z")
 SIZE = LEGS + 4 * len(LEG_STATES)
 # what counts as small in each state: the absolute tolerance is the relative one times this
-SCALE = np.concatenate(([0.1] * 3, [0.1] * 4, [1.0] * 6, np.repeat([0.1, 0.1, 1.0, 1.0, 1e5, 1e5, 1e-3, 1e-3], 4)))
+SCALE = np.concatenate(
+    ([0.1] * 3, [0.1] * 4, [1.0] * 6, np.repeat([0.1, 0.1, 1.0, 1.0, 1e5, 1e5, 1e-3, 1e-3], 4))
+)
 
 
 @dataclass(frozen=True)
 class Inputs:
-    """Loads on the body (inertial force [N], clockwise moment [N m]) and motion of the ground, which goes on at its rates [m/s, rad/s]."""
+    """Loads on the body (inertial force [N], clockwise moment [N m]) and motion of the ground,
+    which goes on at its rates [m/s, rad/s].
+    """
 
     force: tuple[float, float] = (0.0, 0.0)
     moment: float = 0.0
@@ -49,11 +55,15 @@ class Inputs:
 
 def cross(a: Sequence[Any] | Array, b: Sequence[Any] | Array) -> Array:
     """Vector product along the first axis."""
-    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+    return np.array(
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    )
 
 
 def rotation(q: Array) -> Array:
-    """Body to inertial axes from the quaternion (w, x, y, z), which is brought to unit length first."""
+    """Body to inertial axes from the quaternion (w, x, y, z), which is brought to unit length
+    first.
+    """
     w, x, y, z = q / np.sqrt((q * q).sum())
     return np.array(
         [
@@ -70,26 +80,43 @@ class Vehicle3D:
     Args:
         parameters: numbers of vehicle, ground and drop (its mode gives the legs' azimuths).
         inputs: loads and the ground's motion, from time 0 on.
-        roll_yaw: the body's inertia about its own x and y [kg m2]; a symmetric landing must not depend on them.
+        roll_yaw: the body's inertia about its own x and y [kg m2]; a symmetric landing must not
+            depend on them.
     """
 
-    def __init__(self, parameters: Parameters, inputs: Inputs = Inputs(), roll_yaw: tuple[float, float] = (150.0, 40.0)) -> None:
+    def __init__(
+        self,
+        parameters: Parameters,
+        inputs: Inputs = Inputs(),
+        roll_yaw: tuple[float, float] = (150.0, 40.0),
+    ) -> None:
         self.inputs = inputs
-        self.vehicle, self.damper, self.strut = parameters.vehicle, parameters.main_strut, parameters.auxiliary_strut
+        self.vehicle, self.damper, self.strut = (
+            parameters.vehicle,
+            parameters.main_strut,
+            parameters.auxiliary_strut,
+        )
         self.ground = parameters.ground
         azimuth = np.radians(AZIMUTHS[parameters.drop.mode])
         s, c, one, none = np.sin(azimuth), np.cos(azimuth), np.ones(4), np.zeros(4)
-        self.e_r, self.e_y, self.e_t = np.array([c, none, s]), np.array([none, one, none]), np.array([-s, none, c])
+        self.e_r, self.e_y, self.e_t = (
+            np.array([c, none, s]),
+            np.array([none, one, none]),
+            np.array([-s, none, c]),
+        )
         self.main_joint = self.damper.joint_radius * self.e_r - self.damper.joint_depth * self.e_y
         self.aux_joint = self.strut.joint_radius * self.e_r - self.strut.joint_depth * self.e_y
-        # a leg in the symmetric plane spends its whole friction coefficient along x, any other one shares it evenly at rest
+        # a leg in the symmetric plane spends its whole friction coefficient along x, any other one
+        # shares it evenly at rest
         self.share_x = np.where(np.abs(s) < 1e-12, 1.0, 0.5)
         self.inertia = np.array([roll_yaw[0], roll_yaw[1], self.vehicle.inertia])
         self.matrix = self._constant_part()
         self.calls = 0
 
     def _constant_part(self) -> Array:
-        """Coefficients of (a, spin', r'', h'', N) that do not depend on the state; rows: body's Newton, Euler, footpads' Newton."""
+        """Coefficients of (a, spin', r'', h'', N) that do not depend on the state; rows: body's
+        Newton, Euler, footpads' Newton.
+        """
         A = np.zeros((18, 18))
         A[0:3, 0:3] = self.vehicle.mass * np.eye(3)
         A[0:3, 14:18] = self.e_t  # the body feels -N e_t; brought to the left
@@ -104,7 +131,9 @@ class Vehicle3D:
         return A
 
     def specific_volume(self, P: Array) -> tuple[Array, Array]:
-        """Specific volume of liquid and air relative to that at ambient pressure, and its slope [1/Pa]."""
+        """Specific volume of liquid and air relative to that at ambient pressure, and its slope
+        [1/Pa].
+        """
         d = self.damper
         P = np.maximum(P, 1.0)
         swell = 1.0 + d.bulk_modulus_slope * (P - d.ambient_pressure) / d.bulk_modulus
@@ -112,8 +141,12 @@ class Vehicle3D:
         air = d.air_fraction * (d.ambient_pressure / P) ** (1.0 / d.air_exponent)
         return liquid + air, -liquid / (swell * d.bulk_modulus) - air / (d.air_exponent * P)
 
-    def main_strut(self, s: Array, v: Array, upper: Array, lower: Array) -> tuple[Array, Array, Array]:
-        """Axial force [N], compression positive, and rates of the two pressures, from the mass balance of each chamber."""
+    def main_strut(
+        self, s: Array, v: Array, upper: Array, lower: Array
+    ) -> tuple[Array, Array, Array]:
+        """Axial force [N], compression positive, and rates of the two pressures, from the mass
+        balance of each chamber.
+        """
         d = self.damper
         volume, slope = self.specific_volume(np.array([upper, lower]))
         density = d.fluid_density / volume
@@ -121,15 +154,30 @@ class Vehicle3D:
         mean = 0.5 * (density[0] + density[1])
         drop = lower - upper
         area = np.where(drop > 0.0, d.orifice_area_compression, d.orifice_area_rebound)
-        mass_flow = area * np.sqrt(2.0 * mean) * drop / (drop * drop + d.laminar_pressure**2) ** 0.25
-        upper_rate = (mass_flow - density[0] * d.area_upper * v) / ((d.volume_upper + d.area_upper * s) * stiffening[0])
-        lower_rate = (density[1] * d.area_lower * v - mass_flow) / ((d.volume_lower - d.area_lower * s) * stiffening[1])
+        mass_flow = (
+            area * np.sqrt(2.0 * mean) * drop / (drop * drop + d.laminar_pressure**2) ** 0.25
+        )
+        upper_rate = (mass_flow - density[0] * d.area_upper * v) / (
+            (d.volume_upper + d.area_upper * s) * stiffening[0]
+        )
+        lower_rate = (density[1] * d.area_lower * v - mass_flow) / (
+            (d.volume_lower - d.area_lower * s) * stiffening[1]
+        )
         gauge_upper, gauge_lower = upper - d.ambient_pressure, lower - d.ambient_pressure
         level = d.seal_coulomb + d.seal_pressure * 0.5 * (np.abs(gauge_upper) + np.abs(gauge_lower))
-        seal = (level + d.seal_stribeck * np.exp(-((v / d.seal_stribeck_speed) ** 2))) * np.tanh(v / d.seal_smoothing_speed)
+        seal = (level + d.seal_stribeck * np.exp(-((v / d.seal_stribeck_speed) ** 2))) * np.tanh(
+            v / d.seal_smoothing_speed
+        )
         out, into = np.maximum(-s, 0.0), np.maximum(s - d.stroke_max, 0.0)
-        stop = d.stop_stiffness * (into * np.maximum(1.0 + d.stop_damping * v, 0.0) - out * np.maximum(1.0 - d.stop_damping * v, 0.0))
-        return gauge_lower * d.area_lower - gauge_upper * d.area_upper + seal + stop, upper_rate, lower_rate
+        stop = d.stop_stiffness * (
+            into * np.maximum(1.0 + d.stop_damping * v, 0.0)
+            - out * np.maximum(1.0 - d.stop_damping * v, 0.0)
+        )
+        return (
+            gauge_lower * d.area_lower - gauge_upper * d.area_upper + seal + stop,
+            upper_rate,
+            lower_rate,
+        )
 
     def ramp(self, d: Array) -> Array:
         """0 to 1 over the ground's damping depth."""
@@ -137,38 +185,65 @@ class Vehicle3D:
         return q * q * (3.0 - 2.0 * q)
 
     def friction(self, d: Array, limit: Array, v: Array, s: Array) -> tuple[Array, Array]:
-        """Force along one direction of the ground and the displacement's rate; `limit` [N] is coefficient times normal force."""
+        """Force along one direction of the ground and the displacement's rate; `limit` [N] is
+        coefficient times normal force.
+        """
         g = self.ground
         s0 = g.stick_displacement
         held = np.minimum(np.maximum(s, -s0), s0) / s0
         slips = (v * s > 0.0) & (np.abs(s) >= s0)
         slip = -limit * (1.0 + g.stribeck_gain * np.exp(-np.abs(v) / g.stribeck_speed)) * held
-        stick = -limit * (1.0 + g.stribeck_gain) * held - g.stick_damping * self.ramp(d) * (1.0 - held * held) * v
+        stick = (
+            -limit * (1.0 + g.stribeck_gain) * held
+            - g.stick_damping * self.ramp(d) * (1.0 - held * held) * v
+        )
         touches = d > 0.0
         force = np.where(touches, np.where(slips, slip, stick), 0.0)
         return force, np.where(touches, np.where(slips, 0.0, v), -s / g.release_time)
 
-    def contact(self, t: float, place: Array, speed: Array, slip_x: Array, slip_z: Array) -> tuple[Array, Array, Array, Array]:
-        """Force of the ground on the footpads (inertial axes), rates of both friction displacements, penetration."""
+    def contact(
+        self, t: float, place: Array, speed: Array, slip_x: Array, slip_z: Array
+    ) -> tuple[Array, Array, Array, Array]:
+        """Force of the ground on the footpads (inertial axes), rates of both friction
+        displacements, penetration.
+        """
         g, u = self.ground, self.inputs
         angle = g.slope + u.tilt + u.tilt_rate * t
-        along, normal = np.array([np.cos(angle), -np.sin(angle), 0.0]), np.array([np.sin(angle), np.cos(angle), 0.0])
+        along, normal = (
+            np.array([np.cos(angle), -np.sin(angle), 0.0]),
+            np.array([np.sin(angle), np.cos(angle), 0.0]),
+        )
         arm = place - np.array([[0.0], [u.heave + u.heave_rate * t], [0.0]])
-        relative = speed - cross((0.0, 0.0, -u.tilt_rate), arm) - np.array([[0.0], [u.heave_rate], [0.0]])
+        relative = (
+            speed - cross((0.0, 0.0, -u.tilt_rate), arm) - np.array([[0.0], [u.heave_rate], [0.0]])
+        )
         d, sinking = -(normal @ arm), -(normal @ relative)
         depth = np.maximum(d, 0.0)
-        Fn = np.maximum(g.stiffness * depth**g.exponent + g.damping * self.ramp(depth) * sinking, 0.0)
+        Fn = np.maximum(
+            g.stiffness * depth**g.exponent + g.damping * self.ramp(depth) * sinking, 0.0
+        )
         vx, vz = along @ relative, relative[2]
         small = g.direction_speed**2
         whole = vx * vx + vz * vz + small
-        Fx, rate_x = self.friction(d, g.friction * np.sqrt((vx * vx + self.share_x * small) / whole) * Fn, vx, slip_x)
-        Fz, rate_z = self.friction(d, g.friction * np.sqrt((vz * vz + (1.0 - self.share_x) * small) / whole) * Fn, vz, slip_z)
+        Fx, rate_x = self.friction(
+            d, g.friction * np.sqrt((vx * vx + self.share_x * small) / whole) * Fn, vx, slip_x
+        )
+        Fz, rate_z = self.friction(
+            d,
+            g.friction * np.sqrt((vz * vz + (1.0 - self.share_x) * small) / whole) * Fn,
+            vz,
+            slip_z,
+        )
         force = normal[:, None] * Fn + along[:, None] * Fx
         force[2] += Fz
         return force, rate_x, rate_z, d
 
-    def pull(self, joint: Array, length: float, rho: Array, rho_rate: Array) -> tuple[Array, Array, Array]:
-        """Stroke, stroke rate (compression positive) and direction joint to footpad of a strut, seen from the body."""
+    def pull(
+        self, joint: Array, length: float, rho: Array, rho_rate: Array
+    ) -> tuple[Array, Array, Array]:
+        """Stroke, stroke rate (compression positive) and direction joint to footpad of a strut,
+        seen from the body.
+        """
         line = rho - joint
         now = np.sqrt((line * line).sum(axis=0))
         direction = line / now
@@ -192,17 +267,24 @@ class Vehicle3D:
         s, s_rate, main_way = self.pull(self.main_joint, self.damper.length, rho, rho_rate)
         sa, sa_rate, aux_way = self.pull(self.aux_joint, self.strut.length, rho, rho_rate)
         Fm, upper_rate, lower_rate = self.main_strut(s, s_rate, upper, lower)
-        Fa = self.strut.stiffness * np.abs(sa) ** self.strut.exponent * np.where(sa < 0.0, -1.0, 1.0) + self.strut.damping * sa_rate
+        Fa = (
+            self.strut.stiffness * np.abs(sa) ** self.strut.exponent * np.where(sa < 0.0, -1.0, 1.0)
+            + self.strut.damping * sa_rate
+        )
         ground, rate_x, rate_z, d = self.contact(t, place, speed, slip_x, slip_z)
 
         down = np.array([0.0, -self.ground.gravity, 0.0])
         main, aux = Fm * main_way, Fa * aux_way
         on_feet = R.T @ (ground + v.footpad_mass * down[:, None]) + main + aux
-        on_body = R.T @ (np.array([*self.inputs.force, 0.0]) + v.mass * down) - (main + aux).sum(axis=1)
+        on_body = R.T @ (np.array([*self.inputs.force, 0.0]) + v.mass * down) - (main + aux).sum(
+            axis=1
+        )
         torque = R.T @ np.array([0.0, 0.0, -self.inputs.moment])  # clockwise positive
         torque = torque - (cross(self.main_joint, main) + cross(self.aux_joint, aux)).sum(axis=1)
         gyroscopic = cross(spin, self.inertia * spin)
-        carried = cross(omega, swept) + 2.0 * cross(omega, rho_rate)  # centripetal and Coriolis acceleration of the footpads
+        carried = cross(omega, swept) + 2.0 * cross(
+            omega, rho_rate
+        )  # centripetal and Coriolis acceleration of the footpads
 
         A = self.matrix.astype(y.dtype)
         at = rho if v.transverse_load_at == "footpad" else self.aux_joint
@@ -237,22 +319,37 @@ class Vehicle3D:
         )
         rates = y[LEGS + 8 : LEGS + 16]  # r', h' of the four legs
         names = ("r_acc", "h_acc", "upper_rate", "lower_rate", "slip_x_rate", "slip_z_rate")
-        return np.concatenate((y[VELOCITY], turn, e["acceleration"], e["spin_rate"], rates, *(e[n] for n in names)))
+        return np.concatenate(
+            (y[VELOCITY], turn, e["acceleration"], e["spin_rate"], rates, *(e[n] for n in names))
+        )
 
     def start(self, body: Sequence[float]) -> Array:
-        """State with the legs at full length and at rest in the body; `body` is (x, y, pitch, vx, vy, pitch rate)."""
+        """State with the legs at full length and at rest in the body; `body` is (x, y, pitch, vx,
+        vy, pitch rate).
+        """
         x, y, pitch, vx, vy, rate = body
         a, b = self.main_joint[:, 0] @ self.e_r[:, 0], -self.damper.joint_depth
         c, d = self.aux_joint[:, 0] @ self.e_r[:, 0], -self.strut.joint_depth
         apart = np.hypot(c - a, d - b)
         # law of cosines at the main strut's joint, turned outwards from the line between the joints
-        opening = np.arccos((self.damper.length**2 + apart**2 - self.strut.length**2) / (2.0 * self.damper.length * apart))
+        opening = np.arccos(
+            (self.damper.length**2 + apart**2 - self.strut.length**2)
+            / (2.0 * self.damper.length * apart)
+        )
         angle = np.arctan2(d - b, c - a) + opening
         legs = np.zeros((len(LEG_STATES), 4))
-        legs[0], legs[1] = a + self.damper.length * np.cos(angle), b + self.damper.length * np.sin(angle)
+        legs[0], legs[1] = (
+            a + self.damper.length * np.cos(angle),
+            b + self.damper.length * np.sin(angle),
+        )
         legs[4] = legs[5] = self.damper.charge_pressure
         half = -0.5 * pitch
-        return np.concatenate(([x, y, 0.0, np.cos(half), 0.0, 0.0, np.sin(half), vx, vy, 0.0, 0.0, 0.0, -rate], legs.ravel()))
+        return np.concatenate(
+            (
+                [x, y, 0.0, np.cos(half), 0.0, 0.0, np.sin(half), vx, vy, 0.0, 0.0, 0.0, -rate],
+                legs.ravel(),
+            )
+        )
 
 
 def pitch_of(q: Array) -> Array:
@@ -260,9 +357,22 @@ def pitch_of(q: Array) -> Array:
     return -2.0 * np.arctan2(q[3], q[0])
 
 
-def land(model: Vehicle3D, body: Sequence[float], times: Array, method: str, rtol: float) -> dict[str, Array]:
-    """Integrate from time 0 with a scipy solver; body motion (n,) and legs (4, n) at `times`, signs as the user sees them."""
-    done = solve_ivp(model, (0.0, times[-1]), model.start(body), method, times, rtol=rtol, atol=rtol * SCALE, max_step=2e-3)
+def land(
+    model: Vehicle3D, body: Sequence[float], times: Array, method: str, rtol: float
+) -> dict[str, Array]:
+    """Integrate from time 0 with a scipy solver; body motion (n,) and legs (4, n) at `times`, signs
+    as the user sees them.
+    """
+    done = solve_ivp(
+        model,
+        (0.0, times[-1]),
+        model.start(body),
+        method,
+        times,
+        rtol=rtol,
+        atol=rtol * SCALE,
+        max_step=2e-3,
+    )
     assert done.success, done.message
     y = done.y
     legs = [model.evaluate(t, state) for t, state in zip(times, y.T)]

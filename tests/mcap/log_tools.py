@@ -1,4 +1,6 @@
-"""What the tests of logs share: small logs, cut ones, changed ones, made with MCAP's own writer and readers."""
+"""What the tests of logs share: small logs, cut ones, changed ones, made with MCAP's own writer and
+readers.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,17 @@ from typing import Any
 
 from mcap.data_stream import RecordBuilder
 from mcap.reader import make_reader
-from mcap.records import Attachment, Channel, Chunk, DataEnd, Footer, Header, Message, Metadata, Schema
+from mcap.records import (
+    Attachment,
+    Channel,
+    Chunk,
+    DataEnd,
+    Footer,
+    Header,
+    Message,
+    Metadata,
+    Schema,
+)
 from mcap.stream_reader import StreamReader
 from mcap.writer import Writer
 
@@ -24,7 +36,9 @@ Change = Callable[[Any], Any]
 def small_log(folder: Path, chunks: int = 4, messages: int = 12) -> Path:
     """A complete log of two topics in `chunks` chunks of `messages` messages each; its file."""
     topics = [RecordedTopic(name, CLOCK_TYPE, TELEMETRY) for name in ("/a", "/b")]
-    recorder = Recorder(folder, topics, {"step_size": "0.001", "stop_time": "1.0"}, {"parameters.toml": b"# none\n"})
+    recorder = Recorder(
+        folder, topics, {"step_size": "0.001", "stop_time": "1.0"}, {"parameters.toml": b"# none\n"}
+    )
     for k in range(chunks * messages):
         recorder.write("/b" if k % 3 else "/a", 1000 * k, CDR + k.to_bytes(8, "little"))
         if k % messages == messages - 1:
@@ -35,14 +49,18 @@ def small_log(folder: Path, chunks: int = 4, messages: int = 12) -> Path:
 
 
 def messages_of(file: Path) -> list[tuple[str, int, int, bytes]]:
-    """Topic, time, sequence and bytes of every message, by MCAP's seeking reader, in the file's order."""
+    """Topic, time, sequence and bytes of every message, by MCAP's seeking reader, in the file's
+    order.
+    """
     with file.open("rb") as f:
         found = make_reader(f, validate_crcs=True).iter_messages(log_time_order=False)
         return [(channel.topic, m.log_time, m.sequence, m.data) for _, channel, m in found]
 
 
 def rewrite(source: Path, folder: Path, change: Change = lambda record: record) -> Path:
-    """A complete log in which `change` was applied to every message, attachment and metadata of `source`; None leaves one out."""
+    """A complete log in which `change` was applied to every message, attachment and metadata of
+    `source`; None leaves one out.
+    """
     folder.mkdir()
     target = folder / f"{folder.name}_0.mcap"
     schemas: dict[int, int] = {0: 0}
@@ -54,17 +72,24 @@ def rewrite(source: Path, folder: Path, change: Change = lambda record: record) 
             if isinstance(record, Header):
                 writer.start(record.profile, record.library)
             elif isinstance(record, Schema) and record.id not in schemas:
-                schemas[record.id] = writer.register_schema(record.name, record.encoding, record.data)
+                schemas[record.id] = writer.register_schema(
+                    record.name, record.encoding, record.data
+                )
             elif isinstance(record, Channel) and record.id not in channels:
                 topics[record.id] = record.topic
                 channels[record.id] = writer.register_channel(
-                    record.topic, record.message_encoding, schemas[record.schema_id], record.metadata
+                    record.topic,
+                    record.message_encoding,
+                    schemas[record.schema_id],
+                    record.metadata,
                 )
             elif isinstance(record, Message):
                 message = change((topics[record.channel_id], record))
                 if message is not None:
                     m = message[1]
-                    writer.add_message(channels[m.channel_id], m.log_time, m.data, m.publish_time, m.sequence)
+                    writer.add_message(
+                        channels[m.channel_id], m.log_time, m.data, m.publish_time, m.sequence
+                    )
             elif isinstance(record, Attachment):
                 a = change(record)
                 if a is not None:

@@ -1,6 +1,8 @@
-"""Reads and recovers mutated copies of a log, in a process of its own with little memory: mutations.py FILE COUNT SEED FOLDER.
+"""Reads and recovers mutated copies of a log, in a process of its own with little memory:
+mutations.py FILE COUNT SEED FOLDER.
 
-Any exception but an error for the user ends it, as does a case that takes a minute. What is recovered must be in the log.
+Any exception but an error for the user ends it, as does a case that takes a minute. What is
+recovered must be in the log.
 """
 
 from __future__ import annotations
@@ -25,7 +27,9 @@ MEMORY = 2 * 1024**3
 
 
 def mutated(data: bytes, generator: random.Random) -> bytes:
-    """`data` with one to four bits flipped, bytes put in, taken out, repeated, or made a huge length; or cut."""
+    """`data` with one to four bits flipped, bytes put in, taken out, repeated, or made a huge
+    length; or cut.
+    """
     spoilt = bytearray(data)
     for _ in range(generator.choice((1, 1, 1, 2, 4))):
         at = generator.randrange(len(spoilt))
@@ -68,7 +72,9 @@ def main(file: Path, count: int, seed: int, folder: Path) -> dict[str, int]:
         for path in (source, target):
             shutil.rmtree(path, ignore_errors=True)
         source.mkdir()
-        (source / f"run_0{generator.choice(('.mcap', '.mcap.part'))}").write_bytes(mutated(original, generator))
+        (source / f"run_0{generator.choice(('.mcap', '.mcap.part'))}").write_bytes(
+            mutated(original, generator)
+        )
         told["cases"] += 1
         told["read"] += attempt(lambda path: log_info(open_log(path)).text(), source)
         told["recovered"] += attempt(lambda path: recover(path).text(), source)
@@ -81,4 +87,6 @@ def main(file: Path, count: int, seed: int, folder: Path) -> dict[str, int]:
 
 if __name__ == "__main__":
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    print(json.dumps(main(Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3]), Path(sys.argv[4]))))
+    print(
+        json.dumps(main(Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3]), Path(sys.argv[4])))
+    )

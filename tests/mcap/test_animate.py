@@ -46,20 +46,27 @@ def frames_of(path: Path) -> NDArray[np.uint8]:
 
 
 def places_of_the_mark(frames: NDArray[np.uint8]) -> NDArray[np.intp]:
-    """The pixel column of the time mark in each frame: in the right half, the one that is darkest beyond what is dark in all frames."""
+    """The pixel column of the time mark in each frame: in the right half, the one that is darkest
+    beyond what is dark in all frames.
+    """
     half = frames.shape[2] // 2
     dark = (frames[:, :, half:].max(axis=3) < DARK).sum(axis=1)
     return half + np.argmax(dark - dark.min(axis=0), axis=1)
 
 
 @pytest.mark.parametrize("ending", [".gif", ".mp4"])
-def test_a_log_becomes_a_film_whose_mark_moves_evenly_and_whose_vehicle_moves(log: Path, tmp_path: Path, ending: str) -> None:
+def test_a_log_becomes_a_film_whose_mark_moves_evenly_and_whose_vehicle_moves(
+    log: Path, tmp_path: Path, ending: str
+) -> None:
     film = tmp_path / f"landing{ending}"
     done = run("animate", log, film, *FILM)
     assert done.returncode == 0, done.stderr
     assert [p.name for p in tmp_path.iterdir()] == [film.name]
     if ending == ".mp4":
-        assert imageio_ffmpeg.count_frames_and_secs(str(film)) == (FRAMES, pytest.approx(FRAMES / 10))
+        assert imageio_ffmpeg.count_frames_and_secs(str(film)) == (
+            FRAMES,
+            pytest.approx(FRAMES / 10),
+        )
     else:
         with Image.open(film) as image:
             times = [(image.seek(i), image.info["duration"])[1] for i in range(image.n_frames)]
@@ -94,7 +101,10 @@ def test_footpads_where_the_struts_meet_are_the_models_footpads(drop_test: Histo
         assert np.abs(lines["feet"][:, leg - 1, 0] - model).max() < 1e-14
         for part, strut in (("main", "main_strut"), ("auxiliary", "auxiliary_strut")):
             joint, foot = np.moveaxis(lines[part][:, leg - 1], 1, 0)
-            length = getattr(drop_test.parameters, strut).length - drop_test[f"leg[{leg}].{strut}.stroke"]
+            length = (
+                getattr(drop_test.parameters, strut).length
+                - drop_test[f"leg[{leg}].{strut}.stroke"]
+            )
             assert np.abs(np.linalg.norm(foot - joint, axis=-1) - length).max() < 1e-14
 
 
@@ -107,7 +117,13 @@ def test_every_frame_shows_the_sample_nearest_to_its_time() -> None:
 
 
 def test_a_gif_says_the_rate_that_it_can_hold(tmp_path: Path, drop_test: History) -> None:
-    made = save_animation(drop_test, drop_test.parameters, tmp_path / "l.gif", "", Film(fps=30.0, slow_motion=1.0, end=0.2, width=320))
+    made = save_animation(
+        drop_test,
+        drop_test.parameters,
+        tmp_path / "l.gif",
+        "",
+        Film(fps=30.0, slow_motion=1.0, end=0.2, width=320),
+    )
     assert made.fps == pytest.approx(100 / 3)
     with Image.open(tmp_path / "l.gif") as image:
         assert image.info["duration"] == 30
@@ -118,7 +134,11 @@ def test_a_log_without_parameters_takes_those_that_are_named(one_log: Path, tmp_
     bare, whole = tmp_path / "bare" / "log", tmp_path / "whole" / "log"
     for folder, kept in ((bare, False), (whole, True)):
         folder.parent.mkdir()
-        rewrite(LogReader(one_log).files[0], folder, in_attachment(lambda data, kept=kept: data if kept else None))
+        rewrite(
+            LogReader(one_log).files[0],
+            folder,
+            in_attachment(lambda data, kept=kept: data if kept else None),
+        )
     assert log_history(bare).parameters is None
     refused = run("animate", bare, tmp_path / "l.gif", *FILM)
     assert (refused.returncode, "--preset and --mode" in one_error_line(refused)) == (2, True)
@@ -147,7 +167,9 @@ def test_a_log_without_parameters_takes_those_that_are_named(one_log: Path, tmp_
         (("l.gif", "--mode", "3-1"), "3-1"),
     ],
 )  # fmt: skip
-def test_bad_input_is_one_line_and_leaves_nothing(tmp_path: Path, arguments: tuple[str, ...], said: str) -> None:
+def test_bad_input_is_one_line_and_leaves_nothing(
+    tmp_path: Path, arguments: tuple[str, ...], said: str
+) -> None:
     (tmp_path / "there.gif").write_bytes(b"mine")
     done = run("animate", *arguments, cwd=tmp_path)
     assert done.returncode == 2
@@ -156,7 +178,9 @@ def test_bad_input_is_one_line_and_leaves_nothing(tmp_path: Path, arguments: tup
 
 
 def test_a_log_with_parameters_of_its_own_takes_no_others(one_log: Path, tmp_path: Path) -> None:
-    assert "carries its parameters" in one_error_line(run("animate", one_log, tmp_path / "l.gif", "--mode", "1-2-1"))
+    assert "carries its parameters" in one_error_line(
+        run("animate", one_log, tmp_path / "l.gif", "--mode", "1-2-1")
+    )
 
 
 def test_without_ffmpeg_the_error_says_what_to_install(
@@ -171,9 +195,23 @@ def test_without_ffmpeg_the_error_says_what_to_install(
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_a_signal_leaves_no_half_film(tmp_path: Path, number: signal.Signals, code: int) -> None:
-    program = [sys.executable, "-c", "from rlv_landing.cli import main; main()", "animate", "--mode", "2-2", str(tmp_path / "l.mp4")]
+    program = [
+        sys.executable,
+        "-c",
+        "from rlv_landing.cli import main; main()",
+        "animate",
+        "--mode",
+        "2-2",
+        str(tmp_path / "l.mp4"),
+    ]
     options = ["--slow-motion", "100", "--width", "320"]
-    process = subprocess.Popen([*program, *options], env=environment(), stderr=subprocess.PIPE, text=True, start_new_session=True)
+    process = subprocess.Popen(
+        [*program, *options],
+        env=environment(),
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
     deadline = time.monotonic() + TIMEOUT
     while not list(tmp_path.iterdir()):
         assert process.poll() is None
@@ -188,7 +226,15 @@ def test_a_signal_leaves_no_half_film(tmp_path: Path, number: signal.Signals, co
 
 
 def test_the_python_example_of_the_documentation_runs(tmp_path: Path) -> None:
-    text = (Path(__file__).resolve().parents[2] / "docs" / "pictures.md").read_text(encoding="utf-8")
+    text = (Path(__file__).resolve().parents[2] / "docs" / "pictures.md").read_text(
+        encoding="utf-8"
+    )
     (snippet,) = re.findall(r"```python\n(.*?)```", text, re.S)
-    subprocess.run([sys.executable, "-c", snippet], cwd=tmp_path, env=environment(), check=True, timeout=TIMEOUT)
+    subprocess.run(
+        [sys.executable, "-c", snippet],
+        cwd=tmp_path,
+        env=environment(),
+        check=True,
+        timeout=TIMEOUT,
+    )
     assert len(frames_of(tmp_path / "landing.gif")) == 26

@@ -1,4 +1,6 @@
-"""A checksum of 0, which MCAP takes for none: damage where the log's writer gives checksums, and no obstacle where it does not."""
+"""A checksum of 0, which MCAP takes for none: damage where the log's writer gives checksums, and no
+obstacle where it does not.
+"""
 
 from __future__ import annotations
 
@@ -24,12 +26,25 @@ CHECKSUM, DATA = HEAD + 24, HEAD + 24 + 4 + 4 + len("zstd") + 8
 PER_CHUNK = 12
 
 
-def foreign_log(file: Path, checksums: bool, chunked: bool = True, compression: CompressionType = CompressionType.ZSTD) -> Path:
+def foreign_log(
+    file: Path,
+    checksums: bool,
+    chunked: bool = True,
+    compression: CompressionType = CompressionType.ZSTD,
+) -> Path:
     """A log of three chunks that another program wrote, with checksums or without."""
     with file.open("wb") as f:
-        writer = Writer(f, compression=compression, index_types=IndexType.ALL, use_chunking=chunked, enable_crcs=checksums)
+        writer = Writer(
+            f,
+            compression=compression,
+            index_types=IndexType.ALL,
+            use_chunking=chunked,
+            enable_crcs=checksums,
+        )
         writer.start("ros2")
-        channel = writer.register_channel("/a", "cdr", writer.register_schema("std_msgs/msg/Empty", "ros2msg", b""))
+        channel = writer.register_channel(
+            "/a", "cdr", writer.register_schema("std_msgs/msg/Empty", "ros2msg", b"")
+        )
         for k in range(3 * PER_CHUNK):
             writer.add_message(channel, k, CDR + k.to_bytes(8, "little"), k, k)
             if k % PER_CHUNK == PER_CHUNK - 1:
@@ -46,7 +61,9 @@ def chunks_of(file: Path) -> list[ChunkIndex]:
 
 
 def without_checksum(data: bytes, chunk: ChunkIndex, flip: int | None) -> bytes:
-    """`data` with the chunk's checksum zeroed and, at the byte `flip` of its record, one bit changed."""
+    """`data` with the chunk's checksum zeroed and, at the byte `flip` of its record, one bit
+    changed.
+    """
     spoilt = bytearray(data)
     at = chunk.chunk_start_offset
     spoilt[at + CHECKSUM : at + CHECKSUM + 4] = bytes(4)
@@ -61,17 +78,28 @@ def recovered(file: Path, folder: Path) -> list[tuple[str, int, int, bytes]]:
 
 
 def decompresses(data: bytes, chunk: ChunkIndex) -> bool:
-    """Whether the damaged chunk still yields as many bytes as it should: then only the checksum can tell."""
+    """Whether the damaged chunk still yields as many bytes as it should: then only the checksum can
+    tell.
+    """
     start = chunk.chunk_start_offset
     try:
-        return len(zstandard.decompress(data[start + DATA : start + chunk.chunk_length])) == chunk.uncompressed_size
+        return (
+            len(zstandard.decompress(data[start + DATA : start + chunk.chunk_length]))
+            == chunk.uncompressed_size
+        )
     except zstandard.ZstdError:
         return False
 
 
 @pytest.mark.parametrize("ours", [True, False])
-def test_nothing_is_invented_where_a_checksum_was_zeroed_and_a_bit_of_the_chunk_changed(tmp_path: Path, ours: bool) -> None:
-    file = small_log(tmp_path / "log", chunks=3, messages=PER_CHUNK) if ours else foreign_log(tmp_path / "log.mcap", checksums=True)
+def test_nothing_is_invented_where_a_checksum_was_zeroed_and_a_bit_of_the_chunk_changed(
+    tmp_path: Path, ours: bool
+) -> None:
+    file = (
+        small_log(tmp_path / "log", chunks=3, messages=PER_CHUNK)
+        if ours
+        else foreign_log(tmp_path / "log.mcap", checksums=True)
+    )
     data, wanted, spoilt_file = file.read_bytes(), messages_of(file), tmp_path / "spoilt.mcap"
     tried = 0
     for hit, chunk in enumerate(chunks_of(file)):
@@ -79,13 +107,17 @@ def test_nothing_is_invented_where_a_checksum_was_zeroed_and_a_bit_of_the_chunk_
         # A checksum that is all that was changed may go, too: nothing vouches for the chunk then.
         places = [None, *range(DATA, chunk.chunk_length)]
         spoilt = [without_checksum(data, chunk, place) for place in places]
-        plausible = [s for s, place in zip(spoilt, places) if place is None or decompresses(s, chunk)]
+        plausible = [
+            s for s, place in zip(spoilt, places) if place is None or decompresses(s, chunk)
+        ]
         tried += len(plausible)
         for number, bytes_now in enumerate(plausible):
             spoilt_file.write_bytes(bytes_now)
             stream = RecordStream(spoilt_file)
             found = [m.sequence for m in stream if isinstance(m, Message)]
-            assert found == [sequence for i, (*_, sequence, _) in enumerate(wanted) if i // PER_CHUNK != hit]
+            assert found == [
+                sequence for i, (*_, sequence, _) in enumerate(wanted) if i // PER_CHUNK != hit
+            ]
             assert any("chunk" in text for text in stream.damage)
             if number in (0, len(plausible) // 2, len(plausible) - 1):
                 kept = [m for i, m in enumerate(wanted) if i // PER_CHUNK != hit]
@@ -104,8 +136,12 @@ def test_nothing_is_left_of_our_log_whose_only_chunk_lost_its_checksum(tmp_path:
 
 @pytest.mark.parametrize("compression", [CompressionType.ZSTD, CompressionType.NONE])
 @pytest.mark.parametrize("chunked", [True, False])
-def test_logs_of_others_without_checksums_are_read_and_recovered(tmp_path: Path, compression: CompressionType, chunked: bool) -> None:
-    file = foreign_log(tmp_path / "log.mcap", checksums=False, chunked=chunked, compression=compression)
+def test_logs_of_others_without_checksums_are_read_and_recovered(
+    tmp_path: Path, compression: CompressionType, chunked: bool
+) -> None:
+    file = foreign_log(
+        tmp_path / "log.mcap", checksums=False, chunked=chunked, compression=compression
+    )
     wanted = messages_of(file)
     reader = LogReader(file)
     assert [m.data for m in reader.messages()] == [data for *_, data in wanted]
@@ -115,7 +151,9 @@ def test_logs_of_others_without_checksums_are_read_and_recovered(tmp_path: Path,
     assert len(wanted) == 3 * PER_CHUNK
 
 
-def test_in_a_log_of_others_without_checksums_damage_costs_only_the_chunk_that_it_hits(tmp_path: Path) -> None:
+def test_in_a_log_of_others_without_checksums_damage_costs_only_the_chunk_that_it_hits(
+    tmp_path: Path,
+) -> None:
     file = foreign_log(tmp_path / "log.mcap", checksums=False)
     wanted, data = messages_of(file), bytearray(file.read_bytes())
     # What was a missing checksum is a wrong one now.
@@ -138,12 +176,18 @@ def test_an_index_of_our_log_that_turned_into_a_message_is_none(tmp_path: Path) 
 
 
 @pytest.mark.parametrize("what", ["attachment", "data", "summary"])
-def test_a_zeroed_checksum_outside_the_chunks_of_our_log_is_damage(tmp_path: Path, what: str) -> None:
+def test_a_zeroed_checksum_outside_the_chunks_of_our_log_is_damage(
+    tmp_path: Path, what: str
+) -> None:
     file = small_log(tmp_path / "log")
     data = bytearray(file.read_bytes())
     end = len(data) - len(b"\x89MCAP0\r\n") - 4
     start = struct.unpack_from("<Q", data, end - 16)[0]
-    at = {"attachment": data.index(b"# none\n") + len(b"# none\n"), "data": start - 4, "summary": end}[what]
+    at = {
+        "attachment": data.index(b"# none\n") + len(b"# none\n"),
+        "data": start - 4,
+        "summary": end,
+    }[what]
     assert data[at : at + 4] != bytes(4)
     data[at : at + 4] = bytes(4)
     file.write_bytes(data)
@@ -155,9 +199,12 @@ def test_a_zeroed_checksum_outside_the_chunks_of_our_log_is_damage(tmp_path: Pat
 
 def test_a_chunk_of_our_log_whose_checksum_is_really_0_is_read(tmp_path: Path) -> None:
     data = b"\x05" + (22 + 4).to_bytes(8, "little") + bytes(22)
-    # The CRC of these four bytes by themselves is 0; so is that of `data` and these, with the CRC of `data` added.
+    # The CRC of these four bytes by themselves is 0; so is that of `data` and these, with the CRC
+    # of `data` added.
     data += (zlib.crc32(data) ^ int.from_bytes(b"\x9d\x0a\xd9\x6d", "little")).to_bytes(4, "little")
     assert zlib.crc32(data) == 0
     file = tmp_path / "file.mcap"
-    write_with_chunk(file, Chunk("zstd", zstandard.compress(data), 0, 0, 0, len(data)), "rlv-landing")
+    write_with_chunk(
+        file, Chunk("zstd", zstandard.compress(data), 0, 0, 0, len(data)), "rlv-landing"
+    )
     assert [m.data for m in RecordStream(file) if isinstance(m, Message)] == [data[-4:]]

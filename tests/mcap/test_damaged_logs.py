@@ -25,28 +25,50 @@ def test_log_info_sums_a_complete_log_up(log: Path, mode: str) -> None:
     assert told["complete"]
     assert (told["start"], told["duration"]) == (0.0, 1.0)
     struts = next(t for t in told["topics"] if t["name"] == "/landing/struts")
-    assert struts == {"name": "/landing/struts", "type": "sensor_msgs/msg/JointState", "messages": 1001, "rate": 1000.0}
+    assert struts == {
+        "name": "/landing/struts",
+        "type": "sensor_msgs/msg/JointState",
+        "messages": 1001,
+        "rate": 1000.0,
+    }
     history = history_of(LogReader(log))
     landing = told["landing"]
-    assert landing["outcome"] == OUTCOMES[int(Landing(load_preset("yue2022-figures"), mode).run(1.0)["status.phase"][-1])]
+    assert (
+        landing["outcome"]
+        == OUTCOMES[int(Landing(load_preset("yue2022-figures"), mode).run(1.0)["status.phase"][-1])]
+    )
     assert landing["bottomed_out"] == []
     for leg in landing["legs"]:
         assert leg["main_strut_force_min"] == history[f"leg[{leg['leg']}].main_strut.force"].min()
         assert leg["main_strut_stroke_max"] == history[f"leg[{leg['leg']}].main_strut.stroke"].max()
         assert leg["acceleration_peak"] == Reading(history).acceleration_peak(leg["leg"])
     text = run("log", "info", log).stdout
-    for part in ("complete", f"mode       {mode}", "yue2022-figures", "/landing/leg_4/contact", "after contact"):
+    for part in (
+        "complete",
+        f"mode       {mode}",
+        "yue2022-figures",
+        "/landing/leg_4/contact",
+        "after contact",
+    ):
         assert part in text
 
 
-def test_a_log_cut_anywhere_is_read_up_to_there_or_refused_in_one_line(one_log: Path, tmp_path: Path) -> None:
+def test_a_log_cut_anywhere_is_read_up_to_there_or_refused_in_one_line(
+    one_log: Path, tmp_path: Path
+) -> None:
     (whole,) = one_log.glob("*.mcap")
     data = whole.read_bytes()
     cut = tmp_path / "cut.mcap"
     counts: list[int] = []
     refused: list[tuple[int, str]] = []
     for fraction in (0, 4, 8, 20, 40, 0.01, 0.02, 0.1, 0.35, 0.6, 0.9, 0.99, 0.999, -1):
-        length = len(data) - 1 if fraction == -1 else int(fraction) if fraction >= 1 or fraction == 0 else int(len(data) * fraction)
+        length = (
+            len(data) - 1
+            if fraction == -1
+            else int(fraction)
+            if fraction >= 1 or fraction == 0
+            else int(len(data) * fraction)
+        )
         cut.write_bytes(data[:length])
         try:
             found = log_info(LogReader(cut))

@@ -34,25 +34,39 @@ def same(a: History, b: History) -> None:
 
 
 def recorded_by_others(log: Path, folder: Path, plugin: StoragePlugin, without: str = "") -> Path:
-    """What a recorder elsewhere makes of the same topics: its own clock, each topic late by another time, one more topic."""
+    """What a recorder elsewhere makes of the same topics: its own clock, each topic late by another
+    time, one more topic.
+    """
     store = get_typestore(Stores.ROS2_JAZZY)
     reader = LogReader(log)
     reader.read_through()
     with Writer(folder, version=9, storage_plugin=plugin) as writer:
         connections = {
-            c.topic: writer.add_connection(c.topic, c.type_name, typestore=store) for c in reader.channels.values() if c.topic != without
+            c.topic: writer.add_connection(c.topic, c.type_name, typestore=store)
+            for c in reader.channels.values()
+            if c.topic != without
         }
         chatter = writer.add_connection("/chatter", "std_msgs/msg/String", typestore=store)
-        hello = store.serialize_cdr(store.types["std_msgs/msg/String"](data="hello"), "std_msgs/msg/String")
+        hello = store.serialize_cdr(
+            store.types["std_msgs/msg/String"](data="hello"), "std_msgs/msg/String"
+        )
         delay = {topic: 300_000 * i for i, topic in enumerate(connections)}
-        for message in sorted(reader.messages(connections), key=lambda m: m.log_time + delay[m.topic]):
-            writer.write(connections[message.topic], START + message.log_time + delay[message.topic], message.data)
+        for message in sorted(
+            reader.messages(connections), key=lambda m: m.log_time + delay[m.topic]
+        ):
+            writer.write(
+                connections[message.topic],
+                START + message.log_time + delay[message.topic],
+                message.data,
+            )
             if message.log_time % 100_000_000 == 0:
                 writer.write(chatter, START + message.log_time, bytes(hello))
     return folder
 
 
-def test_a_log_is_the_landings_history_and_every_plot_and_measure_takes_it(log: Path, mode: str, tmp_path: Path) -> None:
+def test_a_log_is_the_landings_history_and_every_plot_and_measure_takes_it(
+    log: Path, mode: str, tmp_path: Path
+) -> None:
     history = log_history(log)
     landing = Landing(load_preset("yue2022-figures"), mode).run(1.0, 1e-3)
     assert set(history.names) < set(landing.names)
@@ -60,7 +74,9 @@ def test_a_log_is_the_landings_history_and_every_plot_and_measure_takes_it(log: 
         assert np.array_equal(history[name], landing[name]), name
     assert history.parameters is not None
     save_overview(history, tmp_path / "log.png", "log")
-    assert comparison_table(history, mode) == comparison_table(History(landing.time, history.names, pick(landing, history), None), mode)
+    assert comparison_table(history, mode) == comparison_table(
+        History(landing.time, history.names, pick(landing, history), None), mode
+    )
     assert summarise(history)["legs"] == summarise(landing)["legs"]
     assert leg_work(history) == leg_work(landing)
 
@@ -70,7 +86,9 @@ def pick(landing: History, history: History) -> np.ndarray:
 
 
 @pytest.mark.parametrize("plugin", [StoragePlugin.SQLITE3, StoragePlugin.MCAP])
-def test_a_recording_by_others_gives_the_same_history(one_log: Path, tmp_path: Path, plugin: StoragePlugin) -> None:
+def test_a_recording_by_others_gives_the_same_history(
+    one_log: Path, tmp_path: Path, plugin: StoragePlugin
+) -> None:
     folder = recorded_by_others(one_log, tmp_path / "theirs", plugin)
     found, expected = log_history(folder), log_history(one_log)
     assert found.names == expected.names
@@ -84,9 +102,16 @@ def test_a_recording_by_others_gives_the_same_history(one_log: Path, tmp_path: P
     assert "/chatter" in done.stderr
 
 
-def test_a_recording_without_a_topic_is_refused_or_exported_in_part(one_log: Path, tmp_path: Path) -> None:
-    folder = recorded_by_others(one_log, tmp_path / "theirs", StoragePlugin.SQLITE3, without="/landing/rpy")
-    with pytest.raises(LandingError, match=r"it lacks /landing/rpy; export what is there by --topics struts,pose,twist"):
+def test_a_recording_without_a_topic_is_refused_or_exported_in_part(
+    one_log: Path, tmp_path: Path
+) -> None:
+    folder = recorded_by_others(
+        one_log, tmp_path / "theirs", StoragePlugin.SQLITE3, without="/landing/rpy"
+    )
+    with pytest.raises(
+        LandingError,
+        match=r"it lacks /landing/rpy; export what is there by --topics struts,pose,twist",
+    ):
         log_history(folder)
     history = log_history(folder, ["struts", "/landing/pose"])
     assert len(history) == 1001
@@ -94,7 +119,9 @@ def test_a_recording_without_a_topic_is_refused_or_exported_in_part(one_log: Pat
     assert "body.pitch" not in history
 
 
-def test_csv_and_parquet_hold_every_digit_the_units_and_the_parameters(one_log: Path, tmp_path: Path) -> None:
+def test_csv_and_parquet_hold_every_digit_the_units_and_the_parameters(
+    one_log: Path, tmp_path: Path
+) -> None:
     expected = log_history(one_log)
     for name in ("out.csv", "out.parquet"):
         done = run("log", "export", one_log, tmp_path / name)
@@ -105,13 +132,25 @@ def test_csv_and_parquet_hold_every_digit_the_units_and_the_parameters(one_log: 
     same(History(data[:, 0], lines[0].split(",")[1:], np.ascontiguousarray(data[:, 1:])), expected)
     table = parquet.read_table(tmp_path / "out.parquet")
     columns = {name: table[name].to_numpy() for name in table.column_names}
-    same(History(columns.pop("time"), list(columns), np.column_stack(list(columns.values()))), expected)
+    same(
+        History(columns.pop("time"), list(columns), np.column_stack(list(columns.values()))),
+        expected,
+    )
     assert table.schema.field("leg[1].main_strut.force").metadata == {b"unit": b"N"}
     assert b"mass = " in table.schema.metadata[b"parameters.toml"]
 
 
 def test_topics_span_and_step_choose_rows_and_columns(one_log: Path, tmp_path: Path) -> None:
-    arguments = ("--topics", "rpy,/landing/pose", "--start", "0.1", "--end", "0.5", "--every", "0.01")
+    arguments = (
+        "--topics",
+        "rpy,/landing/pose",
+        "--start",
+        "0.1",
+        "--end",
+        "0.5",
+        "--every",
+        "0.01",
+    )
     done = run("log", "export", one_log, tmp_path / "part.csv", *arguments)
     assert done.returncode == 0, done.stderr
     rows = (tmp_path / "part.csv").read_text().splitlines()
@@ -144,13 +183,18 @@ def test_a_cut_log_is_exported_as_far_as_it_goes(one_log: Path, tmp_path: Path) 
         (("nowhere/out.csv",), "there is no folder nowhere"),
         (("out.csv", "--topics", "strut"), "unknown topic 'strut'; did you mean struts?"),
         (("out.csv", "--topics", "markers"), "has no columns; those that have are struts, pose"),
-        (("out.csv", "--start", "2"), "no instant lies from 2 s to 1 s; the log goes from 0 s to 1 s"),
+        (
+            ("out.csv", "--start", "2"),
+            "no instant lies from 2 s to 1 s; the log goes from 0 s to 1 s",
+        ),
         (("out.csv", "--every", "0"), "--every = 0 s must be above 0 s"),
         (("out.csv", "--end", "nan"), "--end = nan s must be finite"),
         (("out.csv", "--plot", "out.png", "--topics", "struts"), "--plot needs every topic"),
     ],
 )
-def test_export_refuses_what_cannot_be_done(one_log: Path, tmp_path: Path, arguments: tuple[str, ...], message: str) -> None:
+def test_export_refuses_what_cannot_be_done(
+    one_log: Path, tmp_path: Path, arguments: tuple[str, ...], message: str
+) -> None:
     (tmp_path / "there.csv").write_text("mine")
     done = run("log", "export", one_log, *arguments, cwd=tmp_path)
     assert message in one_error_line(done)

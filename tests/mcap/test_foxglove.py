@@ -15,7 +15,11 @@ from rlv_landing.quantities import MODES
 from rlv_ros_bridge.logs.reader import LogReader
 
 LAYOUT = Path(__file__).resolve().parents[2] / "ros_bridge" / "config" / "foxglove.json"
-LEGS_OF = {f"leg {leg}": (leg, colour) for group, colour in zip(MODES["2-2"], COLOURS) for leg, _ in group.legs}
+LEGS_OF = {
+    f"leg {leg}": (leg, colour)
+    for group, colour in zip(MODES["2-2"], COLOURS)
+    for leg, _ in group.legs
+}
 STEP = re.compile(r'\.(?P<name>\w+)|\[(?P<index>:|\d+)\]|\{(?P<key>\w+)=="(?P<value>[^"]*)"\}')
 
 
@@ -66,7 +70,12 @@ def panels(place: Any) -> Iterator[str]:
 def test_every_panel_has_its_place_and_its_settings(layout: dict[str, Any]) -> None:
     placed = list(panels(layout["layout"]))
     assert sorted(placed) == sorted(layout["configById"])
-    assert {panel.split("!")[0] for panel in placed} == {"3D", "Plot", "StateTransitions", "DiagnosticSummary"}
+    assert {panel.split("!")[0] for panel in placed} == {
+        "3D",
+        "Plot",
+        "StateTransitions",
+        "DiagnosticSummary",
+    }
 
 
 def test_every_topic_is_in_a_log(layout: dict[str, Any], last: dict[str, Any]) -> None:
@@ -76,20 +85,35 @@ def test_every_topic_is_in_a_log(layout: dict[str, Any], last: dict[str, Any]) -
     shown = [topic for topic, how in settings["3D!vehicle"]["topics"].items() if how["visible"]]
     assert "/landing/markers" in shown
     frames = {marker.header.frame_id for marker in last["/landing/markers"].markers}
-    assert frames == {settings["3D!vehicle"]["followTf"], settings["3D!vehicle"]["layers"]["ground"]["frameId"]}
+    assert frames == {
+        settings["3D!vehicle"]["followTf"],
+        settings["3D!vehicle"]["layers"]["ground"]["frameId"],
+    }
 
 
-def test_every_message_path_leads_to_one_value_in_a_log(layout: dict[str, Any], last: dict[str, Any]) -> None:
-    paths = [(panel, path) for panel, how in layout["configById"].items() for path in how.get("paths", ())]
+def test_every_message_path_leads_to_one_value_in_a_log(
+    layout: dict[str, Any], last: dict[str, Any]
+) -> None:
+    paths = [
+        (panel, path)
+        for panel, how in layout["configById"].items()
+        for path in how.get("paths", ())
+    ]
     assert len(paths) == 21
     for panel, path in paths:
         (value,) = at(path["value"], last)
-        assert isinstance(value, (str, bytes, int) if panel.startswith("State") else float), path["value"]
+        assert isinstance(value, (str, bytes, int) if panel.startswith("State") else float), path[
+            "value"
+        ]
     # The drop test's last word, at 1 s: it is still moving, below what counts as settled.
-    assert at(layout["configById"]["StateTransitions!phase"]["paths"][0]["value"], last) == ["contact"]
+    assert at(layout["configById"]["StateTransitions!phase"]["paths"][0]["value"], last) == [
+        "contact"
+    ]
 
 
-def test_legs_have_their_own_struts_and_colours(layout: dict[str, Any], last: dict[str, Any]) -> None:
+def test_legs_have_their_own_struts_and_colours(
+    layout: dict[str, Any], last: dict[str, Any]
+) -> None:
     told = []
     for panel, how in layout["configById"].items():
         for path in how.get("paths", ()):
@@ -99,6 +123,8 @@ def test_legs_have_their_own_struts_and_colours(layout: dict[str, Any], last: di
                 index = re.search(r"\[(\d+)\]", path["value"])
                 name = last["/landing/struts"].name[int(index[1])] if index else path["value"]
                 assert f"leg_{leg}" in name
-                assert index is None or name.endswith(panel.split("!")[1].rsplit("-", 1)[0].replace("-", "_"))
+                assert index is None or name.endswith(
+                    panel.split("!")[1].rsplit("-", 1)[0].replace("-", "_")
+                )
                 told.append(panel)
     assert len(told) == 4 * len(set(told)) == 16

@@ -1,4 +1,6 @@
-"""Nodes that are ended by a signal at random moments: what is in their logs, held against what a subscriber had heard before."""
+"""Nodes that are ended by a signal at random moments: what is in their logs, held against what a
+subscriber had heard before.
+"""
 
 from __future__ import annotations
 
@@ -31,15 +33,30 @@ def stamps(messages: list[bytes]) -> list[float]:
     return [s + ns / 1e9 for s, ns in (struct.unpack_from("<iI", m, 4) for m in messages)]
 
 
-def ended(fmu: Path, folder: Path, number: signal.Signals, heard: int, delay: float) -> tuple[float, int]:
-    """A node that records to `folder` and gets the signal once a subscriber has `heard` so many samples, and `delay` [s] later.
+def ended(
+    fmu: Path, folder: Path, number: signal.Signals, heard: int, delay: float
+) -> tuple[float, int]:
+    """A node that records to `folder` and gets the signal once a subscriber has `heard` so many
+    samples, and `delay` [s] later.
 
-    What was published last [s of simulation time] as the subscriber has it, -1 for nothing; and the node's exit code.
+    What was published last [s of simulation time] as the subscriber has it, -1 for nothing; and the
+    node's exit code.
     """
     domain = new_domain()
     listener = Listener(STRUTS, folder.parent, domain, announce=heard) if heard else None
     waits = ("--wait-for-subscribers", 1) if heard else ()
-    node = start("node", "--fmu", fmu, "--record", folder, "--stop-time", STOP_TIME, *waits, domain=domain, TMPDIR=str(folder.parent))
+    node = start(
+        "node",
+        "--fmu",
+        fmu,
+        "--record",
+        folder,
+        "--stop-time",
+        STOP_TIME,
+        *waits,
+        domain=domain,
+        TMPDIR=str(folder.parent),
+    )
     try:
         if listener is not None:
             listener.wait_for_announcement()
@@ -47,7 +64,9 @@ def ended(fmu: Path, folder: Path, number: signal.Signals, heard: int, delay: fl
         time.sleep(delay)
         node.send_signal(number)
         node.communicate(timeout=TIMEOUT)
-        published = stamps(by_topic(listener.finish())["/landing/struts"]) if listener is not None else []
+        published = (
+            stamps(by_topic(listener.finish())["/landing/struts"]) if listener is not None else []
+        )
     finally:
         if listener is not None:
             listener.stop()
@@ -77,7 +96,9 @@ def last_of(folder: Path) -> float:
 
 
 def recovered(folder: Path) -> Path | None:
-    """The log that `log recover` makes of what a killed node has left, as rosbags opens it; None where nothing whole was left."""
+    """The log that `log recover` makes of what a killed node has left, as rosbags opens it; None
+    where nothing whole was left.
+    """
     target = folder.with_name("recovered")
     done = run("log", "recover", folder, "--output", target)
     if done.returncode:
@@ -89,16 +110,26 @@ def recovered(folder: Path) -> Path | None:
 
 
 @pytest.mark.torture
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL], ids=lambda number: number.name)
+@pytest.mark.parametrize(
+    "number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL], ids=lambda number: number.name
+)
 def test_a_node_ended_at_any_moment_leaves_a_log_that_lacks_at_most_half_a_second(
-    number: signal.Signals, fmu: Path, tmp_path: Path, many: Callable[[int], int], record_property: Callable[[str, object], None]
+    number: signal.Signals,
+    fmu: Path,
+    tmp_path: Path,
+    many: Callable[[int], int],
+    record_property: Callable[[str, object], None],
 ) -> None:
     losses = []
     for case in range(many(2)):
         generator = random.Random(f"{number.name}-{case}")
         # Every fourth while it starts, with nobody listening.
         early = case % 4 == 1
-        heard, delay = (0, generator.uniform(0.0, 2.5)) if early else (generator.randint(1, 800), generator.uniform(0.0, 0.3))
+        heard, delay = (
+            (0, generator.uniform(0.0, 2.5))
+            if early
+            else (generator.randint(1, 800), generator.uniform(0.0, 0.3))
+        )
         folder = tmp_path / f"case-{case}" / "log"
         folder.parent.mkdir()
         published, code = ended(fmu, folder, number, heard, delay)
@@ -115,7 +146,9 @@ def test_a_node_ended_at_any_moment_leaves_a_log_that_lacks_at_most_half_a_secon
             assert not run("log", "info", folder).returncode
             last = last_of(folder)
         losses.append(max(0.0, published - last))
-        assert losses[-1] <= (LOSS if number is signal.SIGKILL else 0.0), f"case {case}: {losses[-1]:g} s of {published:g} s are lost"
+        assert losses[-1] <= (LOSS if number is signal.SIGKILL else 0.0), (
+            f"case {case}: {losses[-1]:g} s of {published:g} s are lost"
+        )
     record_property("largest loss [s]", max(losses))
 
 
@@ -124,7 +157,10 @@ def test_info_tells_what_a_killed_node_has_left(fmu: Path, tmp_path: Path) -> No
     published, _ = ended(fmu, folder, signal.SIGKILL, 1200, 0.0)
     done = run("log", "info", folder, "--json")
     assert done.returncode == 3
-    assert done.stderr.strip() == f"warning: {folder} is cut: its writer did not finish it; all up to there was read"
+    assert (
+        done.stderr.strip()
+        == f"warning: {folder} is cut: its writer did not finish it; all up to there was read"
+    )
     told = json.loads(done.stdout)
     assert not told["complete"]
     assert told["metadata"]["mode"] == "2-2"

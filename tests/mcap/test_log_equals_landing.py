@@ -19,7 +19,8 @@ from rlv_ros_bridge.logs.history import history_of
 from rlv_ros_bridge.logs.reader import LogReader
 
 LEGS = (1, 2, 3, 4)
-# topic -> what its message carries: the output's name and where it stands in the message, axes and signs written out
+# topic -> what its message carries: the output's name and where it stands in the message, axes and
+# signs written out
 BODY: dict[str, dict[str, Any]] = {
     "/landing/pose": {"body.x": lambda m: m.pose.position.x, "body.y": lambda m: m.pose.position.z},
     "/landing/rpy": {"body.pitch": lambda m: m.vector.y},
@@ -42,7 +43,11 @@ def expected_history(mode: str) -> History:
 
 
 def same_bits(a: Any, b: NDArray[np.float64]) -> bool:
-    return bool(np.array_equal(np.asarray(a, dtype=np.float64).view(np.uint64), np.ascontiguousarray(b).view(np.uint64)))
+    return bool(
+        np.array_equal(
+            np.asarray(a, dtype=np.float64).view(np.uint64), np.ascontiguousarray(b).view(np.uint64)
+        )
+    )
 
 
 def check(read: dict[str, list[Any]], history: History) -> None:
@@ -54,7 +59,9 @@ def check(read: dict[str, list[Any]], history: History) -> None:
         for strut in ("main_strut", "auxiliary_strut"):
             i = list(struts[0].name).index(f"leg_{leg}_{strut}")
             assert same_bits([m.position[i] for m in struts], history[f"leg[{leg}].{strut}.stroke"])
-            assert same_bits([m.velocity[i] for m in struts], history[f"leg[{leg}].{strut}.stroke_rate"])
+            assert same_bits(
+                [m.velocity[i] for m in struts], history[f"leg[{leg}].{strut}.stroke_rate"]
+            )
             assert same_bits([m.effort[i] for m in struts], history[f"leg[{leg}].{strut}.force"])
         force = [m.wrench.force for m in read[f"/landing/leg_{leg}/contact"]]
         assert same_bits([f.x for f in force], history[f"leg[{leg}].contact.force_x"])
@@ -81,7 +88,9 @@ def test_mcap_ros2_support_reads_the_landing_bit_for_bit(log: Path, mode: str) -
     (file,) = log.glob("*.mcap")
     read: dict[str, list[Any]] = {}
     with file.open("rb") as f:
-        for _, channel, message, decoded in make_reader(f, decoder_factories=[DecoderFactory()]).iter_decoded_messages():
+        for _, channel, message, decoded in make_reader(
+            f, decoder_factories=[DecoderFactory()]
+        ).iter_decoded_messages():
             assert message.log_time == message.publish_time
             read.setdefault(channel.topic, []).append(decoded)
     check(read, expected_history(mode))
@@ -89,20 +98,32 @@ def test_mcap_ros2_support_reads_the_landing_bit_for_bit(log: Path, mode: str) -
     assert len(read["/diagnostics"]) == 11
 
 
-def test_the_diagnostics_tell_phase_balance_pace_and_what_the_integrator_has_done(log: Path, mode: str) -> None:
+def test_the_diagnostics_tell_phase_balance_pace_and_what_the_integrator_has_done(
+    log: Path, mode: str
+) -> None:
     (file,) = log.glob("*.mcap")
     with file.open("rb") as f:
-        decoded = make_reader(f, decoder_factories=[DecoderFactory()]).iter_decoded_messages(["/diagnostics"])
-        told = [(message.log_time, {v.key: v.value for v in array.status[0].values}) for _, _, message, array in decoded]
+        decoded = make_reader(f, decoder_factories=[DecoderFactory()]).iter_decoded_messages(
+            ["/diagnostics"]
+        )
+        told = [
+            (message.log_time, {v.key: v.value for v in array.status[0].values})
+            for _, _, message, array in decoded
+        ]
     assert [time for time, _ in told] == [k * 10**8 for k in range(11)]
     landing = Landing(load_preset("yue2022-figures"), mode)
     for k in range(1001):
         landing.advance_to(k * 1e-3)
         if k % 100 == 0:
             _, values = told[k // 100]
-            assert {name: values[f"solver.{name}"] for name in landing.statistics} == {n: str(c) for n, c in landing.statistics.items()}
+            assert {name: values[f"solver.{name}"] for name in landing.statistics} == {
+                n: str(c) for n, c in landing.statistics.items()
+            }
             assert values["energy balance [J]"] == f"{landing.get('energy.balance'):.6g}"
-            assert values["phase"] == ("falling", "contact", "settled", "toppled")[int(landing.get("status.phase"))]
+            assert (
+                values["phase"]
+                == ("falling", "contact", "settled", "toppled")[int(landing.get("status.phase"))]
+            )
             assert {"real-time factor", "steps late", "time lost to stalls [s]"} <= values.keys()
 
 
@@ -129,4 +150,6 @@ def test_the_log_carries_what_it_takes_to_repeat_the_run(log: Path, mode: str, f
     parameters = reader.parameters()
     assert parameters is not None
     again = Landing(parameters).run(1.0, 1e-3)
-    assert same_bits(again["leg[1].main_strut.force"], history_of(reader)["leg[1].main_strut.force"])
+    assert same_bits(
+        again["leg[1].main_strut.force"], history_of(reader)["leg[1].main_strut.force"]
+    )

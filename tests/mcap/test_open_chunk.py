@@ -1,4 +1,6 @@
-"""Messages that are recorded a sample at a time are those that MCAP's own writer would have written, one by one."""
+"""Messages that are recorded a sample at a time are those that MCAP's own writer would have
+written, one by one.
+"""
 
 from __future__ import annotations
 
@@ -19,9 +21,15 @@ MESSAGES = dict[str, list[tuple[int, bytes]]]
 
 
 def record(folder: Path, chunk_messages: int, by_the_library: bool) -> tuple[Path, MESSAGES]:
-    """A log of 1500 samples and single messages between them, and what it must hold; a chunk is written every so many samples."""
+    """A log of 1500 samples and single messages between them, and what it must hold; a chunk is
+    written every so many samples.
+    """
     random = Random(3)
-    recorder = Recorder(folder, [RecordedTopic(name, CLOCK_TYPE, TELEMETRY) for name in (*SIZES, SINGLE)], {"key": "value"})
+    recorder = Recorder(
+        folder,
+        [RecordedTopic(name, CLOCK_TYPE, TELEMETRY) for name in (*SIZES, SINGLE)],
+        {"key": "value"},
+    )
     if by_the_library:
         recorder._chunk._builder = None
     expected: MESSAGES = {name: [] for name in (*SIZES, SINGLE)}
@@ -29,7 +37,9 @@ def record(folder: Path, chunk_messages: int, by_the_library: bool) -> tuple[Pat
     for k in range(1500):
         time = 1000 * k
         data = [CDR + random.randbytes(size - len(CDR)) for size in SIZES.values()]
-        recorder.write_sample(time, b"".join(head + TIMES.pack(k, time, time) + d for head, d in zip(heads, data)))
+        recorder.write_sample(
+            time, b"".join(head + TIMES.pack(k, time, time) + d for head, d in zip(heads, data))
+        )
         for name, d in zip(SIZES, data):
             expected[name].append((time, d))
         for _ in range(random.choice((0, 0, 0, 1, 2))):
@@ -45,21 +55,27 @@ def record(folder: Path, chunk_messages: int, by_the_library: bool) -> tuple[Pat
 
 
 @pytest.mark.parametrize("chunk_messages", [1, 7, 100])
-def test_a_log_is_byte_for_byte_what_mcaps_own_writer_makes_of_its_messages(tmp_path: Path, chunk_messages: int) -> None:
+def test_a_log_is_byte_for_byte_what_mcaps_own_writer_makes_of_its_messages(
+    tmp_path: Path, chunk_messages: int
+) -> None:
     ours, _ = record(tmp_path / "ours" / "log", chunk_messages, by_the_library=False)
     theirs, _ = record(tmp_path / "theirs" / "log", chunk_messages, by_the_library=True)
     assert ours.read_bytes() == theirs.read_bytes()
-    assert (ours.parent / "metadata.yaml").read_bytes() == (theirs.parent / "metadata.yaml").read_bytes()
+    assert (ours.parent / "metadata.yaml").read_bytes() == (
+        theirs.parent / "metadata.yaml"
+    ).read_bytes()
 
 
 @pytest.mark.parametrize("by_the_library", [False, True])
-def test_every_message_is_in_a_chunk_of_at_most_64_kib_and_found_by_its_index(tmp_path: Path, by_the_library: bool) -> None:
+def test_every_message_is_in_a_chunk_of_at_most_64_kib_and_found_by_its_index(
+    tmp_path: Path, by_the_library: bool
+) -> None:
     path, expected = record(tmp_path / "log", 10**9, by_the_library)
     found = messages_of(path)
     for name, messages in expected.items():
-        assert [(time, sequence, data) for topic, time, sequence, data in found if topic == name] == [
-            (time, k, data) for k, (time, data) in enumerate(messages)
-        ]
+        assert [
+            (time, sequence, data) for topic, time, sequence, data in found if topic == name
+        ] == [(time, k, data) for k, (time, data) in enumerate(messages)]
     with path.open("rb") as f:
         reader = make_reader(f, validate_crcs=True)
         summary = reader.get_summary()
@@ -67,7 +83,10 @@ def test_every_message_is_in_a_chunk_of_at_most_64_kib_and_found_by_its_index(tm
         assert len(summary.chunk_indexes) > 1
         assert max(c.uncompressed_size for c in summary.chunk_indexes) <= 64 * 1024
         # By the indexes: a span of one topic.
-        part = [m.data for _, _, m in reader.iter_messages(["/b"], starting_at=400_000, ending_before=900_000)]
+        part = [
+            m.data
+            for _, _, m in reader.iter_messages(["/b"], starting_at=400_000, ending_before=900_000)
+        ]
     assert part == [data for time, data in expected["/b"] if 400_000 <= time < 900_000]
 
 

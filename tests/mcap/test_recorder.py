@@ -49,7 +49,11 @@ def test_layout_is_that_of_rosbag2(tmp_path: Path) -> None:
         assert channels["/a"].metadata["topic_type_hash"].startswith("RIHS01_")
         names = [m.name for m in reader.iter_metadata()]
         assert names.count("rlv_landing") == 1
-        serialized = next(m.metadata["serialized_metadata"] for m in reader.iter_metadata() if "serialized_metadata" in m.metadata)
+        serialized = next(
+            m.metadata["serialized_metadata"]
+            for m in reader.iter_metadata()
+            if "serialized_metadata" in m.metadata
+        )
     beside = yaml.safe_load((folder / "metadata.yaml").read_text())["rosbag2_bagfile_information"]
     assert yaml.safe_load(serialized) == beside
     assert beside["version"] == 9
@@ -72,7 +76,9 @@ def test_no_chunk_is_larger_than_64_kib(tmp_path: Path) -> None:
     assert CHUNK_BYTES < 64 * 1024
 
 
-def test_what_is_flushed_can_be_read_before_the_file_is_closed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_flushed_can_be_read_before_the_file_is_closed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("rlv_ros_bridge.logs.recorder.FLUSH_SECONDS", 0.0)
     recorder = Recorder(tmp_path / "log", TOPICS, {"key": "value"})
     recorder.write("/a", 1, CDR)
@@ -99,17 +105,24 @@ def test_failing_to_open_leaves_nothing_behind(tmp_path: Path) -> None:
     with pytest.raises(LandingError, match="cannot be made"):
         Recorder(tmp_path / "file" / "below" / "log", TOPICS)
     with pytest.raises(LandingError, match="is not installed"):
-        Recorder(tmp_path / "new" / "log", [RecordedTopic("/a", "nosuch_msgs/msg/Thing", TELEMETRY)])
+        Recorder(
+            tmp_path / "new" / "log", [RecordedTopic("/a", "nosuch_msgs/msg/Thing", TELEMETRY)]
+        )
     with pytest.raises(LandingError, match="cannot be"):
         Recorder(tmp_path / "new" / ("x" * 254), TOPICS)
     assert [p.name for p in tmp_path.iterdir()] == ["file"]
 
 
-def test_a_full_disk_does_not_stop_the_landing_and_what_was_written_is_readable(fmu: Path, tmp_path: Path) -> None:
+def test_a_full_disk_does_not_stop_the_landing_and_what_was_written_is_readable(
+    fmu: Path, tmp_path: Path
+) -> None:
     folder = tmp_path / "log"
-    # A file size limit makes write() fail in mid-record, as a full disk does; the FMU's own files stay below it.
+    # A file size limit makes write() fail in mid-record, as a full disk does; the FMU's own files
+    # stay below it.
     limit = 700_000
-    line = command("node", "--fmu", fmu, "--record", folder, "--realtime-factor", 0, "--stop-time", 3)
+    line = command(
+        "node", "--fmu", fmu, "--record", folder, "--realtime-factor", 0, "--stop-time", 3
+    )
     done = subprocess.run(
         line,
         env=environment(FASTDDS_BUILTIN_TRANSPORTS="UDPv4"),
@@ -158,7 +171,9 @@ def test_a_folder_that_goes_away_is_noticed_at_the_next_flush_and_at_the_end(
         recorder.write("/a", 2, CDR)
         if flushed:
             recorder.flush()
-            assert recorder.error.endswith("stopped after 2 messages: the file was removed or moved away")
+            assert recorder.error.endswith(
+                "stopped after 2 messages: the file was removed or moved away"
+            )
         recorder.write("/a", 3, CDR)
         recorder.close()
         assert "removed or moved away" in recorder.error
@@ -167,11 +182,26 @@ def test_a_folder_that_goes_away_is_noticed_at_the_next_flush_and_at_the_end(
             assert [m.log_time for m in LogReader(away).messages()][:2] == [1, 2]
 
 
-def test_the_landing_goes_on_when_its_log_is_removed_and_says_so_at_once_and_at_the_end(fmu: Path, tmp_path: Path) -> None:
+def test_the_landing_goes_on_when_its_log_is_removed_and_says_so_at_once_and_at_the_end(
+    fmu: Path, tmp_path: Path
+) -> None:
     folder = tmp_path / "log"
     domain = new_domain()
-    listener = Listener({"/landing/struts": "sensor_msgs/msg/JointState"}, tmp_path, domain, announce=300)
-    node = start("node", "--fmu", fmu, "--record", folder, "--stop-time", 2, "--wait-for-subscribers", 1, domain=domain)
+    listener = Listener(
+        {"/landing/struts": "sensor_msgs/msg/JointState"}, tmp_path, domain, announce=300
+    )
+    node = start(
+        "node",
+        "--fmu",
+        fmu,
+        "--record",
+        folder,
+        "--stop-time",
+        2,
+        "--wait-for-subscribers",
+        1,
+        domain=domain,
+    )
     try:
         listener.wait_for_announcement()
         shutil.rmtree(folder)
@@ -202,6 +232,11 @@ def test_info_on_such_a_log_needs_no_ros(one_log: Path) -> None:
     code = "import sys; from rlv_ros_bridge.__main__ import main; main(['log', 'info', sys.argv[1]], standalone_mode=False); "
     code += "print('rclpy' in sys.modules)"
     done = subprocess.run(
-        [sys.executable, "-c", code, str(one_log)], env=environment(), capture_output=True, text=True, timeout=TIMEOUT, check=False
+        [sys.executable, "-c", code, str(one_log)],
+        env=environment(),
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT,
+        check=False,
     )
     assert done.stdout.strip().endswith("False"), done.stderr

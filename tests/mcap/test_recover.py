@@ -1,4 +1,6 @@
-"""`log recover`: all that is whole of a cut or damaged log, nothing else, in a log that every reader opens."""
+"""`log recover`: all that is whole of a cut or damaged log, nothing else, in a log that every
+reader opens.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,9 @@ Found = list[tuple[str, int, int, bytes]]
 
 
 class Whole:
-    """What a complete file's own index says of its chunks: where they end, and which messages they hold."""
+    """What a complete file's own index says of its chunks: where they end, and which messages they
+    hold.
+    """
 
     def __init__(self, file: Path) -> None:
         self.messages = messages_of(file)
@@ -41,7 +45,9 @@ class Whole:
             summary = make_reader(f).get_summary()
         assert summary is not None
         self.chunks = summary.chunk_indexes
-        self.ends = [(c.chunk_start_offset + c.chunk_length, c.message_end_time) for c in self.chunks]
+        self.ends = [
+            (c.chunk_start_offset + c.chunk_length, c.message_end_time) for c in self.chunks
+        ]
         assert self.ends == sorted(self.ends)
 
     def within(self, length: int) -> Found:
@@ -65,7 +71,9 @@ def test_of_a_file_cut_at_any_byte_exactly_the_whole_chunks_are_read(tmp_path: P
     for length in range(size, 7, -1):
         os.truncate(file, length)
         stream = RecordStream(file)
-        got = [(m.channel_id, m.log_time, m.sequence, m.data) for m in stream if isinstance(m, Message)]
+        got = [
+            (m.channel_id, m.log_time, m.sequence, m.data) for m in stream if isinstance(m, Message)
+        ]
         wanted = [(1 if topic == "/a" else 2, *rest) for topic, *rest in whole.within(length)]
         assert got == wanted, length
         assert stream.finished == (length == size)
@@ -74,7 +82,9 @@ def test_of_a_file_cut_at_any_byte_exactly_the_whole_chunks_are_read(tmp_path: P
     assert seen == {0, 6, 12, 18}
 
 
-def test_recover_saves_exactly_the_whole_chunks_into_a_log_that_every_reader_opens(tmp_path: Path) -> None:
+def test_recover_saves_exactly_the_whole_chunks_into_a_log_that_every_reader_opens(
+    tmp_path: Path,
+) -> None:
     file = small_log(tmp_path / "log")
     size, whole = file.stat().st_size, Whole(file)
     refused = 0
@@ -85,7 +95,9 @@ def test_recover_saves_exactly_the_whole_chunks_into_a_log_that_every_reader_ope
         shutil.rmtree(out, ignore_errors=True)
         wanted = whole.within(length)
         if not wanted:
-            with pytest.raises(LandingError, match=r"cut within its first record|holds no whole chunk"):
+            with pytest.raises(
+                LandingError, match=r"cut within its first record|holds no whole chunk"
+            ):
                 recover(folder)
             assert not out.exists()
             refused += 1
@@ -105,10 +117,14 @@ def check_with_every_reader(folder: Path, wanted: Found) -> None:
         decoded = list(make_reader(f, decoder_factories=[DecoderFactory()]).iter_decoded_messages())
         assert [d.message.log_time for d in decoded] == stamps
     with file.open("rb") as f:
-        streamed = [r for r in StreamReader(f, validate_crcs=True).records if isinstance(r, Message)]
+        streamed = [
+            r for r in StreamReader(f, validate_crcs=True).records if isinstance(r, Message)
+        ]
         assert [m.data for m in streamed] == [data for *_, data in wanted]
     with Reader(folder) as bag:
-        assert [(c.topic, time, bytes(data)) for c, time, data in bag.messages()] == [(t, time, data) for t, time, _, data in wanted]
+        assert [(c.topic, time, bytes(data)) for c, time, data in bag.messages()] == [
+            (t, time, data) for t, time, _, data in wanted
+        ]
         assert bag.message_count == len(wanted)
     ours = LogReader(folder)
     assert [m.data for m in ours.messages()] == [data for *_, data in wanted]
@@ -117,7 +133,9 @@ def check_with_every_reader(folder: Path, wanted: Found) -> None:
     assert ours.metadata["stop_time"] == "1.0"
 
 
-def test_the_command_says_what_was_saved_and_what_is_missing_and_never_overwrites(one_log: Path, tmp_path: Path) -> None:
+def test_the_command_says_what_was_saved_and_what_is_missing_and_never_overwrites(
+    one_log: Path, tmp_path: Path
+) -> None:
     (whole,) = one_log.glob("*.mcap")
     folder = cut_to(whole, tmp_path / "run", whole.stat().st_size // 2)
     done = run("log", "recover", folder)
@@ -165,9 +183,13 @@ def test_whole_messages_of_an_unfinished_uncompressed_chunk_are_saved(tmp_path: 
     for chunked in (True, False):
         file = tmp_path / f"plain-{chunked}.mcap"
         with file.open("wb") as f:
-            writer = Writer(f, compression=CompressionType.NONE, index_types=IndexType.ALL, use_chunking=chunked)
+            writer = Writer(
+                f, compression=CompressionType.NONE, index_types=IndexType.ALL, use_chunking=chunked
+            )
             writer.start("ros2")
-            channel = writer.register_channel("/a", "cdr", writer.register_schema("std_msgs/msg/Empty", "ros2msg", b""))
+            channel = writer.register_channel(
+                "/a", "cdr", writer.register_schema("std_msgs/msg/Empty", "ros2msg", b"")
+            )
             for k in range(20):
                 writer.add_message(channel, k, CDR + bytes([k]) * 40, k, k)
             writer.finish()
@@ -176,25 +198,35 @@ def test_whole_messages_of_an_unfinished_uncompressed_chunk_are_saved(tmp_path: 
         file.write_bytes(data[:middle])
         found = recover(file, tmp_path / f"out-{chunked}")
         assert found.messages == 7
-        assert [m[1] for m in messages_of(tmp_path / f"out-{chunked}" / f"out-{chunked}_0.mcap")] == list(range(7))
+        assert [
+            m[1] for m in messages_of(tmp_path / f"out-{chunked}" / f"out-{chunked}_0.mcap")
+        ] == list(range(7))
 
 
 def test_damage_in_the_middle_costs_only_the_chunk_that_it_hits(tmp_path: Path) -> None:
     file = small_log(tmp_path / "log")
     whole, data = Whole(file), file.read_bytes()
     for hit, chunk in enumerate(whole.chunks):
-        # Within the compressed bytes, in the length, and by a byte too many: the last two hide where the next record begins.
+        # Within the compressed bytes, in the length, and by a byte too many: the last two hide
+        # where the next record begins.
         for name, spoilt in (
             ("flip", flipped(data, chunk.chunk_start_offset + chunk.chunk_length - 5)),
             ("length", flipped(data, chunk.chunk_start_offset + 2)),
-            ("insert", data[: chunk.chunk_start_offset + 60] + b"x" + data[chunk.chunk_start_offset + 60 :]),
+            (
+                "insert",
+                data[: chunk.chunk_start_offset + 60]
+                + b"x"
+                + data[chunk.chunk_start_offset + 60 :],
+            ),
         ):
             folder = tmp_path / f"{name}-{hit}"
             folder.mkdir()
             (folder / "log_0.mcap").write_bytes(spoilt)
             assert recover(folder).damage
             out = tmp_path / f"{name}-{hit}-recovered"
-            assert messages_of(out / f"{out.name}_0.mcap") == [m for i, m in enumerate(whole.messages) if i // 12 != hit]
+            assert messages_of(out / f"{out.name}_0.mcap") == [
+                m for i, m in enumerate(whole.messages) if i // 12 != hit
+            ]
 
 
 def flipped(data: bytes, at: int) -> bytes:
@@ -206,11 +238,17 @@ def test_mutated_logs_break_neither_info_nor_recover_and_nothing_is_invented(
     one_log: Path, tmp_path: Path, many: Callable[[int], int]
 ) -> None:
     (file,) = one_log.glob("*.mcap")
-    short = rewrite(file, tmp_path / "short", lambda r: None if isinstance(r, tuple) and r[1].log_time > 20_000_000 else r)
+    short = rewrite(
+        file,
+        tmp_path / "short",
+        lambda r: None if isinstance(r, tuple) and r[1].log_time > 20_000_000 else r,
+    )
     worker = Path(__file__).with_name("mutations.py")
     count = many(300)
     line = [sys.executable, str(worker), str(short), str(count), "1", str(tmp_path)]
-    done = subprocess.run(line, env=environment(OMP_NUM_THREADS="1"), capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        line, env=environment(OMP_NUM_THREADS="1"), capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stderr
     told = json.loads(done.stdout)
     assert told["cases"] == count
@@ -222,7 +260,12 @@ def test_mutated_logs_break_neither_info_nor_recover_and_nothing_is_invented(
 def test_a_changed_byte_outside_the_chunks_is_noticed(tmp_path: Path, what: str) -> None:
     file = small_log(tmp_path / "log")
     data = file.read_bytes()
-    at = {"metadata": data.index(b"stop_time") + 14, "attachment": data.index(b"# none"), "end": -30, "summary": data.rindex(b"/a")}[what]
+    at = {
+        "metadata": data.index(b"stop_time") + 14,
+        "attachment": data.index(b"# none"),
+        "end": -30,
+        "summary": data.rindex(b"/a"),
+    }[what]
     file.write_bytes(flipped(data, at if at >= 0 else len(data) + at))
     reader = LogReader(file)
     reader.read_through()
@@ -245,14 +288,22 @@ def test_a_chunk_that_claims_gigabytes_does_not_fill_the_memory(tmp_path: Path) 
     )
     files = [str(tmp_path / "honest.mcap"), str(tmp_path / "lying.mcap")]
     done = subprocess.run(
-        [sys.executable, "-c", code, *files], env=environment(), capture_output=True, text=True, timeout=TIMEOUT, check=True
+        [sys.executable, "-c", code, *files],
+        env=environment(),
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT,
+        check=True,
     )
     assert int(done.stdout) * 1024 < LARGEST_CHUNK
 
 
 def test_a_chunk_whose_checksum_is_right_is_read(tmp_path: Path) -> None:
     data = b"\x05" + (22 + 4).to_bytes(8, "little") + bytes(22) + b"abcd"
-    write_with_chunk(tmp_path / "file.mcap", Chunk("zstd", zstandard.compress(data), 0, 0, zlib.crc32(data), len(data)))
+    write_with_chunk(
+        tmp_path / "file.mcap",
+        Chunk("zstd", zstandard.compress(data), 0, 0, zlib.crc32(data), len(data)),
+    )
     stream = RecordStream(tmp_path / "file.mcap")
     assert [m.data for m in stream if isinstance(m, Message)] == [b"abcd"]
     assert stream.finished

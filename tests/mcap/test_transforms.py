@@ -1,4 +1,6 @@
-"""`/tf` in a log: read by readers that are not ours, held against `odom`, and against the URDF by a parser that is not ours."""
+"""`/tf` in a log: read by readers that are not ours, held against `odom`, and against the URDF by a
+parser that is not ours.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,9 @@ def by_rosbags(folder: Path) -> dict[str, list[tuple[int, Any]]]:
     found: dict[str, list[tuple[int, Any]]] = {}
     with Reader(folder) as reader:
         for connection, time, data in reader.messages():
-            found.setdefault(connection.topic, []).append((time, STORE.deserialize_cdr(data, connection.msgtype)))
+            found.setdefault(connection.topic, []).append(
+                (time, STORE.deserialize_cdr(data, connection.msgtype))
+            )
     return found
 
 
@@ -38,13 +42,17 @@ def by_mcap(folder: Path) -> dict[str, list[tuple[int, Any]]]:
     found: dict[str, list[tuple[int, Any]]] = {}
     (file,) = folder.glob("*.mcap")
     with file.open("rb") as f:
-        for _, channel, message, decoded in make_reader(f, decoder_factories=[DecoderFactory()]).iter_decoded_messages():
+        for _, channel, message, decoded in make_reader(
+            f, decoder_factories=[DecoderFactory()]
+        ).iter_decoded_messages():
             found.setdefault(channel.topic, []).append((message.log_time, decoded))
     return found
 
 
 def test_how_often_can_be_chosen(fmu: Path, tmp_path: Path) -> None:
-    folder = record(fmu, tmp_path / "log", "--stop-time", "0.1", "--ros-args", "-p", "publish_every.tf:=50")
+    folder = record(
+        fmu, tmp_path / "log", "--stop-time", "0.1", "--ros-args", "-p", "publish_every.tf:=50"
+    )
     assert [time for time, _ in by_mcap(folder)["/tf"]] == [0, 50_000_000, 100_000_000]
 
 
@@ -60,7 +68,10 @@ def test_the_body_is_where_odom_has_it_a_hundred_times_a_second(log: Path, read:
     for time, message in messages["/tf"]:
         body, *others = message.transforms
         assert {stamp_of(t.header.stamp) for t in message.transforms} == {time}
-        assert (body.header.frame_id, body.child_frame_id) == (odom[time].header.frame_id, odom[time].child_frame_id)
+        assert (body.header.frame_id, body.child_frame_id) == (
+            odom[time].header.frame_id,
+            odom[time].child_frame_id,
+        )
         pose = odom[time].pose.pose
         assert numbers(body.transform.translation, "xyz") == numbers(pose.position, "xyz")
         assert numbers(body.transform.rotation, "xyzw") == numbers(pose.orientation, "xyzw")
@@ -74,13 +85,17 @@ def matrix(transform: Any) -> Any:
         [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
         [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
     ]
-    return np.vstack([np.column_stack([turn, numbers(transform.translation, "xyz")]), [0.0, 0.0, 0.0, 1.0]])
+    return np.vstack(
+        [np.column_stack([turn, numbers(transform.translation, "xyz")]), [0.0, 0.0, 0.0, 1.0]]
+    )
 
 
 def test_every_link_is_where_the_urdf_has_it_with_the_strokes_of_that_time(log: Path) -> None:
     messages = by_rosbags(log)
     (description,) = messages["/landing/robot_description"]
-    robot = yourdfpy.URDF.load(io.StringIO(description[1].data), load_meshes=False, build_scene_graph=True)
+    robot = yourdfpy.URDF.load(
+        io.StringIO(description[1].data), load_meshes=False, build_scene_graph=True
+    )
     struts = dict(messages["/landing/struts"])
     for time, message in messages["/tf"][::10]:
         robot.update_cfg(dict(zip(JOINTS, struts[time].position)))
@@ -90,7 +105,9 @@ def test_every_link_is_where_the_urdf_has_it_with_the_strokes_of_that_time(log: 
         assert set(frames) == {WORLD_FRAME, *robot.link_map}
         to_body = np.linalg.inv(frames[BODY_FRAME])
         for link in robot.link_map:
-            assert to_body @ frames[link] == pytest.approx(robot.get_transform(link, BODY_FRAME), abs=1e-12), link
+            assert to_body @ frames[link] == pytest.approx(
+                robot.get_transform(link, BODY_FRAME), abs=1e-12
+            ), link
 
 
 def test_the_definition_and_its_hash_are_in_the_log(one_log: Path) -> None:
@@ -99,8 +116,16 @@ def test_the_definition_and_its_hash_are_in_the_log(one_log: Path) -> None:
     assert (connection.msgtype, connection.digest) == (TYPE, STORE.hash_rihs01(TYPE))
 
 
-@pytest.mark.parametrize("names", [("map", "base_link"), ("a", "bc"), ("abc", "abcdefg"), ("abcdefgh", "")])
+@pytest.mark.parametrize(
+    "names", [("map", "base_link"), ("a", "bc"), ("abc", "abcdefg"), ("abcdefgh", "")]
+)
 def test_the_bytes_are_those_of_an_independent_serialisation(names: tuple[str, str]) -> None:
-    transforms = [Transform(*names, (1.0, 2.0, 3.0), (0.1, 0.2, 0.3, 0.4)), Transform("x", "yz", (-1.0, 0.0, 4.0), (0.0, 0.0, 0.0, 1.0))]
+    transforms = [
+        Transform(*names, (1.0, 2.0, 3.0), (0.1, 0.2, 0.3, 0.4)),
+        Transform("x", "yz", (-1.0, 0.0, 4.0), (0.0, 0.0, 0.0, 1.0)),
+    ]
     data = serialised(transforms, 3_000_000_007)
-    assert bytes(STORE.serialize_cdr(STORE.deserialize_cdr(data, TYPE), TYPE)).ljust(len(data), b"\0") == data
+    assert (
+        bytes(STORE.serialize_cdr(STORE.deserialize_cdr(data, TYPE), TYPE)).ljust(len(data), b"\0")
+        == data
+    )

@@ -77,10 +77,17 @@ def test_one_changed_bit_is_found_with_topic_field_and_time(one_log: Path, tmp_p
     told = json.loads(done.stdout)
     assert not told["same"]
     first = told["first"]
-    assert (first["topic"], first["field"], first["time"]) == ("/landing/pose", "pose.position.x", 0.3)
+    assert (first["topic"], first["field"], first["time"]) == (
+        "/landing/pose",
+        "pose.position.x",
+        0.3,
+    )
     assert first["repeated"] == before[0]
     assert 0.0 < abs(first["recorded"] - first["repeated"]) < 1e-15
-    assert "differs   first in /landing/pose at 0.3 s, pose.position.x: " in run("log", "verify", file).stdout
+    assert (
+        "differs   first in /landing/pose at 0.3 s, pose.position.x: "
+        in run("log", "verify", file).stdout
+    )
 
 
 @pytest.mark.parametrize("topic", ["/landing/struts", "/landing/leg_3/contact", "/landing/odom"])
@@ -92,7 +99,9 @@ def test_a_missing_message_is_found(one_log: Path, tmp_path: Path, topic: str) -
 
 
 def test_a_missing_instant_is_found(one_log: Path, tmp_path: Path) -> None:
-    found = changed(one_log, tmp_path, lambda r: None if isinstance(r, tuple) and r[1].log_time == AT else r)
+    found = changed(
+        one_log, tmp_path, lambda r: None if isinstance(r, tuple) and r[1].log_time == AT else r
+    )
     assert found.first is not None
     assert (found.first.time, found.first.recorded) == (0.3, None)
 
@@ -105,17 +114,30 @@ def test_a_message_too_many_is_found(one_log: Path, tmp_path: Path) -> None:
 
     found = changed(one_log, tmp_path, earlier)
     assert found.first is not None
-    assert (found.first.topic, found.first.time, found.first.repeated) == ("/landing/rpy", 0.299, None)
+    assert (found.first.topic, found.first.time, found.first.repeated) == (
+        "/landing/rpy",
+        0.299,
+        None,
+    )
     assert "/landing/rpy at 0.299 s: a message more than the repeated run has" in found.text()
 
 
-def test_times_that_were_made_huge_differ_and_end_the_comparison(one_log: Path, tmp_path: Path) -> None:
+def test_times_that_were_made_huge_differ_and_end_the_comparison(
+    one_log: Path, tmp_path: Path
+) -> None:
     def far(record: Any) -> Any:
-        if isinstance(record, tuple) and record[0] == "/landing/odom" and record[1].log_time == 1_000_000_000:
+        if (
+            isinstance(record, tuple)
+            and record[0] == "/landing/odom"
+            and record[1].log_time == 1_000_000_000
+        ):
             record[1].log_time = 2**62 // 1_000_000 * 1_000_000
         return record
 
-    alter, told = in_message("/landing/pose", AT, with_position_x(1.0 + 1e-12)), in_metadata({"machine": "another", "stop_time": "1e8"})
+    alter, told = (
+        in_message("/landing/pose", AT, with_position_x(1.0 + 1e-12)),
+        in_metadata({"machine": "another", "stop_time": "1e8"}),
+    )
     found = changed(one_log, tmp_path, lambda record: told(far(alter(record))))
     assert found.first is not None
     assert (found.first.topic, found.first.time) == ("/landing/odom", 1.0)
@@ -141,9 +163,16 @@ def test_a_log_of_other_parameters_differs(one_log: Path, tmp_path: Path) -> Non
         ({"model": None}, "does not say by which model"),
     ],
 )
-@pytest.mark.parametrize(("factor", "same"), [(1.0, True), (1.0 - 0.5 * TOLERANCE, True), (1.0 - 2.0 * TOLERANCE, False)])
+@pytest.mark.parametrize(
+    ("factor", "same"), [(1.0, True), (1.0 - 0.5 * TOLERANCE, True), (1.0 - 2.0 * TOLERANCE, False)]
+)
 def test_another_build_is_held_to_the_tolerance_and_the_reason_is_said(
-    one_log: Path, tmp_path: Path, metadata: dict[str, str | None], reason: str, factor: float, same: bool
+    one_log: Path,
+    tmp_path: Path,
+    metadata: dict[str, str | None],
+    reason: str,
+    factor: float,
+    same: bool,
 ) -> None:
     # The largest value of the field, so that the factor is the share of it.
     reader = LogReader(one_log)
@@ -193,13 +222,17 @@ def test_what_cannot_be_repeated_is_refused_with_what_is_missing(
 
 
 def steer(whole: Path, folder: Path) -> LogReader:
-    """A log as the node writes it, of the parameters of the log `whole` and inputs at random times and sizes."""
+    """A log as the node writes it, of the parameters of the log `whole` and inputs at random times
+    and sizes.
+    """
     reader = LogReader(whole)
     reader.read_through()
     parameters, random = reader.parameters(), Random(7)
     assert parameters is not None
     packer, landing = SampleBytes(), Landing(parameters)
-    entries = [RecordedTopic(f"/landing/{t.name}", t.type_name, TELEMETRY) for t in (*SAMPLED, *APPLIED)]
+    entries = [
+        RecordedTopic(f"/landing/{t.name}", t.type_name, TELEMETRY) for t in (*SAMPLED, *APPLIED)
+    ]
     recorder = Recorder(folder, entries, reader.metadata, reader.attachments)
     recorded = [(t, place) for t, place in zip(packer.topics, packer.places) if t in SAMPLED]
     for k in range(1001):
@@ -207,26 +240,43 @@ def steer(whole: Path, folder: Path) -> LogReader:
         messages = packer.pack(k * 1_000_000, tuple(landing.outputs().values()))
         for topic, place in recorded:
             recorder.write(f"/landing/{topic.name}", k * 1_000_000, messages[place])
-        for topic, names, sizes in ((APPLIED_WRENCH, WRENCH, (900.0, 400.0, 60.0)), (APPLIED_GROUND, GROUND, (1e-3, 0.1, 1e-3, 0.02))):
+        for topic, names, sizes in (
+            (APPLIED_WRENCH, WRENCH, (900.0, 400.0, 60.0)),
+            (APPLIED_GROUND, GROUND, (1e-3, 0.1, 1e-3, 0.02)),
+        ):
             if random.random() < 0.1:
-                applied = Applied(topic, k * 1_000_000, {name: random.uniform(-s, s) for name, s in zip(names, sizes)})
+                applied = Applied(
+                    topic,
+                    k * 1_000_000,
+                    {name: random.uniform(-s, s) for name, s in zip(names, sizes)},
+                )
                 landing.set_inputs(applied.values)
-                recorder.write(f"/landing/{topic.name}", k * 1_000_000, serialize_message(applied.message()))
+                recorder.write(
+                    f"/landing/{topic.name}", k * 1_000_000, serialize_message(applied.message())
+                )
     recorder.close()
     return LogReader(folder)
 
 
 @pytest.mark.parametrize("by_fmu", [False, True])
-def test_a_steered_run_is_repeated_bit_for_bit_with_its_inputs(log: Path, fmu: Path, tmp_path: Path, by_fmu: bool) -> None:
+def test_a_steered_run_is_repeated_bit_for_bit_with_its_inputs(
+    log: Path, fmu: Path, tmp_path: Path, by_fmu: bool
+) -> None:
     reader = steer(log, tmp_path / "steered")
     found = verify(reader, fmu if by_fmu else None)
     assert (found.first, found.other_bits, found.messages) == (None, 0, 11011)
-    assert found.inputs == sum(1 for _ in reader.messages([f"/landing/{t.name}" for t in APPLIED])) > 150
+    assert (
+        found.inputs
+        == sum(1 for _ in reader.messages([f"/landing/{t.name}" for t in APPLIED]))
+        > 150
+    )
     assert f"steered   by {found.inputs} inputs, repeated at their times" in found.text()
 
 
 @pytest.mark.parametrize("topic", [APPLIED_WRENCH, APPLIED_GROUND])
-def test_a_steered_run_differs_without_one_of_its_inputs(one_log: Path, tmp_path: Path, topic: Topic) -> None:
+def test_a_steered_run_differs_without_one_of_its_inputs(
+    one_log: Path, tmp_path: Path, topic: Topic
+) -> None:
     steered = steer(one_log, tmp_path / "steered")
     times = [m.log_time for m in steered.messages([f"/landing/{topic.name}"])]
     assert verify(LogReader(rewrite(steered.files[0], tmp_path / "same"))).same
@@ -243,7 +293,9 @@ def test_a_steered_run_differs_without_one_of_its_inputs(one_log: Path, tmp_path
         (500_000_001, "at 0.500000001 s is not at a sample: those are 0.001 s apart"),
     ],
 )
-def test_inputs_whose_times_were_changed_are_refused(one_log: Path, tmp_path: Path, log_time: int, reason: str) -> None:
+def test_inputs_whose_times_were_changed_are_refused(
+    one_log: Path, tmp_path: Path, log_time: int, reason: str
+) -> None:
     message = Applied(APPLIED_WRENCH, 500_000_001, dict.fromkeys(WRENCH, 1.0)).message()
     with pytest.raises(LandingError) as e:
         verify(with_input(one_log, tmp_path / "log", log_time, serialize_message(message)))
@@ -255,20 +307,30 @@ def test_inputs_that_cannot_be_are_refused(one_log: Path, tmp_path: Path, force:
     message = Applied(APPLIED_WRENCH, 500_000_000, dict.fromkeys(WRENCH, force)).message()
     with pytest.raises(LandingError) as e:
         verify(with_input(one_log, tmp_path / "log", 500_000_000, serialize_message(message)))
-    assert f"its input /landing/applied/external_wrench at 0.5 s cannot be: external.force_x = {force:g} N" in str(e.value)
+    assert (
+        f"its input /landing/applied/external_wrench at 0.5 s cannot be: external.force_x = {force:g} N"
+        in str(e.value)
+    )
 
 
 def test_inputs_of_another_type_are_refused(one_log: Path, tmp_path: Path) -> None:
-    with pytest.raises(LandingError, match="external_wrench is std_msgs/msg/String, not geometry_msgs/msg/WrenchStamped"):
+    with pytest.raises(
+        LandingError,
+        match="external_wrench is std_msgs/msg/String, not geometry_msgs/msg/WrenchStamped",
+    ):
         verify(with_input(one_log, tmp_path / "log", 0, bytes(16), "std_msgs/msg/String"))
 
 
-def with_input(log: Path, folder: Path, log_time: int, data: bytes, type_name: str = APPLIED_WRENCH.type_name) -> LogReader:
+def with_input(
+    log: Path, folder: Path, log_time: int, data: bytes, type_name: str = APPLIED_WRENCH.type_name
+) -> LogReader:
     """A log with the metadata and parameters of `log` that holds one input and nothing else."""
     reader = LogReader(log)
     reader.read_through()
     name = f"/landing/{APPLIED_WRENCH.name}"
-    recorder = Recorder(folder, [RecordedTopic(name, type_name, TELEMETRY)], reader.metadata, reader.attachments)
+    recorder = Recorder(
+        folder, [RecordedTopic(name, type_name, TELEMETRY)], reader.metadata, reader.attachments
+    )
     recorder.write(name, log_time, data)
     recorder.close()
     return LogReader(folder)

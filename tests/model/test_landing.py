@@ -42,7 +42,9 @@ def test_run_samples_counted_times_and_step_reaches_the_same_numbers(mode):
 def test_a_restored_state_goes_on_with_the_same_digits(mode):
     landing = Landing(load_preset(FIGURES), mode)
     landing.advance_to(0.2)
-    landing.set_inputs({"external.force_x": 120.0, "ground.tilt_rate": 0.01}, {"external.force_x": 30.0})
+    landing.set_inputs(
+        {"external.force_x": 120.0, "ground.tilt_rate": 0.01}, {"external.force_x": 30.0}
+    )
     landing.advance_to(0.2517)
     saved = landing.state()
     landing.advance_to(0.5)
@@ -84,11 +86,16 @@ def test_every_output_has_a_name_a_unit_and_a_meaning_of_its_own():
     assert len(set(OUTPUT_NAMES)) == len(OUTPUT_NAMES) == len(Landing().values())
     for q in OUTPUT_QUANTITIES:
         assert q.meaning
-        assert q.unit or q.name in ("status.phase", *(f"leg[{leg}].contact.active" for leg in (1, 2, 3, 4)))
+        assert q.unit or q.name in (
+            "status.phase",
+            *(f"leg[{leg}].contact.active" for leg in (1, 2, 3, 4)),
+        )
 
 
 def test_outputs_agree_with_each_other(drop_test: History):
-    """The order of the kernel's outputs is that of the names: quantities that are each other's rate or sum say so."""
+    """The order of the kernel's outputs is that of the names: quantities that are each other's rate
+    or sum say so.
+    """
     t = drop_test.time
     rates = (("body.x", "body.vx"), ("body.y", "body.vy"), ("body.pitch", "body.pitch_rate"), ("body.vx", "body.ax"),
              ("leg[1].main_strut.stroke", "leg[1].main_strut.stroke_rate"),
@@ -98,7 +105,10 @@ def test_outputs_agree_with_each_other(drop_test: History):
         integral = 0.5 * (drop_test[rate][1:] + drop_test[rate][:-1]) * np.diff(t)
         assert np.abs(change - integral).sum() < 0.05 * np.abs(change).sum() + 1e-12
     p = load_preset(FIGURES).main_strut
-    gauge2, gauge1 = (drop_test[f"leg[1].main_strut.pressure_{c}"] - p.ambient_pressure for c in ("lower", "upper"))
+    gauge2, gauge1 = (
+        drop_test[f"leg[1].main_strut.pressure_{c}"] - p.ambient_pressure
+        for c in ("lower", "upper")
+    )
     spring = gauge2 * p.area_lower - gauge1 * p.area_upper
     friction = -drop_test["leg[1].main_strut.force"] - spring
     inside = drop_test["leg[1].main_strut.stroke"] > 0.0
@@ -107,7 +117,10 @@ def test_outputs_agree_with_each_other(drop_test: History):
     active = drop_test["leg[1].contact.active"] == 1.0
     assert np.array_equal(active, drop_test["leg[1].contact.penetration"] > 0.0)
     assert np.all(drop_test["leg[1].contact.force_y"][~active] == 0.0)
-    dissipated = sum(drop_test[f"energy.dissipated_{w}"] for w in ("orifice", "seal", "stop", "auxiliary", "contact", "friction"))
+    dissipated = sum(
+        drop_test[f"energy.dissipated_{w}"]
+        for w in ("orifice", "seal", "stop", "auxiliary", "contact", "friction")
+    )
     assert drop_test["energy.dissipated"] == approx(dissipated)
 
 
@@ -171,15 +184,23 @@ def test_bad_calls_say_what_is_wrong():
     with pytest.raises(LandingError, match="not finite"):
         landing.restore(spoiled)
     with pytest.raises(LandingError, match="below the ground"):
-        Landing(load_preset(FIGURES).with_values({"drop.pitch_rate": 6.0, "drop.contact_time": 1.0}))
+        Landing(
+            load_preset(FIGURES).with_values({"drop.pitch_rate": 6.0, "drop.contact_time": 1.0})
+        )
 
 
 def all_comparisons(every: float, rtol: float = 1e-6):
-    return [c for mode in ("2-2", "1-2-1") for c in compare(Landing(load_preset(FIGURES), mode, rtol).run(1.0, every), mode)]
+    return [
+        c
+        for mode in ("2-2", "1-2-1")
+        for c in compare(Landing(load_preset(FIGURES), mode, rtol).run(1.0, every), mode)
+    ]
 
 
 def test_preset_reproduces_at_least_38_42_48_of_the_48_printed_scalars():
-    """Within 5, 10, 20 % of the paper's simulation: what the identification that the preset stems from claims."""
+    """Within 5, 10, 20 % of the paper's simulation: what the identification that the preset stems
+    from claims.
+    """
     found = counts(all_comparisons(2e-4))
     assert found["of"] == 48
     assert found["within_5"] >= 38
@@ -193,7 +214,9 @@ def test_every_printed_scalar_has_a_meaning_and_reads_finite():
 
 
 def test_table2_literally_gives_shorter_contact_intervals_than_the_figures():
-    """The paper's own figures show 151 ms (2-2), and 105 and 157 ms (1-2-1): Table 2's -2 deg cannot give them."""
+    """The paper's own figures show 151 ms (2-2), and 105 and 157 ms (1-2-1): Table 2's -2 deg
+    cannot give them.
+    """
     two = Reading(Landing(load_preset("yue2022-table2"), "2-2").run(1.0))
     assert two.contact_time(3) - two.contact_time(1) < 0.09
     one = Reading(Landing(load_preset("yue2022-table2"), "1-2-1").run(1.0))
@@ -211,7 +234,9 @@ def test_a_history_too_short_or_without_contact_is_refused():
 def test_history_writes_csv_that_reads_back_to_the_same_digits(tmp_path):
     history = Landing().run(0.1, 1e-2)
     history.to_csv(tmp_path / "h.csv")
-    back = np.genfromtxt(tmp_path / "h.csv", delimiter=",", names=True, deletechars="", replace_space=" ")
+    back = np.genfromtxt(
+        tmp_path / "h.csv", delimiter=",", names=True, deletechars="", replace_space=" "
+    )
     assert len(back) == 11
     assert np.array_equal(back["time"], history.time)
     assert np.array_equal(back["leg[3].main_strut.force"], history["leg[3].main_strut.force"])

@@ -31,9 +31,19 @@ def test_table_1_is_the_papers():
     p = Parameters()
     m, a = p.main_strut, p.auxiliary_strut
     assert (p.vehicle.mass, p.vehicle.footpad_mass) == (178.0, 4.2)
-    assert (m.joint_radius, m.joint_depth, a.joint_radius, a.joint_depth) == (0.445, 1.103, 0.463, 1.513)
+    assert (m.joint_radius, m.joint_depth, a.joint_radius, a.joint_depth) == (
+        0.445,
+        1.103,
+        0.463,
+        1.513,
+    )
     assert (m.length, a.length) == (1.426, 1.145)
-    for name in ("vehicle.mass", "vehicle.footpad_mass", "main_strut.length", "auxiliary_strut.joint_depth"):
+    for name in (
+        "vehicle.mass",
+        "vehicle.footpad_mass",
+        "main_strut.length",
+        "auxiliary_strut.joint_depth",
+    ):
         assert p.source(name) == "paper"
 
 
@@ -52,15 +62,22 @@ def test_presets_load_for_both_modes_with_a_source_for_every_value(name, mode):
 def test_modes_of_a_preset_have_touchdown_states_of_their_own():
     ours, other = (load_preset("yue2022-figures", mode).drop for mode in ("2-2", "1-2-1"))
     assert ours == Parameters().drop
-    assert all(getattr(other, name) != getattr(ours, name) for name in ("contact_time", "tilt", "pitch_rate"))
-    assert load_preset("yue2022-figures").for_mode("1-2-1").for_mode("2-2") == load_preset("yue2022-figures", "2-2")
+    assert all(
+        getattr(other, name) != getattr(ours, name)
+        for name in ("contact_time", "tilt", "pitch_rate")
+    )
+    assert load_preset("yue2022-figures").for_mode("1-2-1").for_mode("2-2") == load_preset(
+        "yue2022-figures", "2-2"
+    )
 
 
 def test_what_the_user_sets_wins_over_what_belongs_to_a_mode():
     p = load_preset("yue2022-figures").with_values({"drop.tilt": 0.05})
     assert p.for_mode("1-2-1").drop.tilt == 0.05
     assert p.source("drop.tilt") == "user"
-    values = parse_pairs(["drop.tilt=-2 deg", "ground.friction=0.4"], PARAMETER_QUANTITIES, "parameter")
+    values = parse_pairs(
+        ["drop.tilt=-2 deg", "ground.friction=0.4"], PARAMETER_QUANTITIES, "parameter"
+    )
     chosen = choose_parameters(mode="1-2-1", values=values)
     assert chosen.drop.tilt == approx(-0.0349065850398866)
     assert chosen.ground.friction == 0.4
@@ -69,14 +86,21 @@ def test_what_the_user_sets_wins_over_what_belongs_to_a_mode():
 
 def test_table2_states_what_the_paper_prints():
     drop = load_preset("yue2022-table2", "1-2-1").drop
-    assert (drop.tilt, drop.vertical_velocity, drop.horizontal_velocity) == (approx(-0.034906585), -1.4, 0.354)
+    assert (drop.tilt, drop.vertical_velocity, drop.horizontal_velocity) == (
+        approx(-0.034906585),
+        -1.4,
+        0.354,
+    )
 
 
 @settings(max_examples=60, deadline=None)
 @given(st.data())
 def test_toml_round_trip_keeps_every_digit_and_source(tmp_path_factory, data):
     names = data.draw(st.lists(st.sampled_from([q.name for q in REALS]), max_size=4, unique=True))
-    values = {n: data.draw(st.floats(PARAMETER_QUANTITIES[n].lo, PARAMETER_QUANTITIES[n].hi), n) for n in names}
+    values = {
+        n: data.draw(st.floats(PARAMETER_QUANTITIES[n].lo, PARAMETER_QUANTITIES[n].hi), n)
+        for n in names
+    }
     try:
         parameters = load_preset("yue2022-figures").with_values(values)
     except LandingError:
@@ -152,7 +176,9 @@ def test_a_bad_file_says_where_it_is_bad(tmp_path, text, message):
 def test_values_of_a_file_are_checked_together_not_one_after_the_other(tmp_path):
     """Joints and lengths that fit each other, but not the defaults."""
     file = tmp_path / "long.toml"
-    file.write_text("[auxiliary_strut]\njoint_depth = 4.0\nlength = 3.0\n[main_strut]\nlength = 2.0\n")
+    file.write_text(
+        "[auxiliary_strut]\njoint_depth = 4.0\nlength = 3.0\n[main_strut]\nlength = 2.0\n"
+    )
     assert read_toml(file).auxiliary_strut.joint_depth == 4.0
 
 

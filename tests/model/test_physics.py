@@ -30,20 +30,27 @@ def total(history: History, name: str) -> np.ndarray:
 
 def centre(history: History, axis: str) -> np.ndarray:
     """Coordinate of the whole vehicle's centre of gravity."""
-    return (178.0 * history[f"body.{axis}"] + 4.2 * total(history, f"footpad.{axis}")) / (178.0 + 4 * 4.2)
+    return (178.0 * history[f"body.{axis}"] + 4.2 * total(history, f"footpad.{axis}")) / (
+        178.0 + 4 * 4.2
+    )
 
 
 def test_free_fall_is_a_parabola_to_1e10_m(mode):
     values = {"drop.pitch_rate": 0.0, "drop.contact_time": 0.5, "drop.vertical_velocity": -5.2}
-    values["main_strut.charge_pressure"] = 101300.0  # a charged strut pushes its piston a micrometre into the stop
+    values["main_strut.charge_pressure"] = (
+        101300.0  # a charged strut pushes its piston a micrometre into the stop
+    )
     history = Landing(load_preset(FIGURES, mode).with_values(values), rtol=1e-8).run(0.49, 1e-2)
     t = history.time
     y0, v0 = history["body.y"][0], -5.2 + 9.81 * 0.5
     assert np.abs(history["body.y"] - (y0 + v0 * t - 0.5 * 9.81 * t**2)).max() < 1e-10
     x0, vx = history["body.x"][0], history["body.vx"][0]
     assert np.abs(history["body.x"] - (x0 + vx * t)).max() < 1e-10
-    # the chambers' pressures carry the integrator's tolerance, which moves the body's 178 kg by this much
-    assert history["body.top_axial_acceleration"] == approx(-9.81 * cos(history["body.pitch"][0]), abs=1e-4)
+    # the chambers' pressures carry the integrator's tolerance, which moves the body's 178 kg by
+    # this much
+    assert history["body.top_axial_acceleration"] == approx(
+        -9.81 * cos(history["body.pitch"][0]), abs=1e-4
+    )
     assert history["leg[1].footpad.y"].min() > -1e-9
 
 
@@ -108,11 +115,21 @@ def test_energy_balance_closes_whatever_the_slope_the_loads_and_the_deck_do(
     }
     landing = Landing(load_preset(FIGURES, mode).with_values(values), rtol=1e-8)
     landing.set_inputs(
-        {"external.force_x": force, "external.moment": moment, "ground.heave_rate": heave_rate, "ground.tilt_rate": tilt_rate}
+        {
+            "external.force_x": force,
+            "external.moment": moment,
+            "ground.heave_rate": heave_rate,
+            "ground.tilt_rate": tilt_rate,
+        }
     )
     landing.advance_to(0.3)
     out = landing.outputs()
-    turned_over = out["energy.dissipated"] + abs(out["energy.work_external"]) + abs(out["energy.work_ground"]) + 100.0
+    turned_over = (
+        out["energy.dissipated"]
+        + abs(out["energy.work_external"])
+        + abs(out["energy.work_ground"])
+        + 100.0
+    )
     assert abs(out["energy.balance"]) < 1e-5 * turned_over
 
 
@@ -129,7 +146,9 @@ def test_a_step_of_the_ground_enters_the_balance_as_its_work():
 
 def test_transverse_load_at_the_joint_creates_energy_and_says_so(mode):
     """The paper's assumption C; the balance closes only because the created energy is counted."""
-    history = Landing(load_preset(FIGURES, mode).with_values({"vehicle.transverse_load_at": "joint"}), rtol=1e-8).run(0.6)
+    history = Landing(
+        load_preset(FIGURES, mode).with_values({"vehicle.transverse_load_at": "joint"}), rtol=1e-8
+    ).run(0.6)
     assert np.abs(history["energy.work_transverse"]).max() > 1.0
     assert np.abs(history["energy.balance"]).max() < 1e-5 * history["energy.dissipated"][-1]
 
@@ -141,7 +160,12 @@ def test_at_rest_the_ground_carries_the_weight_and_nothing_moves(mode):
     assert out["status.phase"] == 2.0
     assert sum(out[f"leg[{leg}].contact.force_y"] for leg in LEGS) == approx(WEIGHT, rel=1e-6)
     assert sum(out[f"leg[{leg}].contact.force_x"] for leg in LEGS) == approx(0.0, abs=1e-6 * WEIGHT)
-    rates = ["body.vx", "body.vy", "body.pitch_rate", *(f"leg[{leg}].main_strut.stroke_rate" for leg in LEGS)]
+    rates = [
+        "body.vx",
+        "body.vy",
+        "body.pitch_rate",
+        *(f"leg[{leg}].main_strut.stroke_rate" for leg in LEGS),
+    ]
     assert max(abs(out[name]) for name in rates) < 1e-7
     assert out["body.top_axial_acceleration"] == approx(0.0, abs=1e-4)
 
@@ -153,12 +177,16 @@ def test_mirror_images_carry_the_same_loads_with_z_turned(drop_test, mode):
             assert np.array_equal(drop_test[f"leg[{a}].{name}"], drop_test[f"leg[{b}].{name}"])
         assert drop_test[f"leg[{a}].footpad.z"][0] > 1.0
         assert np.array_equal(drop_test[f"leg[{a}].footpad.z"], -drop_test[f"leg[{b}].footpad.z"])
-        assert np.array_equal(drop_test[f"leg[{a}].contact.force_z"], -drop_test[f"leg[{b}].contact.force_z"])
+        assert np.array_equal(
+            drop_test[f"leg[{a}].contact.force_z"], -drop_test[f"leg[{b}].contact.force_z"]
+        )
 
 
 def test_a_deck_that_rises_steadily_is_the_same_landing_as_on_solid_ground(mode):
     """Galilean invariance: same relative velocity, same loads."""
-    base = load_preset(FIGURES, mode).with_values({"drop.contact_time": 0.0, "drop.vertical_velocity": -1.4})
+    base = load_preset(FIGURES, mode).with_values(
+        {"drop.contact_time": 0.0, "drop.vertical_velocity": -1.4}
+    )
     solid = Landing(base, rtol=1e-9).run(0.3)
     deck = Landing(base.with_values({"drop.vertical_velocity": -1.1}), rtol=1e-9)
     deck.set_inputs({"ground.heave_rate": 0.3})
@@ -168,25 +196,47 @@ def test_a_deck_that_rises_steadily_is_the_same_landing_as_on_solid_ground(mode)
 
 
 def test_a_slope_falling_towards_x_lets_a_frictionless_vehicle_slide_that_way():
-    values = {"ground.slope": 0.1, "ground.friction": 0.0, "drop.horizontal_velocity": 0.0, "drop.pitch_rate": 0.0, "drop.tilt": 0.1}
-    history = Landing(load_preset(FIGURES).with_values({**values, "drop.contact_time": 0.0}), rtol=1e-8).run(1.5)
+    values = {
+        "ground.slope": 0.1,
+        "ground.friction": 0.0,
+        "drop.horizontal_velocity": 0.0,
+        "drop.pitch_rate": 0.0,
+        "drop.tilt": 0.1,
+    }
+    history = Landing(
+        load_preset(FIGURES).with_values({**values, "drop.contact_time": 0.0}), rtol=1e-8
+    ).run(1.5)
     late = history.time > 1.0
     along = np.polyfit(history.time[late], centre(history, "x")[late], 2)[0] * 2.0
     assert along == approx(9.81 * sin(0.1) * cos(0.1), rel=0.1)
 
 
 def test_an_external_force_accelerates_the_whole_vehicle_as_newton_says():
-    values = {"drop.pitch_rate": 0.0, "drop.tilt": 0.0, "drop.contact_time": 0.4, "drop.vertical_velocity": -5.0}
+    values = {
+        "drop.pitch_rate": 0.0,
+        "drop.tilt": 0.0,
+        "drop.contact_time": 0.4,
+        "drop.vertical_velocity": -5.0,
+    }
     landing = Landing(load_preset(FIGURES).with_values(values), rtol=1e-9)
     landing.set_inputs({"external.force_x": 300.0, "external.force_y": 200.0})
     history = landing.run(0.3, 1e-2)
     mass = 178.0 + 4 * 4.2
-    assert 2.0 * np.polyfit(history.time, centre(history, "x"), 2)[0] == approx(300.0 / mass, rel=1e-5)
-    assert 2.0 * np.polyfit(history.time, centre(history, "y"), 2)[0] == approx(200.0 / mass - 9.81, rel=1e-5)
+    assert 2.0 * np.polyfit(history.time, centre(history, "x"), 2)[0] == approx(
+        300.0 / mass, rel=1e-5
+    )
+    assert 2.0 * np.polyfit(history.time, centre(history, "y"), 2)[0] == approx(
+        200.0 / mass - 9.81, rel=1e-5
+    )
 
 
 def test_a_force_that_grows_steadily_moves_the_whole_vehicle_as_newton_says():
-    values = {"drop.pitch_rate": 0.0, "drop.tilt": 0.0, "drop.contact_time": 0.4, "drop.vertical_velocity": -5.0}
+    values = {
+        "drop.pitch_rate": 0.0,
+        "drop.tilt": 0.0,
+        "drop.contact_time": 0.4,
+        "drop.vertical_velocity": -5.0,
+    }
     landing = Landing(load_preset(FIGURES).with_values(values), rtol=1e-9)
     landing.set_inputs({"external.force_x": 100.0}, {"external.force_x": 900.0})
     history = landing.run(0.3, 1e-2)
@@ -220,7 +270,13 @@ def test_the_deck_goes_on_at_its_rate_whatever_else_is_set(values, rates, accele
 def test_a_load_that_changes_linearly_closes_the_balance(mode):
     landing = Landing(load_preset(FIGURES), mode, rtol=1e-8)
     landing.set_inputs(
-        {"external.force_y": 400.0}, {"external.force_y": -800.0, "external.moment": 60.0, "ground.heave_rate": 0.3, "ground.tilt": 0.03}
+        {"external.force_y": 400.0},
+        {
+            "external.force_y": -800.0,
+            "external.moment": 60.0,
+            "ground.heave_rate": 0.3,
+            "ground.tilt": 0.03,
+        },
     )
     landing.advance_to(0.5)
     assert abs(landing.get("energy.balance")) < 1e-3
@@ -238,7 +294,9 @@ def test_a_clockwise_moment_turns_the_vehicle_clockwise():
 def test_bottoming_out_stays_near_the_stop_and_is_told():
     from rlv_landing.summary import summarise
 
-    hard = load_preset(FIGURES).with_values({"drop.vertical_velocity": -3.5, "main_strut.stroke_max": 0.03, "drop.contact_time": 0.0})
+    hard = load_preset(FIGURES).with_values(
+        {"drop.vertical_velocity": -3.5, "main_strut.stroke_max": 0.03, "drop.contact_time": 0.0}
+    )
     history = Landing(hard).run(0.4)
     summary = summarise(history)
     assert summary["bottomed_out"]
@@ -263,7 +321,9 @@ def test_a_vehicle_that_has_turned_over_is_toppled_however_it_comes_to_lie():
 
 
 def inertial_positions(y: np.ndarray, groups: list[tuple[float, float, float]]) -> np.ndarray:
-    """(x, y) of the body and of every group's footpads from the state, written from first principles; complex-safe."""
+    """(x, y) of the body and of every group's footpads from the state, written from first
+    principles; complex-safe.
+    """
     out = [(y[0], y[1])]
     s, c = np.sin(y[2]), np.cos(y[2])
     for i, (_, cos_g, _) in enumerate(groups):
@@ -274,16 +334,25 @@ def inertial_positions(y: np.ndarray, groups: list[tuple[float, float, float]]) 
 
 @pytest.mark.parametrize("time", [0.1, 0.2, 0.26, 0.3, 0.41])
 def test_newton_and_euler_hold_for_the_whole_vehicle(mode, time):
-    """Sum of m a = contact forces + weight, and the same for moments about the origin, by differentiating positions twice."""
+    """Sum of m a = contact forces + weight, and the same for moments about the origin, by
+    differentiating positions twice.
+    """
     landing = Landing(load_preset(FIGURES).with_values(FOOTPAD), mode, rtol=1e-8)
     landing.advance_to(time)
     out = landing.outputs()
     solver = landing._solver
     y = np.array(landing._y)
-    groups = [(solver.model.sin_g[i], solver.model.cos_g[i], solver.model.count[i]) for i in range(solver.model.n_groups)]
+    groups = [
+        (solver.model.sin_g[i], solver.model.cos_g[i], solver.model.count[i])
+        for i in range(solver.model.n_groups)
+    ]
     dy = array("d", bytes(8 * len(y)))
     right_hand_side(
-        array("d", y), array("d", bytes(8 * layout.INPUTS)), build_model(landing.parameters, Model), dy, array("d", bytes(8 * 200))
+        array("d", y),
+        array("d", bytes(8 * layout.INPUTS)),
+        build_model(landing.parameters, Model),
+        dy,
+        array("d", bytes(8 * 200)),
     )
     solver_dy = np.array(dy)
     masses = np.array([178.0, *(4.2 * n for *_, n in groups)])
@@ -311,7 +380,9 @@ def test_newton_and_euler_hold_for_the_whole_vehicle(mode, time):
     forward, backward = y + eps * solver_dy, y - eps * solver_dy
     change = (momentum(forward, rates(forward)) - momentum(backward, rates(backward))) / (2.0 * eps)
     feet = [(out[f"leg[{leg}].footpad.x"], out[f"leg[{leg}].footpad.y"]) for leg in LEGS]
-    forces = [(out[f"leg[{leg}].contact.force_x"], out[f"leg[{leg}].contact.force_y"]) for leg in LEGS]
+    forces = [
+        (out[f"leg[{leg}].contact.force_x"], out[f"leg[{leg}].contact.force_y"]) for leg in LEGS
+    ]
     weight_moment = -9.81 * (178.0 * y[0] + 4.2 * sum(x for x, _ in feet))
     expected = [
         sum(fx for fx, _ in forces),

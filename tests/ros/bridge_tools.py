@@ -1,4 +1,6 @@
-"""What the tests of nodes and logs share: commands in processes of their own, a listener in another one, a ROS domain for each test."""
+"""What the tests of nodes and logs share: commands in processes of their own, a listener in another
+one, a ROS domain for each test.
+"""
 
 from __future__ import annotations
 
@@ -17,11 +19,16 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
 TIMEOUT = 60.0
-# Domains 1 to 100 keep their ports below the ephemeral ones. Each of pytest's workers has its share of them; runs of the suite side by side
-# begin at different ones.
-_WORKER, _WORKERS = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0")[2:]), int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+# Domains 1 to 100 keep their ports below the ephemeral ones. Each of pytest's workers has its share
+# of them; runs of the suite side by side begin at different ones.
+_WORKER, _WORKERS = (
+    int(os.environ.get("PYTEST_XDIST_WORKER", "gw0")[2:]),
+    int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1")),
+)
 _SHARE = 100 // _WORKERS
-_DOMAINS = itertools.cycle(_WORKER * _SHARE + (os.getpid() * 37 + i) % _SHARE + 1 for i in range(_SHARE))
+_DOMAINS = itertools.cycle(
+    _WORKER * _SHARE + (os.getpid() * 37 + i) % _SHARE + 1 for i in range(_SHARE)
+)
 
 
 def new_domain() -> int:
@@ -46,10 +53,19 @@ def command(*arguments: object) -> list[str]:
     return [sys.executable, "-m", "rlv_ros_bridge", *map(str, arguments)]
 
 
-def run(*arguments: object, domain: int | None = None, cwd: Path | None = None, **options: object) -> subprocess.CompletedProcess[str]:
+def run(
+    *arguments: object, domain: int | None = None, cwd: Path | None = None, **options: object
+) -> subprocess.CompletedProcess[str]:
     """Run a command of the bridge to its end."""
     return subprocess.run(  # type: ignore[call-overload,no-any-return]
-        command(*arguments), env=environment(domain), cwd=cwd, capture_output=True, text=True, timeout=TIMEOUT, check=False, **options
+        command(*arguments),
+        env=environment(domain),
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT,
+        check=False,
+        **options,
     )
 
 
@@ -83,13 +99,20 @@ class Heard:
 
 
 class Listener:
-    """Another process that subscribes to `topics` (name -> type), reliably, and keeps the bytes that it receives.
+    """Another process that subscribes to `topics` (name -> type), reliably, and keeps the bytes
+    that it receives.
 
-    With `expected` (name -> count) it ends by itself once it has heard them all; else when `finish` is called and it has grown silent.
+    With `expected` (name -> count) it ends by itself once it has heard them all; else when `finish`
+    is called and it has grown silent.
     """
 
     def __init__(
-        self, topics: Mapping[str, str], folder: Path, domain: int, expected: Mapping[str, int] | None = None, announce: int = 0
+        self,
+        topics: Mapping[str, str],
+        folder: Path,
+        domain: int,
+        expected: Mapping[str, int] | None = None,
+        announce: int = 0,
     ) -> None:
         self.output = folder / f"heard-{domain}.pickle"
         pairs = [f"{name}={kind}={(expected or {}).get(name, 0)}" for name, kind in topics.items()]
@@ -139,8 +162,12 @@ def complaints(stderr: str) -> list[str]:
 
 
 def only_stalls(stderr: str) -> bool:
-    """Whether nothing is on stderr but, on a machine that is busy with other things, that wall time was lost."""
-    return all(line.startswith("warning: ") and "lost to stalls" in line for line in complaints(stderr))
+    """Whether nothing is on stderr but, on a machine that is busy with other things, that wall time
+    was lost.
+    """
+    return all(
+        line.startswith("warning: ") and "lost to stalls" in line for line in complaints(stderr)
+    )
 
 
 def one_error_line(done: subprocess.CompletedProcess[str]) -> str:

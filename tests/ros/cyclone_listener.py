@@ -1,6 +1,8 @@
-"""A participant that is no ROS and no Fast DDS: `cyclone_listener.py OUTPUT COUNT` hears `rt/landing/struts` by Cyclone DDS.
+"""A participant that is no ROS and no Fast DDS: `cyclone_listener.py OUTPUT COUNT` hears
+`rt/landing/struts` by Cyclone DDS.
 
-Prints `matched` once its reader has found the writer. Ends when it has had COUNT samples, and writes stamps, positions and forces as JSON.
+Prints `matched` once its reader has found the writer. Ends when it has had COUNT samples, and
+writes stamps, positions and forces as JSON.
 """
 
 import json
@@ -42,13 +44,27 @@ class JointState(IdlStruct, typename="sensor_msgs::msg::dds_::JointState_"):
 def main(output: str, count: int) -> None:
     participant = DomainParticipant(int(os.environ["ROS_DOMAIN_ID"]))
     qos = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepAll)
-    # a volatile reader gets what is written after it has found the writer, whatever the writer knows of it by then
-    matched = Listener(on_subscription_matched=lambda _reader, status: print("matched", flush=True) if status.current_count else None)
-    reader = DataReader(participant, Topic(participant, "rt/landing/struts", JointState), qos=qos, listener=matched)
+    # a volatile reader gets what is written after it has found the writer, whatever the writer
+    # knows of it by then
+    matched = Listener(
+        on_subscription_matched=lambda _reader, status: (
+            print("matched", flush=True) if status.current_count else None
+        )
+    )
+    reader = DataReader(
+        participant, Topic(participant, "rt/landing/struts", JointState), qos=qos, listener=matched
+    )
     heard: list[tuple[int, list[str], list[float], list[float]]] = []
     while len(heard) < count:
         for m in reader.take_iter(timeout=duration(seconds=60)):
-            heard.append((m.header.stamp.sec * 10**9 + m.header.stamp.nanosec, list(m.name), list(m.position), list(m.effort)))
+            heard.append(
+                (
+                    m.header.stamp.sec * 10**9 + m.header.stamp.nanosec,
+                    list(m.name),
+                    list(m.position),
+                    list(m.effort),
+                )
+            )
             if len(heard) == count:
                 break
         else:

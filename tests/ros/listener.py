@@ -1,7 +1,8 @@
 """A subscriber in a process of its own: `listener.py OUTPUT ANNOUNCE NAME=TYPE=COUNT ...`.
 
-Prints `listening` once its subscriptions are there and `announced` after ANNOUNCE messages of the last topic. Ends when each topic has
-had its COUNT (where given), or half a second after the last message once its standard input is closed.
+Prints `listening` once its subscriptions are there and `announced` after ANNOUNCE messages of the
+last topic. Ends when each topic has had its COUNT (where given), or half a second after the last
+message once its standard input is closed.
 """
 
 from __future__ import annotations
@@ -43,7 +44,9 @@ def main(output: str, announce: int, topics: list[list[str]]) -> None:
             package, middle, short = kind.split("/")
             COUNTS[name] = 0
             message_type = getattr(importlib.import_module(f"{package}.{middle}"), short)
-            node.create_subscription(message_type, name, two_arguments(name), QoSProfile(depth=10000), raw=True)
+            node.create_subscription(
+                message_type, name, two_arguments(name), QoSProfile(depth=10000), raw=True
+            )
         executor = SingleThreadedExecutor()
         executor.add_node(node)
         print("listening", flush=True)
@@ -57,7 +60,9 @@ def main(output: str, announce: int, topics: list[list[str]]) -> None:
             if announce and not told and COUNTS[last] >= announce:
                 told = True
                 print("announced", flush=True)
-            if any(expected.values()) and all(COUNTS[name] >= count for name, count in expected.items()):
+            if any(expected.values()) and all(
+                COUNTS[name] >= count for name, count in expected.items()
+            ):
                 break
             if closed.is_set() and time.monotonic() - quiet_since > 0.5:
                 break

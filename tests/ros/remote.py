@@ -1,4 +1,6 @@
-"""The landing node as another participant sees it: its services, parameters, inputs and lifecycle, called from this process."""
+"""The landing node as another participant sees it: its services, parameters, inputs and lifecycle,
+called from this process.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +12,20 @@ import rclpy
 from bridge_tools import TIMEOUT
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState, GetState
-from rcl_interfaces.msg import Parameter, ParameterDescriptor, ParameterType, ParameterValue, SetParametersResult
-from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters, SetParametersAtomically
+from rcl_interfaces.msg import (
+    Parameter,
+    ParameterDescriptor,
+    ParameterType,
+    ParameterValue,
+    SetParametersResult,
+)
+from rcl_interfaces.srv import (
+    DescribeParameters,
+    GetParameters,
+    ListParameters,
+    SetParameters,
+    SetParametersAtomically,
+)
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -40,7 +54,12 @@ class Remote:
         self._clients: dict[str, Any] = {}
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         self.executor.shutdown()
         self.node.destroy_node()
         rclpy.shutdown(context=self.context)
@@ -58,12 +77,23 @@ class Remote:
 
     def change(self, transition: int) -> bool:
         """Whether the lifecycle's transition succeeded."""
-        return bool(self.call(ChangeState, "change_state", ChangeState.Request(transition=Transition(id=transition))).success)
+        return bool(
+            self.call(
+                ChangeState,
+                "change_state",
+                ChangeState.Request(transition=Transition(id=transition)),
+            ).success
+        )
 
     def shut_down(self) -> None:
-        """The lifecycle's shutdown, which has a number for each state. The node may be gone before it answers."""
+        """The lifecycle's shutdown, which has a number for each state.
+
+        The node may be gone before it answers.
+        """
         number = {"unconfigured": 5, "inactive": 6, "active": 7}[self.state()]
-        self._clients[f"{self.name}/change_state"].call_async(ChangeState.Request(transition=Transition(id=number)))
+        self._clients[f"{self.name}/change_state"].call_async(
+            ChangeState.Request(transition=Transition(id=number))
+        )
 
     def state(self) -> str:
         """The lifecycle's state."""
@@ -76,7 +106,13 @@ class Remote:
 
     def set(self, **values: Any) -> list[SetParametersResult]:
         """What setting parameters one by one gives; `__` in a name stands for a dot."""
-        return list(self.call(SetParameters, "set_parameters", SetParameters.Request(parameters=parameters(values))).results)
+        return list(
+            self.call(
+                SetParameters,
+                "set_parameters",
+                SetParameters.Request(parameters=parameters(values)),
+            ).results
+        )
 
     def set_together(self, **values: Any) -> SetParametersResult:
         """What setting parameters at once gives."""
@@ -85,16 +121,26 @@ class Remote:
 
     def get(self, *names: str) -> list[Any]:
         """Parameters' values."""
-        found = self.call(GetParameters, "get_parameters", GetParameters.Request(names=list(names))).values
+        found = self.call(
+            GetParameters, "get_parameters", GetParameters.Request(names=list(names))
+        ).values
         return [rclpy.parameter.parameter_value_to_python(v) for v in found]
 
     def describe(self, *names: str) -> list[ParameterDescriptor]:
         """Parameters' descriptors."""
-        return list(self.call(DescribeParameters, "describe_parameters", DescribeParameters.Request(names=list(names))).descriptors)
+        return list(
+            self.call(
+                DescribeParameters,
+                "describe_parameters",
+                DescribeParameters.Request(names=list(names)),
+            ).descriptors
+        )
 
     def names(self) -> set[str]:
         """All parameters."""
-        return set(self.call(ListParameters, "list_parameters", ListParameters.Request()).result.names)
+        return set(
+            self.call(ListParameters, "list_parameters", ListParameters.Request()).result.names
+        )
 
     def first(self, kind: Any, topic: str, qos: Any = LATCHED) -> Any:
         """The first message that comes on `topic`."""
@@ -122,5 +168,9 @@ def parameters(values: dict[str, Any]) -> list[Parameter]:
     made = []
     for name, value in values.items():
         number, field = kinds[type(value)]
-        made.append(Parameter(name=name.replace("__", "."), value=ParameterValue(type=number, **{field: value})))
+        made.append(
+            Parameter(
+                name=name.replace("__", "."), value=ParameterValue(type=number, **{field: value})
+            )
+        )
     return made

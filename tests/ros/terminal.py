@@ -1,4 +1,6 @@
-"""A command of the bridge on a terminal of its own (a pseudo-terminal), with job control as a shell has it."""
+"""A command of the bridge on a terminal of its own (a pseudo-terminal), with job control as a shell
+has it.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,8 @@ from types import TracebackType
 
 from bridge_tools import TIMEOUT, command, environment
 
-# Stands for the shell: starts the command as a job in the foreground of the terminal, and tells on file 3 when it stops or ends.
+# Stands for the shell: starts the command as a job in the foreground of the terminal, and tells on
+# file 3 when it stops or ends.
 SHELL = """
 import fcntl, os, signal, sys, termios
 signal.signal(signal.SIGTTOU, signal.SIG_IGN)
@@ -39,7 +42,10 @@ while True:
 
 
 class Terminal:
-    """The command `arguments` on a terminal, to be entered. `shown` is what the terminal shows so far, the command's stdout included."""
+    """The command `arguments` on a terminal, to be entered.
+
+    `shown` is what the terminal shows so far, the command's stdout included.
+    """
 
     def __init__(self, *arguments: object, domain: int) -> None:
         self.master, self.slave = pty.openpty()
@@ -64,7 +70,12 @@ class Terminal:
     def __enter__(self) -> Terminal:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         for process in (self.pid, self._shell.pid):
             with suppress(ProcessLookupError):
                 os.kill(process, signal.SIGKILL)
@@ -88,9 +99,15 @@ class Terminal:
         self.shown = self.shown[at + len(text) :]
 
     def status(self) -> int:
-        """The wait status of the command's next stop, or of its end. What it shows meanwhile is read, lest it waits for that."""
+        """The wait status of the command's next stop, or of its end.
+
+        What it shows meanwhile is read, lest it waits for that.
+        """
         while not select.select([self._told], [], [], 0.0)[0]:
-            if select.select([self.master, self._told], [], [], TIMEOUT)[0] and select.select([self.master], [], [], 0.0)[0]:
+            if (
+                select.select([self.master, self._told], [], [], TIMEOUT)[0]
+                and select.select([self.master], [], [], 0.0)[0]
+            ):
                 self.shown += os.read(self.master, 65536).decode(errors="replace")
         return int(self._told.readline())
 

@@ -10,11 +10,20 @@ from bridge_tools import one_error_line, run
 
 NODE_CASES: dict[str, tuple[tuple[str, ...], str]] = {
     "unknown parameter": (("--set", "vehicle.mas=1"), "did you mean vehicle.mass?"),
-    "parameter out of bounds": (("--set", "vehicle.mass=-1"), "vehicle.mass = -1 kg is outside [1, 1e+06] kg"),
+    "parameter out of bounds": (
+        ("--set", "vehicle.mass=-1"),
+        "vehicle.mass = -1 kg is outside [1, 1e+06] kg",
+    ),
     "parameter not a number": (("--set", "vehicle.mass=nan"), "vehicle.mass = nan kg is outside"),
-    "parameter in another unit": (("--set", "vehicle.mass=3 m"), "vehicle.mass = '3 m' has the wrong unit"),
+    "parameter in another unit": (
+        ("--set", "vehicle.mass=3 m"),
+        "vehicle.mass = '3 m' has the wrong unit",
+    ),
     "parameter without value": (("--set", "vehicle.mass"), "has no '='"),
-    "parameters that do not fit together": (("--set", "main_strut.stroke_max=1.9"), "main_strut.stroke_max = 1.9 m"),
+    "parameters that do not fit together": (
+        ("--set", "main_strut.stroke_max=1.9"),
+        "main_strut.stroke_max = 1.9 m",
+    ),
     "negative step": (("--step", "-0.001"), "step_size = -0.001"),
     "step not a number": (("--step", "nan"), "step_size = nan"),
     "step of half a nanosecond": (("--step", "0.0010000005"), "not a whole number of nanoseconds"),
@@ -23,12 +32,24 @@ NODE_CASES: dict[str, tuple[tuple[str, ...], str]] = {
     "unknown mode": (("--mode", "2-1"), "unknown landing mode '2-1'"),
     "unknown preset": (("--preset", "yue2022-figure"), "did you mean yue2022-figures?"),
     "preset and file": (("--preset", "yue2022-figures", "--parameters", "x.toml"), "not both"),
-    "missing parameter file": (("--parameters", "nosuch.toml"), "there is no parameter file nosuch.toml"),
+    "missing parameter file": (
+        ("--parameters", "nosuch.toml"),
+        "there is no parameter file nosuch.toml",
+    ),
     "unknown option": (("--step-size", "1"), "unknown argument '--step-size'"),
-    "unknown ROS parameter": (("--ros-args", "-p", "vehicle.masss:=3.0"), "did you mean vehicle.mass?"),
-    "ROS parameter of the wrong type": (("--ros-args", "-p", "vehicle.mass:=heavy"), "vehicle.mass = 'heavy' is not a number"),
+    "unknown ROS parameter": (
+        ("--ros-args", "-p", "vehicle.masss:=3.0"),
+        "did you mean vehicle.mass?",
+    ),
+    "ROS parameter of the wrong type": (
+        ("--ros-args", "-p", "vehicle.mass:=heavy"),
+        "vehicle.mass = 'heavy' is not a number",
+    ),
     "report without a record": (("--no-record", "--report"), "contradict each other"),
-    "no subscribers in time": (("--wait-for-subscribers", "1", "--wait-timeout", "0.1"), "only 0 of 1 subscribers"),
+    "no subscribers in time": (
+        ("--wait-for-subscribers", "1", "--wait-timeout", "0.1"),
+        "only 0 of 1 subscribers",
+    ),
 }
 
 
@@ -42,12 +63,21 @@ def test_node_refuses(case: str, fmu: Path, tmp_path: Path) -> None:
 
 
 def test_node_refuses_what_is_not_our_fmu(fmu: Path, tmp_path: Path) -> None:
-    text, archive, foreign = tmp_path / "text.fmu", tmp_path / "archive.fmu", tmp_path / "foreign.fmu"
+    text, archive, foreign = (
+        tmp_path / "text.fmu",
+        tmp_path / "archive.fmu",
+        tmp_path / "foreign.fmu",
+    )
     text.write_text("not a zip")
     with zipfile.ZipFile(archive, "w") as z:
         z.writestr("readme.txt", "no model here")
     with zipfile.ZipFile(fmu) as ours, zipfile.ZipFile(foreign, "w") as z:
-        z.writestr("modelDescription.xml", ours.read("modelDescription.xml").replace(b'modelName="RlvLanding"', b'modelName="Pendulum"'))
+        z.writestr(
+            "modelDescription.xml",
+            ours.read("modelDescription.xml").replace(
+                b'modelName="RlvLanding"', b'modelName="Pendulum"'
+            ),
+        )
     for path, message in (
         (tmp_path / "missing.fmu", "there is no FMU"),
         (text, "is not an FMU"),
@@ -94,10 +124,16 @@ def test_replay_refuses(one_log: Path, tmp_path: Path) -> None:
         ((whole, "more"), "unknown argument 'more'"),
         ((one_log, "--remap", "struts"), "--remap 'struts' is not OLD:=NEW"),
         ((one_log, "--remap", "strust:=a"), "unknown topic 'strust'; did you mean struts?"),
-        ((one_log, "--remap", "struts:=a", "--remap", "/landing/struts:=b"), "two names, 'a' and 'b'"),
+        (
+            (one_log, "--remap", "struts:=a", "--remap", "/landing/struts:=b"),
+            "two names, 'a' and 'b'",
+        ),
         ((one_log, "--remap", "struts:=pose"), "cannot both be played as /landing/pose"),
         ((one_log, "--remap", "struts:=2 b"), "'/landing/2 b' cannot be a topic: "),
-        ((one_log, "--topics", "pose", "--remap", "struts:=a"), "is not among the topics chosen by --topics"),
+        (
+            (one_log, "--topics", "pose", "--remap", "struts:=a"),
+            "is not among the topics chosen by --topics",
+        ),
     ):
         if message.startswith("text.mcap"):
             empty.unlink()

@@ -1,4 +1,6 @@
-"""A DDS participant that knows nothing of ROS or Fast DDS hears the landing, with the profile that is shipped for it."""
+"""A DDS participant that knows nothing of ROS or Fast DDS hears the landing, with the profile that
+is shipped for it.
+"""
 
 from __future__ import annotations
 
@@ -32,9 +34,13 @@ def test_cyclone_dds_in_another_process_gets_every_joint_state(
         text=True,
     )
     processes.append(listener)
-    line = command("node", "--managed", "--fmu", fmu, "--record", tmp_path / "log", "--wait-for-subscribers", 1)
+    line = command(
+        "node", "--managed", "--fmu", fmu, "--record", tmp_path / "log", "--wait-for-subscribers", 1
+    )
     env = environment(domain, FASTDDS_DEFAULT_PROFILES_FILE=str(PROFILE))
-    node = subprocess.Popen(line, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    node = subprocess.Popen(
+        line, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
     processes.append(node)
     assert listener.stdout is not None
     assert listener.stdout.readline().strip() == "matched"

@@ -1,4 +1,6 @@
-"""Loads and deck motion as topics: applied, given up in silence, refused, and recorded so that a run can be repeated."""
+"""Loads and deck motion as topics: applied, given up in silence, refused, and recorded so that a
+run can be repeated.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,9 @@ from rlv_ros_bridge.node.input_queue import Applied
 FORCE, MOTION = st.floats(-1e7, 1e7), st.floats(-1.0, 1.0)
 
 
-def wrench(x: float = 0.0, y: float = 0.0, z: float = 0.0, torque: float = 0.0, frame: str = "map") -> WrenchStamped:
+def wrench(
+    x: float = 0.0, y: float = 0.0, z: float = 0.0, torque: float = 0.0, frame: str = "map"
+) -> WrenchStamped:
     message = WrenchStamped()
     message.header.frame_id = frame
     message.wrench.force.x, message.wrench.force.y, message.wrench.force.z = x, y, z
@@ -39,19 +43,28 @@ def wrench(x: float = 0.0, y: float = 0.0, z: float = 0.0, torque: float = 0.0, 
 
 
 def ground(heave: float, heave_rate: float, tilt: float, tilt_rate: float) -> JointState:
-    return JointState(name=["ground_heave", "ground_tilt"], position=[heave, tilt], velocity=[heave_rate, tilt_rate])
+    return JointState(
+        name=["ground_heave", "ground_tilt"],
+        position=[heave, tilt],
+        velocity=[heave_rate, tilt_rate],
+    )
 
 
 @given(FORCE, FORCE, FORCE)
-def test_a_wrench_in_ros_axes_is_the_papers_and_back_digit_for_digit(x: float, y: float, moment: float) -> None:
-    # Forward stays forward, the paper's up (y) is ROS's up (z), clockwise (nose down) is positive about +y.
+def test_a_wrench_in_ros_axes_is_the_papers_and_back_digit_for_digit(
+    x: float, y: float, moment: float
+) -> None:
+    # Forward stays forward, the paper's up (y) is ROS's up (z), clockwise (nose down) is positive
+    # about +y.
     assert read_wrench(wrench(x=x, z=y, torque=moment)) == dict(zip(WRENCH, (x, y, moment)))
     applied = Applied(APPLIED_WRENCH, 5, dict(zip(WRENCH, (x, y, moment))))
     assert READINGS[APPLIED_WRENCH.name](applied.message()) == applied.values
 
 
 @given(MOTION, MOTION, MOTION, MOTION)
-def test_a_ground_message_is_the_decks_motion_and_back_digit_for_digit(a: float, b: float, c: float, d: float) -> None:
+def test_a_ground_message_is_the_decks_motion_and_back_digit_for_digit(
+    a: float, b: float, c: float, d: float
+) -> None:
     values = dict(zip((*HEAVE, *TILT), (a, b, c, d)))
     assert read_ground(ground(a, b, c, d)) == values
     assert READINGS[APPLIED_GROUND.name](Applied(APPLIED_GROUND, 5, values).message()) == values
@@ -62,14 +75,28 @@ def test_a_ground_message_is_the_decks_motion_and_back_digit_for_digit(a: float,
     [
         (read_wrench, wrench(x=math.nan), "external.force_x = nan N"),
         (read_wrench, wrench(z=1e9), "external.force_y = 1e+09 N is outside"),
-        (read_wrench, wrench(frame="base_link"), "given in the frame 'base_link'; give it in 'map'"),
-        (read_ground, JointState(name=["ground_yaw"], position=[0.0]), "ground has no joint 'ground_yaw'"),
-        (read_ground, JointState(name=["ground_heave"], position=[math.inf]), "ground.heave = inf m is outside"),
+        (
+            read_wrench,
+            wrench(frame="base_link"),
+            "given in the frame 'base_link'; give it in 'map'",
+        ),
+        (
+            read_ground,
+            JointState(name=["ground_yaw"], position=[0.0]),
+            "ground has no joint 'ground_yaw'",
+        ),
+        (
+            read_ground,
+            JointState(name=["ground_heave"], position=[math.inf]),
+            "ground.heave = inf m is outside",
+        ),
         (read_ground, JointState(name=["ground_heave"], position=[]), "1 names, 0 positions"),
         (read_ground, JointState(), "0 names"),
     ],
 )
-def test_a_bad_input_is_refused_with_its_reason(read: Callable[[Any], dict[str, float]], message: Any, reason: str) -> None:
+def test_a_bad_input_is_refused_with_its_reason(
+    read: Callable[[Any], dict[str, float]], message: Any, reason: str
+) -> None:
     with pytest.raises(LandingError) as refused:
         read(message)
     assert reason in str(refused.value)
@@ -99,11 +126,17 @@ def step_until(remote: Remote, publish: Callable[[], None], happened: Callable[[
     raise AssertionError("it did not happen")
 
 
-def test_inputs_act_are_given_up_and_repeat_the_run_from_its_log(stepped: tuple[subprocess.Popen[str], Remote], tmp_path: Path) -> None:
+def test_inputs_act_are_given_up_and_repeat_the_run_from_its_log(
+    stepped: tuple[subprocess.Popen[str], Remote], tmp_path: Path
+) -> None:
     node, remote = stepped
     applied: dict[str, list[Any]] = {"wrench": [], "ground": []}
-    remote.node.create_subscription(WrenchStamped, "/landing/applied/external_wrench", applied["wrench"].append, 100)
-    remote.node.create_subscription(JointState, "/landing/applied/ground", applied["ground"].append, 100)
+    remote.node.create_subscription(
+        WrenchStamped, "/landing/applied/external_wrench", applied["wrench"].append, 100
+    )
+    remote.node.create_subscription(
+        JointState, "/landing/applied/ground", applied["ground"].append, 100
+    )
     pushing = remote.node.create_publisher(WrenchStamped, "/landing/external_wrench", 10)
     moving = remote.node.create_publisher(JointState, "/landing/ground", 10)
 
@@ -113,10 +146,20 @@ def test_inputs_act_are_given_up_and_repeat_the_run_from_its_log(stepped: tuple[
 
     step_until(remote, publish, lambda: all(applied.values()))
     first = applied["wrench"][0]
-    assert (first.wrench.force.x, first.wrench.force.z, first.wrench.torque.y) == (800.0, -300.0, 40.0)
+    assert (first.wrench.force.x, first.wrench.force.z, first.wrench.torque.y) == (
+        800.0,
+        -300.0,
+        40.0,
+    )
     # Nobody says anything any more: after half a second the load is gone and the deck stands.
     silent: Callable[[], None] = lambda: None  # noqa: E731
-    step_until(remote, silent, lambda: applied["wrench"][-1].wrench.force.x == 0.0 and applied["ground"][-1].velocity[0] == 0.0)
+    step_until(
+        remote,
+        silent,
+        lambda: (
+            applied["wrench"][-1].wrench.force.x == 0.0 and applied["ground"][-1].velocity[0] == 0.0
+        ),
+    )
     assert applied["ground"][-1].position[0] > 0.01
     assert remote.set(step_count=1000)[0].successful
     assert remote.trigger("step") == (True, "at 1 s, finished")
@@ -127,34 +170,56 @@ def test_inputs_act_are_given_up_and_repeat_the_run_from_its_log(stepped: tuple[
 
 
 def assert_repeats(log: Path) -> None:
-    """The model, given the log's parameters and inputs at their times, lands as the log says, digit for digit."""
+    """The model, given the log's parameters and inputs at their times, lands as the log says, digit
+    for digit.
+    """
     reader = LogReader(log)
     decode = Decoder(reader)
     names = {f"/landing/{name}": name for name in READINGS}
     changes: dict[int, list[dict[str, float]]] = {}
     for message in reader.messages():
         if message.topic in names:
-            changes.setdefault(message.log_time, []).append(READINGS[names[message.topic]](decode(message)))
+            changes.setdefault(message.log_time, []).append(
+                READINGS[names[message.topic]](decode(message))
+            )
     assert len(changes) >= 2
     found = history_of(reader)
     landing = Landing(reader.parameters())
     for k in range(len(found)):
-        for column in ("body.x", "body.y", "body.pitch", "leg[1].main_strut.force", "leg[3].contact.force_z"):
+        for column in (
+            "body.x",
+            "body.y",
+            "body.pitch",
+            "leg[1].main_strut.force",
+            "leg[3].contact.force_z",
+        ):
             assert found[column][k] == landing.get(column), (k, column)
         for values in changes.get(k * 1_000_000, []):
             landing.set_inputs(values)
         landing.advance_to((k + 1) * 1e-3)
-    assert np.abs(found["body.x"][-1] - Landing(reader.parameters()).run(1.0, 1e-2)["body.x"][-1]) > 1e-3
+    assert (
+        np.abs(found["body.x"][-1] - Landing(reader.parameters()).run(1.0, 1e-2)["body.x"][-1])
+        > 1e-3
+    )
     verified = verify(LogReader(log))
-    assert (verified.first, verified.other_bits, verified.inputs) == (None, 0, sum(map(len, changes.values())))
+    assert (verified.first, verified.other_bits, verified.inputs) == (
+        None,
+        0,
+        sum(map(len, changes.values())),
+    )
 
 
-def test_bad_inputs_are_counted_in_the_diagnostics_and_change_nothing(stepped: tuple[subprocess.Popen[str], Remote]) -> None:
+def test_bad_inputs_are_counted_in_the_diagnostics_and_change_nothing(
+    stepped: tuple[subprocess.Popen[str], Remote],
+) -> None:
     node, remote = stepped
     assert remote.set(step_count=100)[0].successful
     told: list[dict[str, str]] = []
     remote.node.create_subscription(
-        DiagnosticArray, "/diagnostics", lambda m: told.append({v.key: v.value for v in m.status[0].values}), 10
+        DiagnosticArray,
+        "/diagnostics",
+        lambda m: told.append({v.key: v.value for v in m.status[0].values}),
+        10,
     )
     pushing = remote.node.create_publisher(WrenchStamped, "/landing/external_wrench", 10)
     remote.until(lambda: pushing.get_subscription_count() > 0)

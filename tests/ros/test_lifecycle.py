@@ -25,12 +25,26 @@ Processes = list[subprocess.Popen[str]]
 
 
 @pytest.fixture
-def managed(fmu: Path, tmp_path: Path, domain: int, processes: Processes) -> Iterator[tuple[subprocess.Popen[str], Remote]]:
-    """A node that waits for transitions, and a participant that makes them. Its logs and temporary files are below `tmp_path`."""
+def managed(
+    fmu: Path, tmp_path: Path, domain: int, processes: Processes
+) -> Iterator[tuple[subprocess.Popen[str], Remote]]:
+    """A node that waits for transitions, and a participant that makes them.
+
+    Its logs and temporary files are below `tmp_path`.
+    """
     (tmp_path / "tmp").mkdir()
     # What it says at each configuration would fill the pipe in a thousand of them.
     quiet = ("--ros-args", "--log-level", "warn")
-    options = ("--managed", "--fmu", fmu, "--realtime-factor", 0, "--log-root", tmp_path / "logs", *quiet)
+    options = (
+        "--managed",
+        "--fmu",
+        fmu,
+        "--realtime-factor",
+        0,
+        "--log-root",
+        tmp_path / "logs",
+        *quiet,
+    )
     node = start("node", *options, domain=domain, TMPDIR=str(tmp_path / "tmp"))
     processes.append(node)
     with Remote(domain) as remote:
@@ -56,14 +70,21 @@ def mass(log: Path) -> float:
     return parameters.vehicle.mass
 
 
-def test_transitions_load_land_pause_and_free(managed: tuple[subprocess.Popen[str], Remote], tmp_path: Path) -> None:
+def test_transitions_load_land_pause_and_free(
+    managed: tuple[subprocess.Popen[str], Remote], tmp_path: Path
+) -> None:
     node, remote = managed
     assert remote.state() == "unconfigured"
     assert remote.trigger("step") == (False, "there is no landing; configure the node first")
     assert remote.change(CONFIGURE)
     assert remote.state() == "inactive"
     listed = json.loads(remote.first(String, "/landing/variables").data)
-    assert [v["name"] for v in listed] == [*PARAMETER_QUANTITIES, *INPUT_NAMES, *OUTPUT_NAMES, *(q.name for q in STATISTIC_QUANTITIES)]
+    assert [v["name"] for v in listed] == [
+        *PARAMETER_QUANTITIES,
+        *INPUT_NAMES,
+        *OUTPUT_NAMES,
+        *(q.name for q in STATISTIC_QUANTITIES),
+    ]
     assert list((tmp_path / "tmp").glob("rlv-landing-fmu-*"))
     assert remote.set(realtime_factor=0.5)[0].successful
     assert remote.change(ACTIVATE)
@@ -94,7 +115,9 @@ def test_transitions_load_land_pause_and_free(managed: tuple[subprocess.Popen[st
         assert np.array_equal(found[name], expected[name]), name
 
 
-def test_a_reset_takes_the_parameters_that_were_set_meanwhile(managed: tuple[subprocess.Popen[str], Remote], tmp_path: Path) -> None:
+def test_a_reset_takes_the_parameters_that_were_set_meanwhile(
+    managed: tuple[subprocess.Popen[str], Remote], tmp_path: Path
+) -> None:
     node, remote = managed
     assert remote.change(CONFIGURE)
     assert remote.set(step_count=100)[0].successful
@@ -112,22 +135,33 @@ def test_a_reset_takes_the_parameters_that_were_set_meanwhile(managed: tuple[sub
     first, second = sorted((tmp_path / "logs").iterdir(), key=mass)
     assert (mass(first), mass(second)) == (178.0, 200.0)
     assert (len(history_of(complete(first))), len(history_of(complete(second)))) == (101, 1001)
-    expected = Landing(load_preset("yue2022-figures").with_values({"vehicle.mass": 200.0}), "2-2").run(1.0, 1e-3)
+    expected = Landing(
+        load_preset("yue2022-figures").with_values({"vehicle.mass": 200.0}), "2-2"
+    ).run(1.0, 1e-3)
     assert np.array_equal(history_of(complete(second))["body.y"], expected["body.y"])
 
 
-def test_parameters_are_described_checked_and_kept_while_landing(managed: tuple[subprocess.Popen[str], Remote]) -> None:
+def test_parameters_are_described_checked_and_kept_while_landing(
+    managed: tuple[subprocess.Popen[str], Remote],
+) -> None:
     node, remote = managed
     assert remote.names() >= {*PARAMETER_QUANTITIES, *SETTINGS}
     (mass,) = remote.describe("vehicle.mass")
     q = PARAMETER_QUANTITIES["vehicle.mass"]
     assert mass.description == f"{q.meaning} [kg]"
-    assert (mass.floating_point_range[0].from_value, mass.floating_point_range[0].to_value) == (q.lo, q.hi)
+    assert (mass.floating_point_range[0].from_value, mass.floating_point_range[0].to_value) == (
+        q.lo,
+        q.hi,
+    )
     for name, value, reason in (
         ("vehicle__mass", -1.0, "vehicle.mass = -1 kg is outside [1, 1e+06] kg"),
         ("vehicle__mass", float("nan"), "vehicle.mass = nan kg is outside [1, 1e+06] kg"),
         ("vehicle__mass", "heavy", "vehicle.mass = 'heavy' is not a number; give it in kg"),
-        ("vehicle__transverse_load_at", "knee", "vehicle.transverse_load_at = 'knee' is not one of footpad, joint"),
+        (
+            "vehicle__transverse_load_at",
+            "knee",
+            "vehicle.transverse_load_at = 'knee' is not one of footpad, joint",
+        ),
         ("main_strut__stroke_max", 1.9, "main_strut.stroke_max = 1.9 m sweeps"),
         ("realtime_factor", -1.0, "realtime_factor = -1 is outside [0, 1000]"),
         ("step_size", 1.0000005e-3, "not a whole number of nanoseconds"),
@@ -140,7 +174,10 @@ def test_parameters_are_described_checked_and_kept_while_landing(managed: tuple[
     assert longer.successful, longer.reason
     assert remote.get("main_strut.volume_lower", "main_strut.stroke_max") == [0.01, 1.9]
     back = remote.set_together(
-        main_strut__volume_lower=0.0003956246382439225, main_strut__stroke_max=0.05, stop_time=30.0, realtime_factor=1.0
+        main_strut__volume_lower=0.0003956246382439225,
+        main_strut__stroke_max=0.05,
+        stop_time=30.0,
+        realtime_factor=1.0,
     )
     assert back.successful, back.reason
     assert remote.change(CONFIGURE)
@@ -156,8 +193,21 @@ def test_parameters_are_described_checked_and_kept_while_landing(managed: tuple[
 
 def test_a_parameter_file_gives_them_too(fmu: Path, tmp_path: Path) -> None:
     file = tmp_path / "landing.yaml"
-    file.write_text("/**:\n  ros__parameters:\n    stop_time: 0.05\n    vehicle: {mass: 200}\n    drop: {tilt: -0.02}\n")
-    done = run("node", "--fmu", fmu, "--realtime-factor", 0, "--record", tmp_path / "log", "--ros-args", "--params-file", file)
+    file.write_text(
+        "/**:\n  ros__parameters:\n    stop_time: 0.05\n    vehicle: {mass: 200}\n    drop: {tilt: -0.02}\n"
+    )
+    done = run(
+        "node",
+        "--fmu",
+        fmu,
+        "--realtime-factor",
+        0,
+        "--record",
+        tmp_path / "log",
+        "--ros-args",
+        "--params-file",
+        file,
+    )
     assert done.returncode == 0, done.stderr
     parameters = complete(tmp_path / "log").parameters()
     assert parameters is not None
@@ -182,8 +232,14 @@ def test_what_cannot_be_configured_is_said_and_can_be_mended(
 
 def resources(process: int) -> tuple[int, int, int]:
     """Threads, open files, and memory [kB] of a process."""
-    status = dict(line.split(":", 1) for line in Path(f"/proc/{process}/status").read_text().splitlines())
-    return int(status["Threads"]), len(list(Path(f"/proc/{process}/fd").iterdir())), int(status["VmRSS"].split()[0])
+    status = dict(
+        line.split(":", 1) for line in Path(f"/proc/{process}/status").read_text().splitlines()
+    )
+    return (
+        int(status["Threads"]),
+        len(list(Path(f"/proc/{process}/fd").iterdir())),
+        int(status["VmRSS"].split()[0]),
+    )
 
 
 @pytest.mark.torture
@@ -212,7 +268,9 @@ def test_a_node_goes_round_its_lifecycle_without_leaving_anything(
     assert all((log / "metadata.yaml").is_file() for log in (tmp_path / "logs").iterdir())
 
 
-def test_the_folder_of_a_killed_node_is_removed_by_the_next(fmu: Path, tmp_path: Path, domain: int, processes: Processes) -> None:
+def test_the_folder_of_a_killed_node_is_removed_by_the_next(
+    fmu: Path, tmp_path: Path, domain: int, processes: Processes
+) -> None:
     options = ("--managed", "--fmu", fmu, "--no-record")
     killed = start("node", *options, domain=domain, TMPDIR=str(tmp_path))
     processes.append(killed)
@@ -229,7 +287,9 @@ def test_the_folder_of_a_killed_node_is_removed_by_the_next(fmu: Path, tmp_path:
         (kept,) = tmp_path.glob("rlv-landing-fmu-*")
         assert kept != left
         # One that lives keeps its own.
-        third = run("node", "--fmu", fmu, "--no-record", "--realtime-factor", 0, "--stop-time", 0.01)
+        third = run(
+            "node", "--fmu", fmu, "--no-record", "--realtime-factor", 0, "--stop-time", 0.01
+        )
         assert third.returncode == 0, third.stderr
         assert kept.is_dir()
         living.send_signal(signal.SIGINT)

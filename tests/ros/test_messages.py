@@ -40,7 +40,10 @@ def bits(value: float) -> bytes:
 
 @given(FINITE, FINITE, FINITE)
 def test_axes_turn_as_the_rotation_matrix_says(x: float, y: float, z: float) -> None:
-    assert np.array_equal(to_ros(x, y, z), PAPER_TO_ROS @ [x, 0.0, 0.0] + PAPER_TO_ROS @ [0.0, y, 0.0] + PAPER_TO_ROS @ [0.0, 0.0, z])
+    assert np.array_equal(
+        to_ros(x, y, z),
+        PAPER_TO_ROS @ [x, 0.0, 0.0] + PAPER_TO_ROS @ [0.0, y, 0.0] + PAPER_TO_ROS @ [0.0, 0.0, z],
+    )
     assert tuple(map(bits, from_ros(*to_ros(x, y, z)))) == tuple(map(bits, (x, y, z)))
 
 
@@ -55,7 +58,9 @@ def test_pitch_is_a_turn_about_ros_y_that_takes_the_nose_forward_and_down(pitch:
     c, s = np.cos(pitch), np.sin(pitch)
     paper = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
     expected = PAPER_TO_ROS @ paper @ PAPER_TO_ROS.T
-    assert np.allclose(Rotation.from_quat(pitch_quaternion(pitch)).as_matrix(), expected, atol=1e-15)
+    assert np.allclose(
+        Rotation.from_quat(pitch_quaternion(pitch)).as_matrix(), expected, atol=1e-15
+    )
 
 
 @given(st.floats(-3.0, 3.0), st.floats(-10.0, 10.0), st.floats(-10.0, 10.0))
@@ -82,14 +87,20 @@ def test_columns_from_messages_are_the_sample_bit_for_bit(numbers: list[float]) 
     values = dict(zip(COLUMN_NAMES, numbers))
     messages = filled(sample(values))
     sent: dict[str, Any] = {
-        topic.name: deserialize_message(serialize_message(message), type(message)) for topic, message in messages.messages
+        topic.name: deserialize_message(serialize_message(message), type(message))
+        for topic, message in messages.messages
     }
     back = sample_columns(sent)
-    assert {name: bits(value) for name, value in back.items()} == {name: bits(value) for name, value in values.items()}
+    assert {name: bits(value) for name, value in back.items()} == {
+        name: bits(value) for name, value in values.items()
+    }
 
 
 def test_message_objects_are_filled_again_without_leftovers() -> None:
-    first, second = [float(i) for i in range(len(OUTPUT_NAMES))], [-float(i) for i in range(len(OUTPUT_NAMES))]
+    first, second = (
+        [float(i) for i in range(len(OUTPUT_NAMES))],
+        [-float(i) for i in range(len(OUTPUT_NAMES))],
+    )
     reused = SampleMessages()
     reused.fill(5, first)
     reused.fill(7, second)
@@ -104,7 +115,9 @@ def test_wireframe_struts_have_their_length_less_the_stroke(mode: str) -> None:
     landing = Landing(parameters)
     landing.advance_to(0.16)
     wireframe = Wireframe(parameters)
-    markers = {m.ns: [to_tuple(p) for p in m.points] for m in wireframe.fill(0, landing.values()).markers}
+    markers = {
+        m.ns: [to_tuple(p) for p in m.points] for m in wireframe.fill(0, landing.values()).markers
+    }
     for name, strut, length in (
         ("main_struts", "main_strut", parameters.main_strut.length),
         ("auxiliary_struts", "auxiliary_strut", parameters.auxiliary_strut.length),
@@ -112,7 +125,9 @@ def test_wireframe_struts_have_their_length_less_the_stroke(mode: str) -> None:
         for leg in (1, 2, 3, 4):
             joint, foot = markers[name][2 * leg - 2], markers[name][2 * leg - 1]
             stroke = landing.get(f"leg[{leg}].{strut}.stroke")
-            assert np.linalg.norm(np.subtract(joint, foot)) == pytest.approx(length - stroke, abs=1e-9)
+            assert np.linalg.norm(np.subtract(joint, foot)) == pytest.approx(
+                length - stroke, abs=1e-9
+            )
 
 
 def to_tuple(point: Any) -> tuple[float, float, float]:

@@ -11,7 +11,18 @@ import sys
 from pathlib import Path
 
 import pytest
-from bridge_tools import ROOT, TIMEOUT, Listener, by_topic, command, complaints, environment, only_stalls, run, start
+from bridge_tools import (
+    ROOT,
+    TIMEOUT,
+    Listener,
+    by_topic,
+    command,
+    complaints,
+    environment,
+    only_stalls,
+    run,
+    start,
+)
 from rclpy.qos import ReliabilityPolicy
 from remote import ACTIVATE, CONFIGURE, Remote
 from std_msgs.msg import String
@@ -21,16 +32,24 @@ from rlv_ros_bridge.messages.qos import parse_qos
 from rlv_ros_bridge.messages.rclpy_qos import qos_profile
 from rlv_ros_bridge.messages.topics import CLOCK, LATCHED, RECORDED, STRUTS, TF, resolve
 
-# `struts` last: a node that waits for a match on it finds the others matched. What is latched came before.
-TOPICS = {resolve("landing", t.name): t.type_name for t in (*(t for t in RECORDED[1:] if t not in (*LATCHED, TF)), STRUTS)}
+# `struts` last: a node that waits for a match on it finds the others matched. What is latched came
+# before.
+TOPICS = {
+    resolve("landing", t.name): t.type_name
+    for t in (*(t for t in RECORDED[1:] if t not in (*LATCHED, TF)), STRUTS)
+}
 SAMPLES = 1001
 
 
-def test_a_subscriber_in_another_process_gets_every_sample_as_it_is_in_the_log(fmu: Path, tmp_path: Path, domain: int) -> None:
+def test_a_subscriber_in_another_process_gets_every_sample_as_it_is_in_the_log(
+    fmu: Path, tmp_path: Path, domain: int
+) -> None:
     folder = tmp_path / "log"
     listener = Listener(TOPICS, tmp_path, domain)
     try:
-        done = run("node", "--fmu", fmu, "--record", folder, "--wait-for-subscribers", 1, domain=domain)
+        done = run(
+            "node", "--fmu", fmu, "--record", folder, "--wait-for-subscribers", 1, domain=domain
+        )
         assert done.returncode == 0, done.stderr
         heard = listener.finish()
     finally:
@@ -40,14 +59,20 @@ def test_a_subscriber_in_another_process_gets_every_sample_as_it_is_in_the_log(f
         if message.topic in TOPICS:
             logged.setdefault(message.topic, []).append(message.data)
     received = by_topic(heard)
-    assert {name: len(messages) for name, messages in received.items()} == {name: len(messages) for name, messages in logged.items()}
+    assert {name: len(messages) for name, messages in received.items()} == {
+        name: len(messages) for name, messages in logged.items()
+    }
     assert sum(len(messages) == SAMPLES for messages in received.values()) == 11
     assert received == logged
 
 
-def test_the_clock_goes_out_with_every_step_and_carries_simulation_time(fmu: Path, tmp_path: Path, domain: int) -> None:
+def test_the_clock_goes_out_with_every_step_and_carries_simulation_time(
+    fmu: Path, tmp_path: Path, domain: int
+) -> None:
     # Best effort by its nature: a depth of 1. At a tenth of real time each one arrives.
-    listener = Listener({CLOCK.name: CLOCK.type_name, "/landing/struts": STRUTS.type_name}, tmp_path, domain)
+    listener = Listener(
+        {CLOCK.name: CLOCK.type_name, "/landing/struts": STRUTS.type_name}, tmp_path, domain
+    )
     try:
         more = ("--stop-time", 0.1, "--realtime-factor", 0.1, "--no-record")
         done = run("node", "--fmu", fmu, "--wait-for-subscribers", 1, *more, domain=domain)
@@ -55,18 +80,36 @@ def test_the_clock_goes_out_with_every_step_and_carries_simulation_time(fmu: Pat
         heard = by_topic(listener.finish())
     finally:
         listener.stop()
-    assert [struct.unpack_from("<iI", data, 4) for data in heard["/clock"]] == [(0, k * 1_000_000) for k in range(101)]
+    assert [struct.unpack_from("<iI", data, 4) for data in heard["/clock"]] == [
+        (0, k * 1_000_000) for k in range(101)
+    ]
     assert len(heard["/landing/struts"]) == 101
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_a_signal_in_mid_landing_leaves_a_complete_log(
-    number: int, code: int, fmu: Path, tmp_path: Path, domain: int, processes: list[subprocess.Popen[str]]
+    number: int,
+    code: int,
+    fmu: Path,
+    tmp_path: Path,
+    domain: int,
+    processes: list[subprocess.Popen[str]],
 ) -> None:
     folder = tmp_path / "log"
     listener = Listener({"/landing/struts": STRUTS.type_name}, tmp_path, domain, announce=300)
     try:
-        node = start("node", "--fmu", fmu, "--record", folder, "--stop-time", 20, "--wait-for-subscribers", 1, domain=domain)
+        node = start(
+            "node",
+            "--fmu",
+            fmu,
+            "--record",
+            folder,
+            "--stop-time",
+            20,
+            "--wait-for-subscribers",
+            1,
+            domain=domain,
+        )
         processes.append(node)
         listener.wait_for_announcement()
         node.send_signal(number)
@@ -99,7 +142,14 @@ def test_a_subscriber_that_freezes_neither_slows_the_node_down_nor_costs_the_log
     walls = []
     for frozen in (False, True):
         listener = Listener(TOPICS, tmp_path, domain, announce=100)
-        options = ("--record", tmp_path / f"log-{frozen}", "--stop-time", 5, "--wait-for-subscribers", 1)
+        options = (
+            "--record",
+            tmp_path / f"log-{frozen}",
+            "--stop-time",
+            5,
+            "--wait-for-subscribers",
+            1,
+        )
         try:
             node = start("node", "--fmu", fmu, *options, domain=domain)
             processes.append(node)
@@ -128,8 +178,26 @@ def test_two_nodes_land_side_by_side_in_their_namespaces(
     try:
         nodes = [
             start(
-                *("node", "--fmu", fmu, "--namespace", name, "--mode", mode, "--record", tmp_path / name, "--stop-time", 0.3),
-                *("--wait-for-subscribers", 1, "--ros-args", "-p", f"clock:={str(name == 'first').lower()}"),
+                *(
+                    "node",
+                    "--fmu",
+                    fmu,
+                    "--namespace",
+                    name,
+                    "--mode",
+                    mode,
+                    "--record",
+                    tmp_path / name,
+                    "--stop-time",
+                    0.3,
+                ),
+                *(
+                    "--wait-for-subscribers",
+                    1,
+                    "--ros-args",
+                    "-p",
+                    f"clock:={str(name == 'first').lower()}",
+                ),
                 domain=domain,
             )
             for name, mode in (("first", "2-2"), ("second", "1-2-1"))
@@ -147,10 +215,24 @@ def test_two_nodes_land_side_by_side_in_their_namespaces(
         assert reader.metadata["mode"] == mode
 
 
-def test_topics_are_thinned_out_live_and_whole_in_the_log(fmu: Path, tmp_path: Path, domain: int) -> None:
-    listener = Listener({"/landing/pose": "geometry_msgs/msg/PoseStamped", "/landing/struts": STRUTS.type_name}, tmp_path, domain)
+def test_topics_are_thinned_out_live_and_whole_in_the_log(
+    fmu: Path, tmp_path: Path, domain: int
+) -> None:
+    listener = Listener(
+        {"/landing/pose": "geometry_msgs/msg/PoseStamped", "/landing/struts": STRUTS.type_name},
+        tmp_path,
+        domain,
+    )
     try:
-        more = ("--stop-time", 0.1, "--wait-for-subscribers", 1, "--ros-args", "-p", "publish_every.pose:=10")
+        more = (
+            "--stop-time",
+            0.1,
+            "--wait-for-subscribers",
+            1,
+            "--ros-args",
+            "-p",
+            "publish_every.pose:=10",
+        )
         done = run("node", "--fmu", fmu, "--record", tmp_path / "log", *more, domain=domain)
         assert done.returncode == 0, done.stderr
         heard = by_topic(listener.finish())
@@ -161,14 +243,28 @@ def test_topics_are_thinned_out_live_and_whole_in_the_log(fmu: Path, tmp_path: P
     assert heard["/landing/pose"] == logged[::10]
 
 
-RELIABILITY = {"telemetry": ReliabilityPolicy.RELIABLE, "sensor_data": ReliabilityPolicy.BEST_EFFORT}
+RELIABILITY = {
+    "telemetry": ReliabilityPolicy.RELIABLE,
+    "sensor_data": ReliabilityPolicy.BEST_EFFORT,
+}
 
 
 @pytest.mark.parametrize("qos", RELIABILITY)
 def test_the_quality_of_service_is_what_was_asked_for_and_is_in_the_log(
     qos: str, fmu: Path, tmp_path: Path, domain: int, processes: list[subprocess.Popen[str]]
 ) -> None:
-    options = ("--managed", "--realtime-factor", 0, "--stop-time", 0.01, "--record", tmp_path / "log", "--ros-args", "-p", f"qos:={qos}")
+    options = (
+        "--managed",
+        "--realtime-factor",
+        0,
+        "--stop-time",
+        0.01,
+        "--record",
+        tmp_path / "log",
+        "--ros-args",
+        "-p",
+        f"qos:={qos}",
+    )
     node = start("node", "--fmu", fmu, *options, domain=domain)
     processes.append(node)
     with Remote(domain) as remote:
@@ -187,18 +283,32 @@ def test_the_quality_of_service_is_what_was_asked_for_and_is_in_the_log(
     assert qos_profile(written).reliability == RELIABILITY[qos]
 
 
-def test_the_node_runs_without_a_home_folder_and_leaves_nothing_behind(fmu: Path, tmp_path: Path) -> None:
+def test_the_node_runs_without_a_home_folder_and_leaves_nothing_behind(
+    fmu: Path, tmp_path: Path
+) -> None:
     env = environment(TMPDIR=str(tmp_path))
     for name in ("HOME", "ROS_LOG_DIR", "ROS_HOME"):
         env.pop(name, None)
     line = command("node", "--fmu", fmu, "--no-record", "--realtime-factor", 0, "--stop-time", 0.1)
-    done = subprocess.run(line, env=env, capture_output=True, text=True, timeout=TIMEOUT, check=False)
+    done = subprocess.run(
+        line, env=env, capture_output=True, text=True, timeout=TIMEOUT, check=False
+    )
     assert done.returncode == 0, done.stderr
     assert [p.name for p in tmp_path.iterdir() if p.name.startswith("rlv-landing-fmu")] == []
 
 
 def test_settings_come_by_ros_arguments_too(fmu: Path, tmp_path: Path) -> None:
-    ros = ("--ros-args", "-p", "mode:=1-2-1", "-p", "vehicle.mass:=200", "-p", "stop_time:=0.05", "-r", "__ns:=/tests")
+    ros = (
+        "--ros-args",
+        "-p",
+        "mode:=1-2-1",
+        "-p",
+        "vehicle.mass:=200",
+        "-p",
+        "stop_time:=0.05",
+        "-r",
+        "__ns:=/tests",
+    )
     done = run("node", "--fmu", fmu, "--realtime-factor", 0, "--log-root", tmp_path / "logs", *ros)
     assert done.returncode == 0, done.stderr
     (folder,) = (tmp_path / "logs").iterdir()
@@ -216,7 +326,13 @@ def test_help_teaches_without_loading_ros(tmp_path: Path) -> None:
     line = "import sys; from rlv_ros_bridge.__main__ import main; main(['node', '--help'], standalone_mode=False); "
     line += "print(sorted({'rclpy', 'fmpy', 'mcap'} & set(sys.modules)))"
     done = subprocess.run(
-        [sys.executable, "-c", line], env=environment(), capture_output=True, text=True, timeout=TIMEOUT, check=False, cwd=ROOT
+        [sys.executable, "-c", line],
+        env=environment(),
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT,
+        check=False,
+        cwd=ROOT,
     )
     assert "Examples:" in done.stdout
     assert done.stdout.strip().endswith("[]")

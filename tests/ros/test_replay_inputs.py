@@ -25,14 +25,24 @@ Change = tuple[str, dict[str, float]]
 
 
 def make_inputs(folder: Path) -> list[Change]:
-    """A log of ten wrenches and ten movements of the ground within 0.4 s, as a node records them; what it says."""
-    recorder = Recorder(folder, [RecordedTopic(f"/landing/{t.name}", t.type_name, TELEMETRY) for t in APPLIED], {"namespace": "/landing"})
+    """A log of ten wrenches and ten movements of the ground within 0.4 s, as a node records them;
+    what it says.
+    """
+    recorder = Recorder(
+        folder,
+        [RecordedTopic(f"/landing/{t.name}", t.type_name, TELEMETRY) for t in APPLIED],
+        {"namespace": "/landing"},
+    )
     changes: list[Change] = []
     for k in range(20):
         topic, names = ((APPLIED_WRENCH, WRENCH), (APPLIED_GROUND, (*HEAVE, *TILT)))[k % 2]
         size = 100.0 if topic is APPLIED_WRENCH else 1e-4
-        applied = Applied(topic, k * 20_000_000, {name: size * (k + 1 + i) for i, name in enumerate(names)})
-        recorder.write(f"/landing/{topic.name}", applied.nanoseconds, serialize_message(applied.message()))
+        applied = Applied(
+            topic, k * 20_000_000, {name: size * (k + 1 + i) for i, name in enumerate(names)}
+        )
+        recorder.write(
+            f"/landing/{topic.name}", applied.nanoseconds, serialize_message(applied.message())
+        )
         changes.append((topic.name, dict(applied.values)))
     recorder.close()
     return changes
@@ -44,23 +54,53 @@ def recorded_inputs(log: Path) -> list[tuple[int, Change]]:
     reader.read_through()
     decode = Decoder(reader)
     names = {f"/landing/{name}": name for name in READINGS}
-    return [(m.log_time, (names[m.topic], READINGS[names[m.topic]](decode(m)))) for m in reader.messages(names)]
+    return [
+        (m.log_time, (names[m.topic], READINGS[names[m.topic]](decode(m))))
+        for m in reader.messages(names)
+    ]
 
 
 def test_the_inputs_of_a_log_steer_another_landing(
     fmu: Path, one_log: Path, tmp_path: Path, domain: int, processes: list[subprocess.Popen[str]]
 ) -> None:
     changes = make_inputs(tmp_path / "inputs")
-    slowly = ("--realtime-factor", 0.25, "--stop-time", 2, "--record", tmp_path / "steered", "--ros-args", "-p", "input_timeout:=0.0")
+    slowly = (
+        "--realtime-factor",
+        0.25,
+        "--stop-time",
+        2,
+        "--record",
+        tmp_path / "steered",
+        "--ros-args",
+        "-p",
+        "input_timeout:=0.0",
+    )
     node = start("node", "--managed", "--fmu", fmu, *slowly, domain=domain)
-    remap = [argument for t in APPLIED for argument in ("--remap", f"{t.name}:={t.name.removeprefix('applied/')}")]
-    replay = start("replay", tmp_path / "inputs", "--rate", 0.25, "--start-paused", "--wait-for-subscribers", 1, *remap, domain=domain)
+    remap = [
+        argument
+        for t in APPLIED
+        for argument in ("--remap", f"{t.name}:={t.name.removeprefix('applied/')}")
+    ]
+    replay = start(
+        "replay",
+        tmp_path / "inputs",
+        "--rate",
+        0.25,
+        "--start-paused",
+        "--wait-for-subscribers",
+        1,
+        *remap,
+        domain=domain,
+    )
     processes += [node, replay]
     with Remote(domain) as remote, Remote(domain, "/replay_node") as player:
         assert remote.change(CONFIGURE)
         told: list[dict[str, str]] = []
         remote.node.create_subscription(
-            DiagnosticArray, "/diagnostics", lambda m: told.append({v.key: v.value for v in m.status[0].values}), 10
+            DiagnosticArray,
+            "/diagnostics",
+            lambda m: told.append({v.key: v.value for v in m.status[0].values}),
+            10,
         )
         assert player.trigger("pause") == (False, "the replay is paused already")
         assert remote.change(ACTIVATE)
@@ -76,7 +116,10 @@ def test_the_inputs_of_a_log_steer_another_landing(
     arrived = recorded_inputs(tmp_path / "steered")
     for topic in READINGS:
         # Of two that arrive within one step the last one counts.
-        acted, sent = ([values for name, values in found if name == topic] for found in ([change for _, change in arrived], changes))
+        acted, sent = (
+            [values for name, values in found if name == topic]
+            for found in ([change for _, change in arrived], changes)
+        )
         assert acted[-1] == sent[-1]
         assert [values for values in sent if values in acted] == acted
     steered = LogReader(tmp_path / "steered")
@@ -93,17 +136,42 @@ def test_inputs_are_played_one_by_one_in_lock_step_with_a_landing(
 ) -> None:
     changes = make_inputs(tmp_path / "inputs")
     node = start(
-        "node", "--managed", "--fmu", fmu, "--record", tmp_path / "steered", "--ros-args", "-p", "input_timeout:=0.0", domain=domain
+        "node",
+        "--managed",
+        "--fmu",
+        fmu,
+        "--record",
+        tmp_path / "steered",
+        "--ros-args",
+        "-p",
+        "input_timeout:=0.0",
+        domain=domain,
     )
-    remap = [argument for t in APPLIED for argument in ("--remap", f"{t.name}:={t.name.removeprefix('applied/')}")]
-    replay = start("replay", tmp_path / "inputs", "--start-paused", "--wait-for-subscribers", 1, *remap, domain=domain)
+    remap = [
+        argument
+        for t in APPLIED
+        for argument in ("--remap", f"{t.name}:={t.name.removeprefix('applied/')}")
+    ]
+    replay = start(
+        "replay",
+        tmp_path / "inputs",
+        "--start-paused",
+        "--wait-for-subscribers",
+        1,
+        *remap,
+        domain=domain,
+    )
     processes += [node, replay]
     with Remote(domain) as remote, Remote(domain, "/replay_node") as player:
         assert remote.change(CONFIGURE)
         applied: list[int] = []
         for t, kind in zip(APPLIED, applied_types()):
-            remote.node.create_subscription(kind, f"/landing/{t.name}", lambda m: applied.append(m.header.stamp.nanosec), 100)
-        remote.until(lambda: all(remote.node.count_publishers(f"/landing/{t.name}") for t in APPLIED))
+            remote.node.create_subscription(
+                kind, f"/landing/{t.name}", lambda m: applied.append(m.header.stamp.nanosec), 100
+            )
+        remote.until(
+            lambda: all(remote.node.count_publishers(f"/landing/{t.name}") for t in APPLIED)
+        )
         assert remote.trigger("step")[0]
         for k in range(5):
             assert player.trigger("play_next") == (True, "")

@@ -20,7 +20,9 @@ STRUTS = {"/landing/struts": "sensor_msgs/msg/JointState"}
 HEARD = ("--topics", "struts", "--wait-for-subscribers", 1)
 
 
-def test_single_steps_and_then_the_rest_reach_a_waiting_subscriber_complete(one_log: Path, tmp_path: Path, domain: int) -> None:
+def test_single_steps_and_then_the_rest_reach_a_waiting_subscriber_complete(
+    one_log: Path, tmp_path: Path, domain: int
+) -> None:
     original = [m.data for m in LogReader(one_log).messages(STRUTS)]
     listener = Listener(STRUTS, tmp_path, domain, {"/landing/struts": len(original)}, announce=3)
     try:
@@ -56,7 +58,12 @@ def test_only_steps_are_played_in_a_pause(one_log: Path, tmp_path: Path, domain:
 def test_keys_pause_go_on_and_change_the_rate(one_log: Path, domain: int) -> None:
     with Terminal("replay", one_log, "--rate", 0.01, domain=domain) as terminal:
         terminal.until("rate 0.01")
-        for key, shown in ((UP, "rate 0.011"), (SPACE, "rate 0.011, paused"), (DOWN, "rate 0.01, paused"), (SPACE, "rate 0.01")):
+        for key, shown in (
+            (UP, "rate 0.011"),
+            (SPACE, "rate 0.011, paused"),
+            (DOWN, "rate 0.01, paused"),
+            (SPACE, "rate 0.01"),
+        ):
             terminal.press(key)
             terminal.until(shown)
         assert not terminal.line_by_line
@@ -66,7 +73,9 @@ def test_keys_pause_go_on_and_change_the_rate(one_log: Path, domain: int) -> Non
 
 
 @pytest.mark.parametrize("end", ["q", "\x03", "\x1c", signal.SIGTERM, signal.SIGHUP])
-def test_the_terminal_is_left_as_it_was_found(one_log: Path, domain: int, end: str | signal.Signals) -> None:
+def test_the_terminal_is_left_as_it_was_found(
+    one_log: Path, domain: int, end: str | signal.Signals
+) -> None:
     with Terminal("replay", one_log, "--rate", 0.01, domain=domain) as terminal:
         terminal.until("rate 0.01")
         assert not terminal.line_by_line
@@ -76,17 +85,30 @@ def test_the_terminal_is_left_as_it_was_found(one_log: Path, domain: int, end: s
             os.kill(terminal.pid, end)
         status = terminal.status()
         told = os.waitstatus_to_exitcode(status)
-        assert told == {"q": 0, "\x03": 130, "\x1c": -signal.SIGQUIT, signal.SIGTERM: 143, signal.SIGHUP: -signal.SIGHUP}[end]
+        assert (
+            told
+            == {
+                "q": 0,
+                "\x03": 130,
+                "\x1c": -signal.SIGQUIT,
+                signal.SIGTERM: 143,
+                signal.SIGHUP: -signal.SIGHUP,
+            }[end]
+        )
         assert terminal.is_as_it_was
 
 
 def test_an_error_leaves_the_terminal_as_it_was_found(one_log: Path, domain: int) -> None:
-    with Terminal("replay", one_log, "--wait-for-subscribers", 1, "--wait-timeout", 0.5, domain=domain) as terminal:
+    with Terminal(
+        "replay", one_log, "--wait-for-subscribers", 1, "--wait-timeout", 0.5, domain=domain
+    ) as terminal:
         assert os.waitstatus_to_exitcode(terminal.status()) == 2
         assert terminal.is_as_it_was
 
 
-def test_a_stopped_replay_gives_the_terminal_back_and_takes_it_again(one_log: Path, domain: int) -> None:
+def test_a_stopped_replay_gives_the_terminal_back_and_takes_it_again(
+    one_log: Path, domain: int
+) -> None:
     with Terminal("replay", one_log, "--rate", 0.01, domain=domain) as terminal:
         terminal.until("rate 0.01")
         terminal.press("\x1a")

@@ -30,7 +30,9 @@ def test_the_urdf_has_the_struts_as_joints_and_its_feet_where_the_model_has_them
     for name, joint in moving.items():
         assert joint.limit.lower <= 0.0 < joint.limit.upper, name
     assert moving["leg_1_main_strut"].limit.upper == parameters.main_strut.stroke_max
-    assert robot.get_transform(TOP_FRAME, BODY_FRAME)[2, 3] == pytest.approx(parameters.vehicle.top_height)
+    assert robot.get_transform(TOP_FRAME, BODY_FRAME)[2, 3] == pytest.approx(
+        parameters.vehicle.top_height
+    )
     # At the start all struts are extended.
     landing = Landing(parameters)
     x, y, pitch = (landing.get(f"body.{name}") for name in ("x", "y", "pitch"))
@@ -47,5 +49,10 @@ def test_the_urdf_has_the_struts_as_joints_and_its_feet_where_the_model_has_them
 def test_a_stroke_shortens_its_strut() -> None:
     robot = parsed(robot_description(load_preset("yue2022-figures")))
     robot.update_cfg({"leg_1_main_strut": 0.03})
-    rod, mount = (robot.get_transform(f"leg_1_main_strut_{part}", BODY_FRAME)[:3, 3] for part in ("rod", "cylinder"))
-    assert np.linalg.norm(rod - mount) == pytest.approx(load_preset("yue2022-figures").main_strut.length - 0.03, abs=1e-9)
+    rod, mount = (
+        robot.get_transform(f"leg_1_main_strut_{part}", BODY_FRAME)[:3, 3]
+        for part in ("rod", "cylinder")
+    )
+    assert np.linalg.norm(rod - mount) == pytest.approx(
+        load_preset("yue2022-figures").main_strut.length - 0.03, abs=1e-9
+    )

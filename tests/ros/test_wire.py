@@ -25,14 +25,19 @@ STORE = get_typestore(Stores.ROS2_KILTED if hasattr(Stores, "ROS2_KILTED") else 
 
 
 def assert_same(ours: bytes, theirs: bytes, type_name: str) -> None:
-    """The same bytes but for the gaps between fields, which rclpy leaves as its memory was. Where these are, an independent
-    serialisation tells: it leaves zeros there, and changing them changes no field."""
+    """The same bytes but for the gaps between fields, which rclpy leaves as its memory was.
+
+    Where these are, an independent serialisation tells: it leaves zeros there, and changing them
+    changes no field.
+    """
     assert len(ours) == len(theirs)
     differing = [i for i, (a, b) in enumerate(zip(ours, theirs)) if a != b]
     if not differing:
         return
     kind = message_class(type_name)
-    independent = padded(bytes(STORE.serialize_cdr(STORE.deserialize_cdr(theirs, type_name), type_name)))
+    independent = padded(
+        bytes(STORE.serialize_cdr(STORE.deserialize_cdr(theirs, type_name), type_name))
+    )
     assert len(independent) == len(theirs)
     gaps = bytearray(independent)
     for i in differing:
@@ -68,17 +73,27 @@ def test_packed_markers_are_rclpys_own_bytes(mode: str) -> None:
     wireframe = Wireframe(load_preset("yue2022-figures", mode))
 
     @settings(max_examples=20, deadline=None)
-    @given(STAMPS, st.lists(st.floats(-1e6, 1e6), min_size=len(OUTPUT_NAMES), max_size=len(OUTPUT_NAMES)))
+    @given(
+        STAMPS,
+        st.lists(st.floats(-1e6, 1e6), min_size=len(OUTPUT_NAMES), max_size=len(OUTPUT_NAMES)),
+    )
     def holds(nanoseconds: int, values: list[float]) -> None:
         data = padded(wireframe.pack(nanoseconds, values))
-        assert_same(data, padded(serialize_message(wireframe.fill(nanoseconds, values))), MARKERS.type_name)
+        assert_same(
+            data, padded(serialize_message(wireframe.fill(nanoseconds, values))), MARKERS.type_name
+        )
 
     holds()
 
 
 def test_a_packer_keeps_nothing_of_the_sample_before() -> None:
     packer, fresh = SampleBytes(), SampleBytes()
-    first, second = [float(i) for i in range(len(OUTPUT_NAMES))], [-float(i) for i in range(len(OUTPUT_NAMES))]
+    first, second = (
+        [float(i) for i in range(len(OUTPUT_NAMES))],
+        [-float(i) for i in range(len(OUTPUT_NAMES))],
+    )
     packer.pack(5, first)
-    for topic, used, new in zip(packer.topics, split(packer, packer.pack(7, second)), split(fresh, fresh.pack(7, second))):
+    for topic, used, new in zip(
+        packer.topics, split(packer, packer.pack(7, second)), split(fresh, fresh.pack(7, second))
+    ):
         assert_same(used, new, topic.type_name)

@@ -1,4 +1,6 @@
-"""What the tests of sweeps share: studies, the command in a process of its own, and the rows it leaves."""
+"""What the tests of sweeps share: studies, the command in a process of its own, and the rows it
+leaves.
+"""
 
 from __future__ import annotations
 
@@ -56,14 +58,20 @@ def command(*arguments: object) -> list[str]:
     return [sys.executable, "-c", "from rlv_landing.cli import main; main()", *map(str, arguments)]
 
 
-def run(*arguments: object, cwd: Path, before: Callable[[], None] | None = None) -> subprocess.CompletedProcess[str]:
+def run(
+    *arguments: object, cwd: Path, before: Callable[[], None] | None = None
+) -> subprocess.CompletedProcess[str]:
     """The command, to its end; `before` is called in the process before it starts."""
-    return subprocess.run(command(*arguments), capture_output=True, text=True, cwd=cwd, timeout=300, preexec_fn=before)
+    return subprocess.run(
+        command(*arguments), capture_output=True, text=True, cwd=cwd, timeout=300, preexec_fn=before
+    )
 
 
 def start(*arguments: object, cwd: Path) -> subprocess.Popen[str]:
     """The command, begun."""
-    return subprocess.Popen(command(*arguments), cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    return subprocess.Popen(
+        command(*arguments), cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
 
 
 def wait_for(process: subprocess.Popen[str], condition: Callable[[], bool]) -> None:

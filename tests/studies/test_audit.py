@@ -1,4 +1,6 @@
-"""The audit: what it finds on the preset, that it notices what is wrong, and that its own account of momentum is right."""
+"""The audit: what it finds on the preset, that it notices what is wrong, and that its own account
+of momentum is right.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,9 @@ def test_the_energy_table_has_every_term_of_the_balance(audits, mode):
     assert held == approx(0.0, abs=1e-5 * sum(ends[t] for t in DISSIPATED))
 
 
-def test_error_is_in_proportion_to_tolerance_on_the_smooth_arc_and_larger_across_contacts(audits, mode):
+def test_error_is_in_proportion_to_tolerance_on_the_smooth_arc_and_larger_across_contacts(
+    audits, mode
+):
     found = audits[mode].convergence
     assert 0.5 < found.smooth_slope < 1.2
     assert [e.rtol for e in found.smooth] == [e.rtol for e in found.contacts]
@@ -53,7 +57,9 @@ def test_the_smooth_arc_is_in_contact_and_free_of_events():
 
 
 def test_momentum_is_the_rate_of_the_mass_points_own_positions(mode):
-    """Central differences of sum(m x), sum(m y), and of each point's position for the angular momentum."""
+    """Central differences of sum(m x), sum(m y), and of each point's position for the angular
+    momentum.
+    """
     parameters = load_preset(FIGURES, mode)
     landing = Landing(parameters, rtol=1e-10)
     landing.advance_to(0.3)
@@ -62,12 +68,21 @@ def test_momentum_is_the_rate_of_the_mass_points_own_positions(mode):
     found = momentum(history, parameters)
     v = parameters.vehicle
     points = [(v.mass, history["body.x"], history["body.y"])]
-    points += [(v.footpad_mass, history[f"leg[{leg}].footpad.x"], history[f"leg[{leg}].footpad.y"]) for leg in LEGS]
+    points += [
+        (v.footpad_mass, history[f"leg[{leg}].footpad.x"], history[f"leg[{leg}].footpad.y"])
+        for leg in LEGS
+    ]
     rates = [(m, x, y, np.gradient(x, step), np.gradient(y, step)) for m, x, y in points]
     inner = slice(2, -2)
-    assert found.x[inner] == approx(sum(m * vx for m, _, _, vx, _ in rates)[inner], rel=1e-6, abs=1e-4)
-    assert found.y[inner] == approx(sum(m * vy for m, _, _, _, vy in rates)[inner], rel=1e-6, abs=1e-4)
-    turning = sum(m * (y * vx - x * vy) for m, x, y, vx, vy in rates) + v.inertia * np.gradient(history["body.pitch"], step)
+    assert found.x[inner] == approx(
+        sum(m * vx for m, _, _, vx, _ in rates)[inner], rel=1e-6, abs=1e-4
+    )
+    assert found.y[inner] == approx(
+        sum(m * vy for m, _, _, _, vy in rates)[inner], rel=1e-6, abs=1e-4
+    )
+    turning = sum(m * (y * vx - x * vy) for m, x, y, vx, vy in rates) + v.inertia * np.gradient(
+        history["body.pitch"], step
+    )
     assert found.about_origin[inner] == approx(turning[inner], rel=1e-6, abs=1e-4)
 
 
@@ -86,7 +101,9 @@ def test_a_contact_force_that_is_1_per_cent_wrong_does_not_pass_the_momentum_aud
 
 
 def test_the_joint_is_told_to_drop_angular_momentum_and_not_held_to_it(command):
-    done = command("audit", FIGURES, "--mode", "2-2", "--set", "vehicle.transverse_load_at=joint", "--json")
+    done = command(
+        "audit", FIGURES, "--mode", "2-2", "--set", "vehicle.transverse_load_at=joint", "--json"
+    )
     assert done.code == 0, done.err
     (found,) = json.loads(done.out)["audits"]
     checks = {c["id"]: c for c in found["checks"]}
@@ -97,15 +114,21 @@ def test_the_joint_is_told_to_drop_angular_momentum_and_not_held_to_it(command):
 
 
 def test_a_vehicle_that_topples_fails_the_audit_with_a_line_and_exit_code_1(command):
-    done = command("audit", "--mode", "2-2", "--set", "drop.pitch_rate=6", "--set", "drop.contact_time=0")
+    done = command(
+        "audit", "--mode", "2-2", "--set", "drop.pitch_rate=6", "--set", "drop.contact_time=0"
+    )
     assert done.code == 1
     assert "missed: 2-2: settled 10 s after first contact" in done.err
     assert "MISSED" in done.out
 
 
 def test_any_parameter_file_can_be_audited(command, tmp_path):
-    (tmp_path / "mine.toml").write_text('preset = "yue2022-table2"\n[vehicle]\nmass = "150 kg"\n[ground]\nslope = "-2 deg"\n')
-    done = command("audit", "--parameters", str(tmp_path / "mine.toml"), "--mode", "1-2-1", "--json")
+    (tmp_path / "mine.toml").write_text(
+        'preset = "yue2022-table2"\n[vehicle]\nmass = "150 kg"\n[ground]\nslope = "-2 deg"\n'
+    )
+    done = command(
+        "audit", "--parameters", str(tmp_path / "mine.toml"), "--mode", "1-2-1", "--json"
+    )
     assert done.code == 0, done.err
     record = json.loads(done.out)
     assert record["passed"]

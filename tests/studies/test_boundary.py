@@ -89,5 +89,11 @@ def test_the_boundary_crosses_the_edges_that_all_finest_cells_together_would_fin
     shape = Shape(inside, lattice)
     found = {frozenset((c.stable, c.lost)) for line in shape.trace() for c in line}
     side = range(lattice.size[0] + 1)
-    edges = [((i, j), (i + a, j + b)) for i in side for j in side for a, b in ((1, 0), (0, 1)) if i + a in side and j + b in side]
+    edges = [
+        ((i, j), (i + a, j + b))
+        for i in side
+        for j in side
+        for a, b in ((1, 0), (0, 1))
+        if i + a in side and j + b in side
+    ]
     assert found == {frozenset(e) for e in edges if shape.at(e[0]) != shape.at(e[1])}

@@ -25,14 +25,29 @@ else:
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 V, TILT = "drop.horizontal_velocity", "drop.tilt"
-GRIPPING = load_preset("yue2022-figures").with_values({"ground.friction": 0.7, "drop.pitch_rate": 0.0, "drop.contact_time": 0.0})
+GRIPPING = load_preset("yue2022-figures").with_values(
+    {"ground.friction": 0.7, "drop.pitch_rate": 0.0, "drop.contact_time": 0.0}
+)
 LIMITS = {"main_strut.force": 9e3, "contact.force": 2e4}
 
 
 def small(**changes) -> EnvelopeStudy:
-    """Speeds and tilts to both sides; few cells, landings given up early, for a landing takes its time."""
+    """Speeds and tilts to both sides; few cells, landings given up early, for a landing takes its
+    time.
+    """
     x, y = Axis(V, -6.0, 6.0, 0.75), Axis(TILT, radians(-12), radians(12), radians(4))
-    return EnvelopeStudy(**{"parameters": GRIPPING, "x": x, "y": y, "cells": 2, "levels": 0, "until": 2.0, "limits": LIMITS, **changes})
+    return EnvelopeStudy(
+        **{
+            "parameters": GRIPPING,
+            "x": x,
+            "y": y,
+            "cells": 2,
+            "levels": 0,
+            "until": 2.0,
+            "limits": LIMITS,
+            **changes,
+        }
+    )
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +78,10 @@ def test_on_level_ground_a_landing_from_the_other_side_is_as_stable(found):
     for (x, y), landed in landings.items():
         other = landings.get((round(-x, 9), round(-y, 9)))
         if other is not None:
-            assert (landed.name, landed.towards) == (other.name, {"+x": "-x", "-x": "+x", "": ""}[other.towards])
+            assert (landed.name, landed.towards) == (
+                other.name,
+                {"+x": "-x", "-x": "+x", "": ""}[other.towards],
+            )
     ours = {(round(c.x, 9), round(c.y, 9)) for line in found.families[0].lines for c in line}
     assert ours == {(-x, -y) for x, y in ours}
 
@@ -72,10 +90,17 @@ def test_the_critical_condition_is_that_of_the_lost_landing(found):
     c = found.families[0].lines[0][0]
     x, y = c.lost
     alone = outcome(Landing(GRIPPING.with_values({V: x, TILT: y})).run(2.0), LIMITS)
-    assert (c.landed.name, c.landed.time, c.landed.first_limit) == (alone.name, approx(alone.time), alone.first_limit)
+    assert (c.landed.name, c.landed.time, c.landed.first_limit) == (
+        alone.name,
+        approx(alone.time),
+        alone.first_limit,
+    )
     assert c.landed.condition.startswith(f"topples to {'+x' if x > 0.0 else '-x'}")
     if alone.first_limit is not None:
-        assert f"leg {alone.first_limit.leg} passes {alone.first_limit.name} first" in c.landed.condition
+        assert (
+            f"leg {alone.first_limit.leg} passes {alone.first_limit.name} first"
+            in c.landed.condition
+        )
 
 
 def test_runs_cover_a_line_in_order(found):
@@ -123,9 +148,13 @@ def test_landings_of_another_study_are_refused(tmp_path):
     assert (tmp_path / "b.jsonl").read_text() == "not ours"
 
 
-@pytest.mark.parametrize(("criterion", "lost"), [("toppled", 1), ("bottomed out", 2), ("slid", 3), ("limit", 1)])
+@pytest.mark.parametrize(
+    ("criterion", "lost"), [("toppled", 1), ("bottomed out", 2), ("slid", 3), ("limit", 1)]
+)
 def test_a_criterion_counts_what_is_severer_too(criterion, lost):
-    assert [Landed(name, 1.0).lost(criterion) for name in SEVERITY] == [True] * lost + [False] * (len(SEVERITY) - lost)
+    assert [Landed(name, 1.0).lost(criterion) for name in SEVERITY] == [True] * lost + [False] * (
+        len(SEVERITY) - lost
+    )
     assert Landed(FAILED, 1.0).lost(criterion)
 
 
@@ -138,7 +167,10 @@ def test_a_limit_passed_is_lost_by_the_criterion_limit_only():
 
 def test_a_vehicle_that_bottoms_out_says_with_which_leg():
     landed = land(small(), {V: 0.3, TILT: -0.13, "main_strut.stroke_max": 0.02})
-    assert (landed.name, landed.condition.split(",")[0]) == ("bottomed out", f"leg {landed.leg} bottoms out")
+    assert (landed.name, landed.condition.split(",")[0]) == (
+        "bottomed out",
+        f"leg {landed.leg} bottoms out",
+    )
 
 
 def test_inputs_are_axes_too():
@@ -152,11 +184,18 @@ def test_inputs_are_axes_too():
 @pytest.mark.parametrize("source", ["docs/envelope.md", "examples/envelope.toml"])
 def test_the_studies_that_are_shown_can_be_read(source):
     text = (ROOT / source).read_text(encoding="utf-8")
-    study = study_from(tomllib.loads(re.findall(r"```toml\n(.*?)```", text, re.S)[0] if source.endswith(".md") else text))
+    study = study_from(
+        tomllib.loads(
+            re.findall(r"```toml\n(.*?)```", text, re.S)[0] if source.endswith(".md") else text
+        )
+    )
     assert (len(study.families), study.lattice.uniform) == (6, 193 * 97)
 
 
-AXES = {"x": {"name": V, "low": -6, "high": 6, "tolerance": 0.5}, "y": {"name": TILT, "low": "-12 deg", "high": "12 deg"}}
+AXES = {
+    "x": {"name": V, "low": -6, "high": 6, "tolerance": 0.5},
+    "y": {"name": TILT, "low": "-12 deg", "high": "12 deg"},
+}
 
 
 @pytest.mark.parametrize(
@@ -166,12 +205,27 @@ AXES = {"x": {"name": V, "low": -6, "high": 6, "tolerance": 0.5}, "y": {"name": 
             {"x": {**AXES["x"], "name": "drop.horizontal"}},
             r"unknown quantity for an axis 'drop\.horizontal'; did you mean drop\.horizontal_velocity",
         ),
-        ({"x": {**AXES["x"], "name": "drop.mode"}}, r"drop\.mode is one of 2-2, 1-2-1 and cannot be an axis; make it a family"),
-        ({"x": {**AXES["x"], "low": 6}}, r"drop\.horizontal_velocity: low = 6 must be below high = 6 m/s"),
-        ({"x": {**AXES["x"], "high": 60}}, r"drop\.horizontal_velocity = 60 m/s is outside \[-50, 50\] m/s"),
-        ({"x": {**AXES["x"], "tolerance": 0}}, r"tolerance = 0 m/s is outside \[1\.14441e-05, 12\] m/s; give what you need"),
+        (
+            {"x": {**AXES["x"], "name": "drop.mode"}},
+            r"drop\.mode is one of 2-2, 1-2-1 and cannot be an axis; make it a family",
+        ),
+        (
+            {"x": {**AXES["x"], "low": 6}},
+            r"drop\.horizontal_velocity: low = 6 must be below high = 6 m/s",
+        ),
+        (
+            {"x": {**AXES["x"], "high": 60}},
+            r"drop\.horizontal_velocity = 60 m/s is outside \[-50, 50\] m/s",
+        ),
+        (
+            {"x": {**AXES["x"], "tolerance": 0}},
+            r"tolerance = 0 m/s is outside \[1\.14441e-05, 12\] m/s; give what you need",
+        ),
         ({"x": {**AXES["x"], "tolerance": 1e-9}}, r"tolerance = 1e-09 m/s is outside"),
-        ({"x": {**AXES["x"], "tolerance": "1 kg"}}, r"drop\.horizontal_velocity = '1 kg' has the wrong unit"),
+        (
+            {"x": {**AXES["x"], "tolerance": "1 kg"}},
+            r"drop\.horizontal_velocity = '1 kg' has the wrong unit",
+        ),
         ({"x": {"name": V, "low": 0}}, r"\[x\] has no high"),
         ({"x": {**AXES["x"], "lo": 0}}, r"unknown key of \[x\] 'lo'"),
         ({"y": {}}, r"\[y\] has no name"),
@@ -181,12 +235,18 @@ AXES = {"x": {"name": V, "low": -6, "high": 6, "tolerance": 0.5}, "y": {"name": 
         ({"envelope": {"cells": 1}}, r"cells = 1 must be a whole number from 2 to 256"),
         ({"envelope": {"until": 0}}, r"until = 0 s is outside \[0\.1, 3600\] s"),
         ({"envelope": {"colour": "red"}}, r"unknown key of \[envelope\] 'colour'"),
-        ({"families": {"ground.friction": []}}, r"ground\.friction = \[\] must be a list of one value or more"),
+        (
+            {"families": {"ground.friction": []}},
+            r"ground\.friction = \[\] must be a list of one value or more",
+        ),
         ({"families": {"ground.friction": [0.3, 0.3]}}, r"names a value twice"),
         ({"families": {"ground.friction": [4.0]}}, r"ground\.friction = 4  ?is outside \[0, 3\]"),
         ({"families": {TILT: [0.0]}}, r"drop\.tilt is given twice, as an axis or in families"),
         ({"set": {TILT: 0.1}}, r"drop\.tilt is both set and varied"),
-        ({"limits": {"main_strut.forse": 1}}, r"unknown limit 'main_strut\.forse'; did you mean main_strut\.force"),
+        (
+            {"limits": {"main_strut.forse": 1}},
+            r"unknown limit 'main_strut\.forse'; did you mean main_strut\.force",
+        ),
         ({"axes": {}}, r"unknown table 'axes'"),
     ],
 )

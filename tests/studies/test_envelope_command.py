@@ -66,7 +66,9 @@ def test_a_study_file_gives_the_same_as_options_and_options_win(command: Callabl
         f'[x]\nname = "{V}"\nlow = -1.0\nhigh = 1.0\n[y]\nname = "{TILT}"\nlow = "-3 deg"\nhigh = "3 deg"\n'
         '[families]\nground.slope = ["0 deg", "2 deg"]\n'
     )
-    done = command("envelope", str(tmp_path / "study.toml"), "--work", str(tmp_path / "w"), "--until", "1.0")
+    done = command(
+        "envelope", str(tmp_path / "study.toml"), "--work", str(tmp_path / "w"), "--until", "1.0"
+    )
     assert done.code == 1
     assert done.out.count("all stable") == 2
     assert "no family has a boundary in this range; widen the axes" in done.err
@@ -89,7 +91,9 @@ def test_all_lost_is_said_so(command: Callable, tmp_path):
         (["--family", "ground.slope"], "has no '='"),
     ],
 )
-def test_options_that_cannot_be_are_refused_before_anything_lands(command: Callable, tmp_path, arguments, message):
+def test_options_that_cannot_be_are_refused_before_anything_lands(
+    command: Callable, tmp_path, arguments, message
+):
     done = command(*options(tmp_path / "w"), *arguments)
     assert done.code == 2
     assert message in done.err
@@ -101,7 +105,9 @@ def test_ctrl_c_keeps_the_landings_and_resume_takes_them_up(command: Callable, t
     # an interrupt is ignored in a process that was started in the background
     reset = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
     program[2] = reset + program[2]
-    running = subprocess.Popen([*program, *options(tmp_path)], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+    running = subprocess.Popen(
+        [*program, *options(tmp_path)], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True
+    )
     landings = tmp_path / "landings.jsonl"
     while not landings.exists() or landings.read_bytes().count(b"\n") < 4:
         with suppress(subprocess.TimeoutExpired):

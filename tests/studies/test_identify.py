@@ -1,4 +1,6 @@
-"""Identification: it finds what is known, repeats itself, goes on where it stopped, and refuses what makes no sense."""
+"""Identification: it finds what is known, repeats itself, goes on where it stopped, and refuses
+what makes no sense.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,13 @@ import pytest
 
 from rlv_landing import Landing, LandingError, load_preset
 from rlv_landing.history import History
-from rlv_landing.identification.objective import CONDITIONS, Objective, Series, paper_targets, read_targets
+from rlv_landing.identification.objective import (
+    CONDITIONS,
+    Objective,
+    Series,
+    paper_targets,
+    read_targets,
+)
 from rlv_landing.identification.priors import BORE, PRIORS, ROD_AREA, FreeNumbers
 from rlv_landing.presets import read_toml
 
@@ -25,7 +33,13 @@ COLUMNS = ("leg[1].main_strut.stroke", "leg[3].main_strut.force", "leg[1].auxili
 
 
 def command(*arguments: object) -> list[str]:
-    return [sys.executable, "-c", "from rlv_landing.cli import main; main()", "identify", *map(str, arguments)]
+    return [
+        sys.executable,
+        "-c",
+        "from rlv_landing.cli import main; main()",
+        "identify",
+        *map(str, arguments),
+    ]
 
 
 def run(*arguments: object, cwd: Path) -> subprocess.CompletedProcess[str]:
@@ -38,7 +52,10 @@ def measured(tmp_path: Path) -> Path:
     history = Landing(load_preset(FIGURES, "2-2").with_values(TRUTH)).run(0.6, 2e-3)
     path = tmp_path / "measured.csv"
     rows = [",".join(["time", *COLUMNS])]
-    rows += [",".join(repr(float(v)) for v in (t, *(history[c][i] for c in COLUMNS))) for i, t in enumerate(history.time)]
+    rows += [
+        ",".join(repr(float(v)) for v in (t, *(history[c][i] for c in COLUMNS)))
+        for i, t in enumerate(history.time)
+    ]
     path.write_text("\n".join(rows) + "\n")
     return path
 
@@ -56,18 +73,46 @@ def test_known_parameters_are_found_again_from_measured_curves(measured, tmp_pat
 
 
 def test_the_same_seed_gives_the_same_search_and_resuming_goes_on_with_it(measured, tmp_path):
-    free = ("--series", f"2-2={measured}", "--free", ",".join(TRUTH), "--population", 6, "--polish", 0, "--seed", 5)
+    free = (
+        "--series",
+        f"2-2={measured}",
+        "--free",
+        ",".join(TRUTH),
+        "--population",
+        6,
+        "--polish",
+        0,
+        "--seed",
+        5,
+    )
     for work, limits in (("whole", [37]), ("again", [37]), ("parts", [19, 37])):
         for i, limit in enumerate(limits):
-            done = run(*free, "--work", work, "--evaluations", limit, *(["--resume"] if i else []), cwd=tmp_path)
+            done = run(
+                *free,
+                "--work",
+                work,
+                "--evaluations",
+                limit,
+                *(["--resume"] if i else []),
+                cwd=tmp_path,
+            )
             assert done.returncode in (0, 1), done.stderr
-    best = [json.loads((tmp_path / work / "best.json").read_text()) for work in ("whole", "again", "parts")]
+    best = [
+        json.loads((tmp_path / work / "best.json").read_text())
+        for work in ("whole", "again", "parts")
+    ]
     assert best[0] == best[1] == best[2]
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_identification_keeps_its_best_and_can_go_on(tmp_path, number):
-    process = subprocess.Popen(command("--evaluations", 100000), cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        command("--evaluations", 100000),
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     best = tmp_path / "identification" / "best.json"
     try:
         while not best.exists():
@@ -84,7 +129,9 @@ def test_an_interrupted_identification_keeps_its_best_and_can_go_on(tmp_path, nu
     parameters = read_toml(tmp_path / "identification" / "identified.toml")
     numbers = FreeNumbers(load_preset(FIGURES))
     assert Objective(numbers, paper_targets()).loss(kept["z"]) == pytest.approx(kept["loss"])
-    assert parameters["vehicle.inertia"] == pytest.approx(numbers.parameters(kept["z"])["vehicle.inertia"])
+    assert parameters["vehicle.inertia"] == pytest.approx(
+        numbers.parameters(kept["z"])["vehicle.inertia"]
+    )
 
 
 def test_nothing_better_than_the_start_is_said_so(tmp_path):
@@ -106,7 +153,9 @@ def test_numbers_and_the_unit_cube_belong_together():
     assert numbers.numbers([-x for x in inside]) == pytest.approx(values)
     parameters = numbers.parameters(inside)
     labels = dict(zip(numbers.labels, values))
-    assert float(parameters[BORE]) - parameters.main_strut.area_upper == pytest.approx(labels[ROD_AREA])
+    assert float(parameters[BORE]) - parameters.main_strut.area_upper == pytest.approx(
+        labels[ROD_AREA]
+    )
     assert parameters.for_mode("1-2-1").drop.tilt == labels["1-2-1: drop.tilt"]
     assert parameters.for_mode("2-2").drop.tilt == labels["2-2: drop.tilt"]
 
@@ -122,7 +171,11 @@ def test_every_prior_has_bounds_and_a_reason_and_table_1_is_never_free():
 
 def test_conditions_are_silent_on_a_sensible_landing_and_speak_up_on_a_hard_one():
     sensible = Landing(load_preset(FIGURES, "2-2")).run(0.6)
-    hard = Landing(load_preset(FIGURES, "2-2").with_values({"drop.vertical_velocity": -6.0, "drop.contact_time": 0.0})).run(0.6)
+    hard = Landing(
+        load_preset(FIGURES, "2-2").with_values(
+            {"drop.vertical_velocity": -6.0, "drop.contact_time": 0.0}
+        )
+    ).run(0.6)
     penetration = next(c for c in CONDITIONS if c.name == "penetration")
     assert penetration.measure(sensible) < penetration.limit < penetration.measure(hard)
 
@@ -160,7 +213,10 @@ def test_bad_targets_are_refused_by_line(tmp_path, text, message):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("--free", "vehicle.mass"), "has no bounds to be identified between; give them: --bound vehicle.mass=LO..HI"),
+        (
+            ("--free", "vehicle.mass"),
+            "has no bounds to be identified between; give them: --bound vehicle.mass=LO..HI",
+        ),
         (("--free", "ground.frictoin"), "did you mean ground.friction?"),
         (("--bound", "ground.friction=0.5..0.1"), "bounds of ground.friction are empty"),
         (("--bound", "ground.friction=-1..0.1"), "are outside [0, 3]"),

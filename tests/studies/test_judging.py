@@ -1,4 +1,6 @@
-"""How a difference from a printed number is judged: on the number's own scale, or its curve's where it is near zero."""
+"""How a difference from a printed number is judged: on the number's own scale, or its curve's where
+it is near zero.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +12,21 @@ import pytest
 from pytest import approx
 
 import rlv_landing
-from rlv_landing.validation.paper import Comparison, counts, paper_counts_against_test, printed_scalars
+from rlv_landing.validation.paper import (
+    Comparison,
+    counts,
+    paper_counts_against_test,
+    printed_scalars,
+)
 
 SCALARS = {s.id: s for s in printed_scalars()}
 
 
 def test_only_the_rebound_minimum_and_the_first_peak_of_1_2_1_are_near_zero():
-    assert {s.id: s.scale for s in printed_scalars() if s.near_zero} == {"22-s1-reb": 20.62, "121-a-pk1": 27.89}
+    assert {s.id: s.scale for s in printed_scalars() if s.near_zero} == {
+        "22-s1-reb": 20.62,
+        "121-a-pk1": 27.89,
+    }
 
 
 def test_all_others_are_judged_on_the_printed_simulation():
@@ -24,7 +34,12 @@ def test_all_others_are_judged_on_the_printed_simulation():
 
 
 @pytest.mark.parametrize(
-    ("name", "test", "percent"), [("22-s3-max", "test_a", 9.36), ("22-fa1-tens", "test_a", 7.53), ("22-fa1-tens", "test_b", 14.5)]
+    ("name", "test", "percent"),
+    [
+        ("22-s3-max", "test_a", 9.36),
+        ("22-fa1-tens", "test_a", 7.53),
+        ("22-fa1-tens", "test_b", 14.5),
+    ],
 )
 def test_tests_are_off_by_the_per_cent_that_the_paper_itself_prints(name, test, percent):
     """Section 5.1: 9.36 % larger; 7.53 % and 14.5 % bigger than the simulation."""
@@ -43,14 +58,20 @@ def test_errors_against_simulation_and_test_share_one_scale():
 
 def test_counts_take_in_what_is_just_within_and_nothing_that_was_not_found():
     scalars = [SCALARS["22-fm1-max"], SCALARS["22-fm3-max"], SCALARS["121-fm1-max"]]
-    found = [Comparison(scalars[0], -4380.0 * 1.05), Comparison(scalars[1], -4120.0 * 1.15), Comparison(scalars[2], float("nan"))]
+    found = [
+        Comparison(scalars[0], -4380.0 * 1.05),
+        Comparison(scalars[1], -4120.0 * 1.15),
+        Comparison(scalars[2], float("nan")),
+    ]
     assert counts(found) == {"within_5": 1, "within_10": 1, "within_20": 2, "of": 3}
     assert counts(found, "test")["of"] == 2
 
 
 def test_the_papers_own_counts_against_its_tests_follow_from_the_printed_table():
     """Counted here from the file of printed numbers, by the rule as it is written."""
-    with (Path(rlv_landing.__file__).parent / "validation" / "paper_numbers.csv").open(newline="", encoding="utf-8") as f:
+    with (Path(rlv_landing.__file__).parent / "validation" / "paper_numbers.csv").open(
+        newline="", encoding="utf-8"
+    ) as f:
         rows = list(csv.DictReader(f))
     sizes: dict[tuple[str, str, str], float] = {}
     for r in rows:

@@ -1,4 +1,6 @@
-"""The summary measures against loops whose areas are known, and against the model's own account of its energy."""
+"""The summary measures against loops whose areas are known, and against the model's own account of
+its energy.
+"""
 
 from __future__ import annotations
 
@@ -8,13 +10,24 @@ from pytest import approx
 
 from rlv_landing import LandingError
 from rlv_landing.quantities import LEGS
-from rlv_landing.validation.measures import buffering_efficiency, damper_work, energy_discrepancy, leg_work, onset, rrms, work_of
+from rlv_landing.validation.measures import (
+    buffering_efficiency,
+    damper_work,
+    energy_discrepancy,
+    leg_work,
+    onset,
+    rrms,
+    work_of,
+)
 
 FMAX, SMAX = 5000.0, 0.025
 
 
 def test_a_closed_ellipse_dissipates_its_area():
-    """Force k s + b cos over stroke a sin: pi a b is dissipated; the spring gives all back. Compression is negative force."""
+    """Force k s + b cos over stroke a sin: pi a b is dissipated; the spring gives all back.
+
+    Compression is negative force.
+    """
     angle = np.linspace(0.0, 2 * np.pi, 2001)
     stroke = SMAX * (1.0 + np.sin(angle))
     force = -(2e5 * stroke + 800.0 * np.cos(angle))
@@ -23,7 +36,9 @@ def test_a_closed_ellipse_dissipates_its_area():
 
 
 def triangle(back: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Time, force, stroke: up a straight line to (SMAX, FMAX), back along one that starts at `back` FMAX."""
+    """Time, force, stroke: up a straight line to (SMAX, FMAX), back along one that starts at `back`
+    FMAX.
+    """
     stroke = np.concatenate([np.linspace(0.0, SMAX, 101), np.linspace(SMAX, 0.0, 101)])
     force = -FMAX / SMAX * stroke
     force[101:] *= back
@@ -37,7 +52,9 @@ def test_a_triangle_absorbs_half_the_rectangle_and_dissipates_what_does_not_come
     assert found.absorbed == approx(0.5 * FMAX * SMAX)
     assert found.efficiency == approx(0.5)
     assert found.dissipated == approx(0.5 * FMAX * SMAX * (1.0 - back), abs=1e-9)
-    assert (found.force_max, found.stroke_max, found.top, found.end) == approx((FMAX, SMAX, 0.2, 0.3))
+    assert (found.force_max, found.stroke_max, found.top, found.end) == approx(
+        (FMAX, SMAX, 0.2, 0.3)
+    )
 
 
 def test_a_constant_force_has_efficiency_1():
@@ -47,9 +64,16 @@ def test_a_constant_force_has_efficiency_1():
 
 
 def test_the_dampers_work_is_what_the_model_says_they_hold_and_have_dissipated(validation):
-    """Over the whole landing, all legs: int -F ds = change of liquid and stop energy + dissipation in orifice, seal and stop."""
+    """Over the whole landing, all legs: int -F ds = change of liquid and stop energy + dissipation
+    in orifice, seal and stop.
+    """
     for history in validation.histories.values():
-        done = sum(work_of(history[f"leg[{leg}].main_strut.force"], history[f"leg[{leg}].main_strut.stroke"]) for leg in LEGS)
+        done = sum(
+            work_of(
+                history[f"leg[{leg}].main_strut.force"], history[f"leg[{leg}].main_strut.stroke"]
+            )
+            for leg in LEGS
+        )
         terms = ("liquid", "stop", "dissipated_orifice", "dissipated_seal", "dissipated_stop")
         kept = sum(history[f"energy.{t}"][-1] - history[f"energy.{t}"][0] for t in terms)
         # the trapezoids of 0.2 ms miss a little of the contacts' blows
@@ -93,7 +117,9 @@ def test_energy_discrepancy_is_in_per_cent_of_the_measured():
 
 def test_measures_that_cannot_be_taken_say_why():
     time = np.linspace(0.0, 1.0, 11)
-    with pytest.raises(LandingError, match=r"force_max = 0 N and stroke_max = 0\.01 m must be above 0"):
+    with pytest.raises(
+        LandingError, match=r"force_max = 0 N and stroke_max = 0\.01 m must be above 0"
+    ):
         buffering_efficiency(1.0, 0.0, 0.01)
     with pytest.raises(LandingError, match=r"not compressed within 0\.22 s after t = 0 s"):
         damper_work(time, time, np.zeros(11), 0.0)

@@ -16,7 +16,13 @@ from rlv_landing.studies.outcome import LIMITS, SEVERITY, outcome
 
 FIGURES = "yue2022-figures"
 HARD = {"drop.vertical_velocity": -3.5, "main_strut.stroke_max": 0.03}
-ICE = {"ground.friction": 0.0, "ground.slope": 0.1, "drop.tilt": 0.1, "drop.pitch_rate": 0.0, "drop.horizontal_velocity": 0.0}
+ICE = {
+    "ground.friction": 0.0,
+    "ground.slope": 0.1,
+    "drop.tilt": 0.1,
+    "drop.pitch_rate": 0.0,
+    "drop.horizontal_velocity": 0.0,
+}
 UPRIGHT = {"drop.tilt": 0.0, "drop.pitch_rate": 0.0, "drop.horizontal_velocity": 0.0}
 
 
@@ -68,22 +74,35 @@ def test_toppled_since_the_cg_is_beyond_the_outermost_footpad_or_the_body_over(l
 
 def test_the_first_leg_that_meets_its_stop_is_named_with_its_time(landings):
     h, found = landings["bottomed out"], outcome(landings["bottomed out"])
-    first = min((h.time[np.flatnonzero(h[f"leg[{leg}].main_strut.stroke"] > 0.03)[0]], leg) for leg in (1, 2))
+    first = min(
+        (h.time[np.flatnonzero(h[f"leg[{leg}].main_strut.stroke"] > 0.03)[0]], leg)
+        for leg in (1, 2)
+    )
     assert (found.time, found.leg) == first
-    assert found.margins["stroke_left"] == approx(0.03 - max(h[f"leg[{leg}].main_strut.stroke"].max() for leg in LEGS))
+    assert found.margins["stroke_left"] == approx(
+        0.03 - max(h[f"leg[{leg}].main_strut.stroke"].max() for leg in LEGS)
+    )
 
 
 def test_on_a_slope_without_friction_the_feet_slide_as_far_as_gravity_takes_them(landings):
-    """The way along the slope is v sin(slope) t + g sin(slope) t^2/2 from the sinking speed v, the footpads' spreading apart."""
+    """The way along the slope is v sin(slope) t + g sin(slope) t^2/2 from the sinking speed v, the
+    footpads' spreading apart.
+    """
     h, found = landings["slid"], outcome(landings["slid"])
-    assert found.margins["slid"] == approx(sin(0.1) * (1.379071 * 1.5 + 0.5 * 9.81 * 1.5**2), rel=0.03)
-    start = {leg: next(i for i, on in enumerate(h[f"leg[{leg}].contact.active"]) if on) for leg in LEGS}
+    assert found.margins["slid"] == approx(
+        sin(0.1) * (1.379071 * 1.5 + 0.5 * 9.81 * 1.5**2), rel=0.03
+    )
+    start = {
+        leg: next(i for i, on in enumerate(h[f"leg[{leg}].contact.active"]) if on) for leg in LEGS
+    }
 
     def moved(leg: int, i: int) -> float:
         names = [f"leg[{leg}].footpad.{axis}" for axis in "xyz"]
         return hypot(*(h[n][i] - h[n][start[leg]] for n in names))
 
-    assert found.time == min(h.time[i] for i in range(len(h)) for leg in LEGS if i >= start[leg] and moved(leg, i) > 0.3)
+    assert found.time == min(
+        h.time[i] for i in range(len(h)) for leg in LEGS if i >= start[leg] and moved(leg, i) > 0.3
+    )
     assert outcome(h, slide=5.0).name != "slid"
 
 
@@ -102,12 +121,16 @@ def test_margins_are_the_smallest_and_the_last_of_the_status(landings):
 
 @pytest.mark.parametrize("mode", ["2-2", "1-2-1"])
 def test_joint_clearance_is_that_of_the_lowest_auxiliary_joint(mode):
-    """In free flight, where the body's position is known: radius and depth of the joints turned by the pitch, above a slope."""
+    """In free flight, where the body's position is known: radius and depth of the joints turned by
+    the pitch, above a slope.
+    """
     h = landed(0.02, mode, ground__slope=0.1, drop__contact_time=0.03)
     p = h.parameters.auxiliary_strut
     lowest = np.inf
     for x, y, pitch in zip(h["body.x"], h["body.y"], h["body.pitch"]):
-        for along in np.cos(np.radians([45, 135] if mode == "2-2" else [0, 90, 180])) * p.joint_radius:
+        for along in (
+            np.cos(np.radians([45, 135] if mode == "2-2" else [0, 90, 180])) * p.joint_radius
+        ):
             joint_x = x + along * np.cos(pitch) - p.joint_depth * np.sin(pitch)
             joint_y = y - along * np.sin(pitch) - p.joint_depth * np.cos(pitch)
             lowest = min(lowest, joint_x * sin(0.1) + joint_y * np.cos(0.1))
@@ -152,7 +175,9 @@ SIZES = {
     "main_strut.stroke": lambda h, leg: h[f"leg[{leg}].main_strut.stroke"],
     "main_strut.pressure_upper": lambda h, leg: h[f"leg[{leg}].main_strut.pressure_upper"],
     "main_strut.pressure_lower": lambda h, leg: h[f"leg[{leg}].main_strut.pressure_lower"],
-    "contact.force": lambda h, leg: np.linalg.norm([h[f"leg[{leg}].contact.force_{a}"] for a in "xyz"], axis=0),
+    "contact.force": lambda h, leg: np.linalg.norm(
+        [h[f"leg[{leg}].contact.force_{a}"] for a in "xyz"], axis=0
+    ),
     "body.top_axial_acceleration": lambda h, leg: h["body.top_axial_acceleration"],
 }
 
@@ -163,7 +188,9 @@ def test_a_limit_is_passed_where_its_quantity_first_exceeds_it(landings, name):
     sizes = {leg: SIZES[name](h, leg) for leg in LEGS}
     limit = 0.8 * max(s.max() for s in sizes.values())
     passed = outcome(h, {name: limit}).first_limit
-    first = min((int(np.flatnonzero(s > limit)[0]), leg) for leg, s in sizes.items() if s.max() > limit)
+    first = min(
+        (int(np.flatnonzero(s > limit)[0]), leg) for leg, s in sizes.items() if s.max() > limit
+    )
     assert passed.time == h.time[first[0]]
     assert passed.leg == (None if name.startswith("body.") else first[1])
     assert (passed.name, passed.limit) == (name, limit)
@@ -189,8 +216,14 @@ def test_an_outcome_can_be_sent_to_another_process(landings):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"limits": {"main_strut.farce": 1.0}}, r"unknown limit 'main_strut\.farce'; did you mean main_strut\.force\?"),
-        ({"limits": {"main_strut.force": -1.0}}, r"main_strut\.force = -1 N is outside \[0, 1e\+12\] N"),
+        (
+            {"limits": {"main_strut.farce": 1.0}},
+            r"unknown limit 'main_strut\.farce'; did you mean main_strut\.force\?",
+        ),
+        (
+            {"limits": {"main_strut.force": -1.0}},
+            r"main_strut\.force = -1 N is outside \[0, 1e\+12\] N",
+        ),
         ({"limits": {"main_strut.stroke": float("nan")}}, r"main_strut\.stroke = nan m is outside"),
         ({"slide": -0.1}, r"slide = -0\.1 m must be 0 m or more"),
     ],
@@ -211,7 +244,10 @@ def test_what_comes_after_toppling_does_not_count(landings):
     over = int(np.flatnonzero(h.time == outcome(h).time)[0])
     force = np.abs(h["leg[4].main_strut.force"])
     assert force[over + 1 :].max() > force[: over + 1].max()
-    limits = {"main_strut.force": 1.001 * max(np.abs(h[f"leg[{leg}].main_strut.force"][: over + 1]).max() for leg in LEGS)}
+    limits = {
+        "main_strut.force": 1.001
+        * max(np.abs(h[f"leg[{leg}].main_strut.force"][: over + 1]).max() for leg in LEGS)
+    }
     assert outcome(h, limits).first_limit is None
 
 

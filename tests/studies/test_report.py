@@ -18,7 +18,9 @@ VOID = {"meta", "link", "br", "hr", "img", "input"}
 
 
 class Page(HTMLParser):
-    """Tags with their attributes, texts by the id of the row around them, and whether every tag is closed."""
+    """Tags with their attributes, texts by the id of the row around them, and whether every tag is
+    closed.
+    """
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -89,7 +91,9 @@ def test_ids_are_unique_and_links_within_the_page_lead_somewhere(page):
     assert all(a["href"][1:] in ids for _, a in page.tags if "href" in a)
 
 
-def test_there_is_a_picture_for_each_of_figures_7_to_19_named_for_those_who_cannot_see_it(page, text):
+def test_there_is_a_picture_for_each_of_figures_7_to_19_named_for_those_who_cannot_see_it(
+    page, text
+):
     assert sum(tag == "svg" for tag, _ in page.tags) == 14
     assert all(a.get("aria-label") for tag, a in page.tags if tag == "svg")
     for figure in range(7, 20):
@@ -121,8 +125,12 @@ def test_a_page_that_cannot_be_written_leaves_nothing_behind(tmp_path):
 
 
 def test_a_landing_that_lacks_what_the_paper_prints_has_a_page_all_the_same():
-    """Tilted back by 46 degrees, it falls over leg 1: the others never touch, their scalars are not found, the rest is shown."""
-    thrown = load_preset("yue2022-figures").with_values({"drop.tilt": -0.8, "drop.contact_time": 0.0})
+    """Tilted back by 46 degrees, it falls over leg 1: the others never touch, their scalars are not
+    found, the rest is shown.
+    """
+    thrown = load_preset("yue2022-figures").with_values(
+        {"drop.tilt": -0.8, "drop.contact_time": 0.0}
+    )
     found = validate(thrown, ("1-2-1",))
     missing = {c.scalar.id for c in found.all_comparisons if isnan(c.ours)}
     assert {"121-fm3-v1", "121-s3-max", "121-a-pk3"} <= missing

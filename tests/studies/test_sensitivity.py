@@ -89,12 +89,19 @@ def test_the_pages_of_the_design_are_two_samples_and_their_exchanges(unit_study)
             assert (pages[k, 2 + i] == (b if k == i else a)[k]).all()
 
 
-def test_a_stop_that_is_never_met_has_indices_of_zero_and_adds_to_the_margin_what_it_varies_by(tmp_path, command):
-    """Where the dampers' stop is makes no difference to a landing that never meets it, but moves the stroke left one for one."""
+def test_a_stop_that_is_never_met_has_indices_of_zero_and_adds_to_the_margin_what_it_varies_by(
+    tmp_path, command
+):
+    """Where the dampers' stop is makes no difference to a landing that never meets it, but moves
+    the stroke left one for one.
+    """
     study = write(tmp_path)
     done = command("sensitivity", study, "--results", str(tmp_path / "r"), "--json")
     assert done.code == 0, done.err
-    told = {r["response"]: {f["factor"]: f for f in r["indices"]} for r in json.loads(done.out)["responses"]}
+    told = {
+        r["response"]: {f["factor"]: f for f in r["indices"]}
+        for r in json.loads(done.out)["responses"]
+    }
     assert set(told) == {"legs.main_strut.force.min", "margin.stability_min", "margin.stroke_left"}
     for response in ("legs.main_strut.force.min", "margin.stability_min"):
         stop = told[response]["main_strut.stroke_max"]
@@ -107,16 +114,27 @@ def test_a_stop_that_is_never_met_has_indices_of_zero_and_adds_to_the_margin_wha
         share = told["margin.stroke_left"]["main_strut.stroke_max"][order]
         assert share["low"] <= exact <= share["high"]
     assert (tmp_path / "r" / "sensitivity.png").read_bytes().startswith(b"\x89PNG")
-    again = command("sensitivity", study, "margin.slid", "--results", str(tmp_path / "r"), "--resume")
+    again = command(
+        "sensitivity", study, "margin.slid", "--results", str(tmp_path / "r"), "--resume"
+    )
     assert again.code == 2
     assert "unknown response of this study 'margin.slid'" in again.err
-    table = command("sensitivity", study, "leg[1].main_strut.efficiency", "--results", str(tmp_path / "r"), "--resume")
+    table = command(
+        "sensitivity",
+        study,
+        "leg[1].main_strut.efficiency",
+        "--results",
+        str(tmp_path / "r"),
+        "--resume",
+    )
     assert table.code == 0, table.err
     assert "leg[1].main_strut.efficiency" in table.out
     assert "Sobol indices, 95 % intervals" in table.out
 
 
-def test_samples_with_a_failed_landing_are_replaced_and_counted_and_too_many_give_no_indices(unit_study, tmp_path):
+def test_samples_with_a_failed_landing_are_replaced_and_counted_and_too_many_give_no_indices(
+    unit_study, tmp_path
+):
     import pyarrow as pa
     from pyarrow import parquet
 
@@ -125,7 +143,9 @@ def test_samples_with_a_failed_landing_are_replaced_and_counted_and_too_many_giv
     count = len(values)
     for lost, used in ((range(100, 200), 3996), (range(0, count, 5), 0)):
         column = [None if i in lost else v for i, v in enumerate(values)]
-        parquet.write_table(pa.table({"margin.slid": pa.array(column, pa.float64())}), tmp_path / "r.parquet")
+        parquet.write_table(
+            pa.table({"margin.slid": pa.array(column, pa.float64())}), tmp_path / "r.parquet"
+        )
         (found,) = indices_of(tmp_path / "r.parquet", unit_study, ["margin.slid"], resamples=99)
         assert (found.used, found.samples) == (used, 4096)
         if used:
@@ -139,13 +159,19 @@ def test_samples_with_a_failed_landing_are_replaced_and_counted_and_too_many_giv
     [
         (("samples = 64", "samples = 60"), (), "samples = a power of 2, for example 256 or 1024"),
         (('method = "sobol"\nsamples = 64', 'method = "grid"'), (), "a grid needs values"),
-        ((STUDY[STUDY.index('[[factor]]\nname = "drop.vert') :], ""), (), "needs two [[factor]] or more"),
+        (
+            (STUDY[STUDY.index('[[factor]]\nname = "drop.vert') :], ""),
+            (),
+            "needs two [[factor]] or more",
+        ),
         (("", ""), ("margin.stability",), "did you mean margin.stability_min?"),
         (("", ""), ("outcome",), "outcome is a text"),
         (("", ""), ("--plot", "bars.pdf"), "must end in .png"),
     ],
 )
-def test_what_has_no_indices_is_refused_before_anything_runs(tmp_path, command, change, arguments, message):
+def test_what_has_no_indices_is_refused_before_anything_runs(
+    tmp_path, command, change, arguments, message
+):
     study = Path(write(tmp_path))
     study.write_text(study.read_text().replace(*change))
     done = command("sensitivity", str(study), *arguments, "--results", str(tmp_path / "r"))

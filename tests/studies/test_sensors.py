@@ -1,4 +1,6 @@
-"""The sensor chain against closed forms: what passes unchanged, what is damped and by how much, what comes late, what is refused."""
+"""The sensor chain against closed forms: what passes unchanged, what is damped and by how much,
+what comes late, what is refused.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,15 @@ from pytest import approx
 
 from rlv_landing import Landing, LandingError, load_preset
 from rlv_landing.history import History
-from rlv_landing.validation.sensors import ACCELERATION, SAMPLING, STROKES, low_pass, resample, smooth_stroke, through_sensors
+from rlv_landing.validation.sensors import (
+    ACCELERATION,
+    SAMPLING,
+    STROKES,
+    low_pass,
+    resample,
+    smooth_stroke,
+    through_sensors,
+)
 from rlv_ros_bridge.messages.columns import COLUMN_NAMES
 
 STROKE, FORCE = STROKES[0], "leg[1].main_strut.force"
@@ -18,19 +28,28 @@ STROKE, FORCE = STROKES[0], "leg[1].main_strut.force"
 
 def made(time: np.ndarray, **columns: np.ndarray) -> History:
     """A history of the columns named by `stroke`, `force`, `acceleration`, `active`."""
-    names = {"stroke": STROKE, "force": FORCE, "acceleration": ACCELERATION, "active": "leg[1].contact.active"}
+    names = {
+        "stroke": STROKE,
+        "force": FORCE,
+        "acceleration": ACCELERATION,
+        "active": "leg[1].contact.active",
+    }
     return History(time, [names[n] for n in columns], np.column_stack(list(columns.values())))
 
 
 def amplitude(t: np.ndarray, values: np.ndarray, frequency: float) -> float:
     """Amplitude of the sine at `frequency` in the middle half, by least squares."""
     middle = slice(len(t) // 4, 3 * len(t) // 4)
-    basis = np.column_stack([np.sin(2 * pi * frequency * t), np.cos(2 * pi * frequency * t), np.ones_like(t)])[middle]
+    basis = np.column_stack(
+        [np.sin(2 * pi * frequency * t), np.cos(2 * pi * frequency * t), np.ones_like(t)]
+    )[middle]
     return float(np.hypot(*np.linalg.lstsq(basis, values[middle], rcond=None)[0][:2]))
 
 
 def butterworth(frequency: float) -> float:
-    """Gain of a fourth-order digital Butterworth filter of 100 Hz at 5 kHz, in closed form (bilinear, pre-warped)."""
+    """Gain of a fourth-order digital Butterworth filter of 100 Hz at 5 kHz, in closed form
+    (bilinear, pre-warped).
+    """
     return float((1.0 + (tan(pi * frequency / 5000.0) / tan(pi * 100.0 / 5000.0)) ** 8) ** -0.5)
 
 
@@ -45,7 +64,9 @@ def test_the_stroke_smoothing_has_the_closed_form_weights_of_savitzky_and_golay(
     impulse = np.zeros(101)
     impulse[50] = 1.0
     i = np.arange(-15, 16)
-    weights = 3.0 * (3 * 15**2 + 3 * 15 - 1 - 5 * i**2) / ((2 * 15 + 3) * (2 * 15 + 1) * (2 * 15 - 1))
+    weights = (
+        3.0 * (3 * 15**2 + 3 * 15 - 1 - 5 * i**2) / ((2 * 15 + 3) * (2 * 15 + 1) * (2 * 15 - 1))
+    )
     assert smooth_stroke(impulse)[35:66] == approx(weights, abs=1e-12)
 
 
@@ -53,19 +74,27 @@ def test_the_stroke_smoothing_has_the_closed_form_weights_of_savitzky_and_golay(
 def test_the_low_pass_damps_as_butterworth_and_twice_that_with_zero_phase(frequency):
     t = np.arange(5000) / SAMPLING
     sine = np.sin(2 * pi * frequency * t)
-    assert amplitude(t, low_pass(sine, "forward"), frequency) == approx(butterworth(frequency), rel=1e-6)
-    assert amplitude(t, low_pass(sine, "zero"), frequency) == approx(butterworth(frequency) ** 2, rel=1e-6)
+    assert amplitude(t, low_pass(sine, "forward"), frequency) == approx(
+        butterworth(frequency), rel=1e-6
+    )
+    assert amplitude(t, low_pass(sine, "zero"), frequency) == approx(
+        butterworth(frequency) ** 2, rel=1e-6
+    )
 
 
 def test_a_sine_at_100_hz_loses_3_db_forward_and_6_db_with_zero_phase():
     t = np.arange(5000) / SAMPLING
     sine = np.sin(2 * pi * 100.0 * t)
-    assert 20 * np.log10(amplitude(t, low_pass(sine, "forward"), 100.0)) == approx(-3.0103, abs=1e-4)
+    assert 20 * np.log10(amplitude(t, low_pass(sine, "forward"), 100.0)) == approx(
+        -3.0103, abs=1e-4
+    )
     assert 20 * np.log10(amplitude(t, low_pass(sine, "zero"), 100.0)) == approx(-6.0206, abs=1e-4)
 
 
 def test_zero_phase_keeps_a_pulses_time_and_symmetry_and_forward_delays_a_ramp_by_4_2_ms():
-    """Group delay at rest of the bilinear Butterworth filter: 2.6131 (sum of its sections' 1/Q) T/2 / tan(pi fc T)."""
+    """Group delay at rest of the bilinear Butterworth filter: 2.6131 (sum of its sections' 1/Q) T/2
+    / tan(pi fc T).
+    """
     t = np.arange(-1000, 1001) / SAMPLING
     pulse = np.exp(-((t / 0.004) ** 2))
     kept = low_pass(pulse, "zero")
@@ -100,7 +129,9 @@ def test_finer_samples_are_decimated_without_aliases(rate):
 
 def test_a_logs_1_khz_is_interpolated_without_peaks_of_its_own():
     t = np.arange(401) * 1e-3
-    history = made(t, stroke=1e-2 * np.sin(2 * pi * 5.0 * t), force=-1e3 * np.abs(np.sin(2 * pi * 5.0 * t)))
+    history = made(
+        t, stroke=1e-2 * np.sin(2 * pi * 5.0 * t), force=-1e3 * np.abs(np.sin(2 * pi * 5.0 * t))
+    )
     sampled = resample(history)
     assert len(sampled) == 2001
     assert sampled[STROKE] == approx(1e-2 * np.sin(2 * pi * 5.0 * sampled.time), abs=1e-5)
@@ -110,7 +141,9 @@ def test_a_logs_1_khz_is_interpolated_without_peaks_of_its_own():
 
 def test_the_columns_of_a_log_go_through_the_chain():
     landing = Landing(load_preset("yue2022-figures")).run(0.4, 1e-3)
-    log = History(landing.time, COLUMN_NAMES, np.column_stack([landing[name] for name in COLUMN_NAMES]))
+    log = History(
+        landing.time, COLUMN_NAMES, np.column_stack([landing[name] for name in COLUMN_NAMES])
+    )
     sensed = through_sensors(log, "forward")
     assert sensed.names == tuple(COLUMN_NAMES)
     assert len(sensed) == 2001
@@ -148,12 +181,18 @@ def broken(what: str) -> History:
     [
         ("nan", r"leg\[1\]\.main_strut\.stroke = nan m at t = 0\.02 s; .* cut the history there"),
         ("inf", r"stroke = inf m at t = 0\.02 s"),
-        ("gap", r"time goes on by 0\.0102 s at t = 0\.0498 s where samples are 0\.0002 s apart; .* resample"),
+        (
+            "gap",
+            r"time goes on by 0\.0102 s at t = 0\.0498 s where samples are 0\.0002 s apart; .* resample",
+        ),
         ("back", r"time goes back by 0\.0002 s at t = 0\.0498 s"),
         ("twice", r"time stands still for 0 s at t = 0\.0498 s"),
         ("uneven", r"time goes on by 0\.0003 s at t = 0\.0498 s"),
         ("nan time", r"time of sample 250 = nan s is not finite"),
-        ("coarse", r"0\.002 s apart, the sensor chain needs 0\.001 s or less; run or record it finer"),
+        (
+            "coarse",
+            r"0\.002 s apart, the sensor chain needs 0\.001 s or less; run or record it finer",
+        ),
         ("short", r"20 samples at 5000 Hz, .* needs 31; run it longer"),
         ("one", r"1 samples; .* at least two"),
     ],

@@ -22,7 +22,12 @@ FIGURES = "yue2022-figures"
 ROOT = Path(__file__).resolve().parent.parent.parent
 EXAMPLES = ROOT / "examples" / "touchdown_study"
 DOCUMENTATION = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
-STATES = {"drop.tilt [deg]": 2.0, "drop.pitch_rate [deg/s]": -3.0, "drop.horizontal_velocity": 0.2, "drop.vertical_velocity [m/s]": -1.2}
+STATES = {
+    "drop.tilt [deg]": 2.0,
+    "drop.pitch_rate [deg/s]": -3.0,
+    "drop.horizontal_velocity": 0.2,
+    "drop.vertical_velocity [m/s]": -1.2,
+}
 
 
 def states(values: dict[str, object], count: int = 3) -> str:
@@ -39,16 +44,31 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
     folder = tmp_path_factory.mktemp("swept")
     write_study(folder)
-    done = CliRunner().invoke(cli, ["sweep", str(folder / "study.toml"), "--results", str(folder / "r"), "--workers", "4", "--json"])
+    done = CliRunner().invoke(
+        cli,
+        [
+            "sweep",
+            str(folder / "study.toml"),
+            "--results",
+            str(folder / "r"),
+            "--workers",
+            "4",
+            "--json",
+        ],
+    )
     assert done.exit_code == 0, done.output
     (folder / "summary.json").write_text(done.stdout)
     return folder
 
 
 def test_one_thread_and_four_write_the_same_file_to_the_byte(swept, tmp_path, command):
-    done = command("sweep", str(swept / "study.toml"), "--results", str(tmp_path / "r"), "--workers", "1")
+    done = command(
+        "sweep", str(swept / "study.toml"), "--results", str(tmp_path / "r"), "--workers", "1"
+    )
     assert done.code == 0, done.err
-    assert (tmp_path / "r" / "results.parquet").read_bytes() == (swept / "r" / "results.parquet").read_bytes()
+    assert (tmp_path / "r" / "results.parquet").read_bytes() == (
+        swept / "r" / "results.parquet"
+    ).read_bytes()
     assert not (tmp_path / "r" / "parts").exists()
 
 
@@ -61,11 +81,15 @@ def test_a_row_holds_the_responses_of_the_landing_that_its_values_make(swept):
         assert (row["seed"], row["version"], row["error"]) == (3, __version__, None)
         values = {name: row[name] for name in ("drop.tilt", "drop.vertical_velocity")}
         fixed = {"drop.contact_time": 0.0, "ground.friction": 0.4}
-        landing = Landing(load_preset(FIGURES, row["drop.mode"]).with_values({**fixed, **values}), rtol=1e-4)
+        landing = Landing(
+            load_preset(FIGURES, row["drop.mode"]).with_values({**fixed, **values}), rtol=1e-4
+        )
         landing.set_inputs({"external.force_x": row["external.force_x"]})
         history = landing.run(0.1, 2e-3)
         assert row["rhs_calls"] == landing.statistics["rhs_calls"]
-        assert row["legs.main_strut.force.min"] == min(history[f"leg[{leg}].main_strut.force"].min() for leg in (1, 2, 3, 4))
+        assert row["legs.main_strut.force.min"] == min(
+            history[f"leg[{leg}].main_strut.force"].min() for leg in (1, 2, 3, 4)
+        )
         stroke = history["leg[3].main_strut.stroke"]
         assert row["leg[3].main_strut.stroke.max_time"] == history.time[stroke.argmax()]
         assert row["body.pitch.final"] == history["body.pitch"][-1]
@@ -88,7 +112,9 @@ def test_the_summary_counts_what_the_rows_hold(swept):
     assert (told["landings"], told["failed"]) == (40, 0)
     assert sum(told["outcomes"].values()) == 40
     force = [row["legs.main_strut.force.min"] for row in found]
-    assert told["responses"]["legs.main_strut.force.min"]["median"] == pytest.approx(np.median(force))
+    assert told["responses"]["legs.main_strut.force.min"]["median"] == pytest.approx(
+        np.median(force)
+    )
 
 
 def test_damper_work_of_a_row_is_that_of_measures(drop_test):
@@ -96,8 +122,12 @@ def test_damper_work_of_a_row_is_that_of_measures(drop_test):
     work = leg_work(drop_test)
     for leg, told in work.items():
         for what in ("absorbed", "dissipated", "efficiency"):
-            assert values[f"leg[{leg}].main_strut.{what}"] == pytest.approx(getattr(told, what), rel=1e-12)
-    assert values["legs.main_strut.absorbed"] == pytest.approx(sum(w.absorbed for w in work.values()))
+            assert values[f"leg[{leg}].main_strut.{what}"] == pytest.approx(
+                getattr(told, what), rel=1e-12
+            )
+    assert values["legs.main_strut.absorbed"] == pytest.approx(
+        sum(w.absorbed for w in work.values())
+    )
 
 
 def test_every_response_there_is_can_be_taken_and_has_a_meaning(drop_test):
@@ -141,9 +171,9 @@ values = ["2-2", "1-2-1"]
 
 def test_a_grid_has_every_level_with_every_other(tmp_path):
     design = study_of(tmp_path, '[study]\nmethod = "grid"\n' + FACTORS)
-    assert [(round(v["drop.tilt"] / radians(1.0), 9), v["drop.mode"]) for v in design.rows(0, 6)] == [
-        (tilt, mode) for tilt in (-4.0, 0.0, 4.0) for mode in ("2-2", "1-2-1")
-    ]
+    assert [
+        (round(v["drop.tilt"] / radians(1.0), 9), v["drop.mode"]) for v in design.rows(0, 6)
+    ] == [(tilt, mode) for tilt in (-4.0, 0.0, 4.0) for mode in ("2-2", "1-2-1")]
 
 
 @pytest.mark.parametrize("method", ["lhs", "sobol"])
@@ -170,7 +200,8 @@ high = -0.5
 """
     drawn = study_of(tmp_path, text).columns["drop.vertical_velocity"]
     assert drawn.max() <= -0.5
-    # of the normal's 84.13 % below one deviation above its mean, half lie below its 42.07 % quantile
+    # of the normal's 84.13 % below one deviation above its mean, half lie below its 42.07 %
+    # quantile
     assert np.median(drawn) == pytest.approx(-1.0 + 0.5 * -0.2, abs=2e-3)
 
 
@@ -180,8 +211,13 @@ def test_a_table_of_touchdown_states_is_landed_row_by_row_in_its_units(tmp_path,
     if ending == "csv":
         table.write_text(states({**STATES, "case": "a"}))
     else:
-        fields = [pa.field(name, pa.string() if name == "case" else pa.float64()) for name in (*STATES, "case")]
-        parquet.write_table(pa.table([[v] * 3 for v in (*STATES.values(), "a")], schema=pa.schema(fields)), table)
+        fields = [
+            pa.field(name, pa.string() if name == "case" else pa.float64())
+            for name in (*STATES, "case")
+        ]
+        parquet.write_table(
+            pa.table([[v] * 3 for v in (*STATES.values(), "a")], schema=pa.schema(fields)), table
+        )
     (tmp_path / "s.toml").write_text(
         f'[study]\ntable = "states.{ending}"\nignore = ["case"]\nuntil = 0.1\n[set]\ndrop.contact_time = 0.0\n'
     )
@@ -195,8 +231,16 @@ def test_a_table_of_touchdown_states_is_landed_row_by_row_in_its_units(tmp_path,
 
 
 def test_a_parquet_column_takes_its_unit_from_its_metadata(tmp_path):
-    fields = [pa.field(name.split(" ")[0], pa.float64(), metadata={"unit": "deg"} if "tilt" in name else {}) for name in STATES]
-    parquet.write_table(pa.table([[v] for v in STATES.values()], schema=pa.schema(fields)), tmp_path / "states.parquet")
+    fields = [
+        pa.field(
+            name.split(" ")[0], pa.float64(), metadata={"unit": "deg"} if "tilt" in name else {}
+        )
+        for name in STATES
+    ]
+    parquet.write_table(
+        pa.table([[v] for v in STATES.values()], schema=pa.schema(fields)),
+        tmp_path / "states.parquet",
+    )
     design = study_of(tmp_path, '[study]\ntable = "states.parquet"\n')
     assert design.columns["drop.tilt"][0] == pytest.approx(radians(2.0))
 
@@ -206,7 +250,9 @@ def test_rows_that_cannot_be_landed_say_why_and_the_others_are_landed(tmp_path, 
     lines[2] = "2.0,nan,0.2,-1.2"
     lines[3] = "2.0,-3.0,fast,-1.2"
     (tmp_path / "states.csv").write_text("\n".join([*lines, "200.0,-3.0,0.2,-1.2"]) + "\n")
-    (tmp_path / "s.toml").write_text('[study]\ntable = "states.csv"\nuntil = 0.1\n[set]\ndrop.contact_time = 0.0\n')
+    (tmp_path / "s.toml").write_text(
+        '[study]\ntable = "states.csv"\nuntil = 0.1\n[set]\ndrop.contact_time = 0.0\n'
+    )
     done = command("sweep", str(tmp_path / "s.toml"), "--results", str(tmp_path / "r"))
     assert done.code == 0, done.err
     assert "3 failed; column `error` says why" in done.out
@@ -215,9 +261,14 @@ def test_rows_that_cannot_be_landed_say_why_and_the_others_are_landed(tmp_path, 
     assert "drop.pitch_rate = nan rad/s is outside" in errors[1]
     assert "drop.horizontal_velocity = 'fast' is not a number" in errors[2]
     assert "drop.tilt = 3.49066 rad is outside" in errors[3]
-    strict = command("sweep", str(tmp_path / "s.toml"), "--results", str(tmp_path / "strict"), "--strict")
+    strict = command(
+        "sweep", str(tmp_path / "s.toml"), "--results", str(tmp_path / "strict"), "--strict"
+    )
     assert strict.code == 2
-    assert "3 of 4 landings are refused: landing 1 (row 2 of the table): drop.pitch_rate = nan" in strict.err
+    assert (
+        "3 of 4 landings are refused: landing 1 (row 2 of the table): drop.pitch_rate = nan"
+        in strict.err
+    )
     assert not (tmp_path / "strict").exists()
 
 

@@ -29,14 +29,26 @@ class Cluster:
         return self.file.exists() and self.file.read_text().endswith("}")
 
     def _start(self, what: str, *options: str) -> subprocess.Popen[str]:
-        command = [sys.executable, "-m", f"distributed.cli.dask_{what}", "--no-dashboard", "--scheduler-file", str(self.file), *options]
-        return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True)
+        command = [
+            sys.executable,
+            "-m",
+            f"distributed.cli.dask_{what}",
+            "--no-dashboard",
+            "--scheduler-file",
+            str(self.file),
+            *options,
+        ]
+        return subprocess.Popen(
+            command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True
+        )
 
     def with_workers(self, *names: str) -> Cluster:
         """Have these workers, each a process of one thread that nobody restarts."""
         for name in names:
             if name not in self.workers or self.workers[name].poll() is not None:
-                self.workers[name] = self._start("worker", "--no-nanny", "--nthreads", "1", "--name", name)
+                self.workers[name] = self._start(
+                    "worker", "--no-nanny", "--nthreads", "1", "--name", name
+                )
                 self.processes.append(self.workers[name])
         with Client(self.address) as client:
             client.wait_for_workers(len(names), timeout=60)
@@ -68,17 +80,23 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
 
 
 def test_a_scheduler_without_workers_is_said_so(cluster, tmp_path, command):
-    done = command("sweep", str(write_study(tmp_path)), "--scheduler", cluster.address, "--timeout", "1")
+    done = command(
+        "sweep", str(write_study(tmp_path)), "--scheduler", cluster.address, "--timeout", "1"
+    )
     assert done.code == 2
     assert "has no worker after 1 s" in done.err
     assert len(done.err.strip().splitlines()) == 1
 
 
-def test_a_cluster_that_loses_a_worker_in_mid_run_gives_the_very_rows_of_threads(cluster, tmp_path, command):
+def test_a_cluster_that_loses_a_worker_in_mid_run_gives_the_very_rows_of_threads(
+    cluster, tmp_path, command
+):
     cluster.with_workers("one", "two")
     study = write_study(tmp_path, samples=100, until=0.3)
     assert command("sweep", str(study), "--results", str(tmp_path / "threads")).code == 0
-    process = start("sweep", study, "--results", "cluster", "--scheduler", cluster.address, cwd=tmp_path)
+    process = start(
+        "sweep", study, "--results", "cluster", "--scheduler", cluster.address, cwd=tmp_path
+    )
     cluster.wait_until_working(2)
     cluster.workers["one"].kill()
     assert process.poll() is None
@@ -89,10 +107,22 @@ def test_a_cluster_that_loses_a_worker_in_mid_run_gives_the_very_rows_of_threads
     assert files[1].read_bytes() == files[0].read_bytes()
 
 
-def test_a_scheduler_that_dies_in_mid_run_ends_the_sweep_and_threads_go_on_with_it(cluster, tmp_path, command):
+def test_a_scheduler_that_dies_in_mid_run_ends_the_sweep_and_threads_go_on_with_it(
+    cluster, tmp_path, command
+):
     cluster.with_workers("two")
     study = write_study(tmp_path, samples=100, until=0.3)
-    process = start("sweep", study, "--results", "r", "--scheduler", cluster.address, "--timeout", 1, cwd=tmp_path)
+    process = start(
+        "sweep",
+        study,
+        "--results",
+        "r",
+        "--scheduler",
+        cluster.address,
+        "--timeout",
+        1,
+        cwd=tmp_path,
+    )
     cluster.wait_until_working(1)
     cluster.processes[0].kill()
     _, err = process.communicate(timeout=200)
@@ -110,7 +140,16 @@ def test_an_unreachable_scheduler_is_one_clear_line_within_the_timeout(tmp_path,
         port = taken.getsockname()[1]
     results = tmp_path / "r"
     study = str(write_study(tmp_path))
-    done = command("sweep", study, "--results", str(results), "--scheduler", address.format(port=port), "--timeout", "0.5")
+    done = command(
+        "sweep",
+        study,
+        "--results",
+        str(results),
+        "--scheduler",
+        address.format(port=port),
+        "--timeout",
+        "0.5",
+    )
     assert done.code == 2
     assert "no Dask scheduler answers at" in done.err
     assert len(done.err.strip().splitlines()) == 1

@@ -1,4 +1,6 @@
-"""The results of a sweep outlive whatever ends it: Ctrl-C, SIGTERM, kill -9, a full disk; and go on where they stopped."""
+"""The results of a sweep outlive whatever ends it: Ctrl-C, SIGTERM, kill -9, a full disk; and go on
+where they stopped.
+"""
 
 from __future__ import annotations
 
@@ -57,7 +59,11 @@ def test_resume_fills_holes_and_gives_the_file_of_an_undisturbed_run(tmp_path, c
     with results:
         for first, last in ((0, 7), (20, 31), (50, 51)):
             results.add([list(row.values()) for row in made[first:last]])
-    assert [part.stem for part in parts(tmp_path / "r")] == ["000000000000", "000000000020", "000000000050"]
+    assert [part.stem for part in parts(tmp_path / "r")] == [
+        "000000000000",
+        "000000000020",
+        "000000000050",
+    ]
     done = command("sweep", str(study), "--results", str(tmp_path / "r"), "--resume")
     assert done.code == 0, done.err
     assert (tmp_path / "r" / "results.parquet").read_bytes() == whole.read_bytes()
@@ -83,7 +89,10 @@ def test_a_full_disk_keeps_what_is_done_and_resume_goes_on_when_there_is_room(tm
     with files_up_to(30_000):
         done = command("sweep", str(study), "--results", str(folder))
     assert done.code == 1, done.err
-    assert f"cannot be written: File too large; make room; 0 of 120 landings are kept in {folder}, --resume goes on" in done.err
+    assert (
+        f"cannot be written: File too large; make room; 0 of 120 landings are kept in {folder}, --resume goes on"
+        in done.err
+    )
     assert len(done.err.strip().splitlines()) == 1
     assert not list(folder.rglob("*.part"))
     done = command("sweep", str(study), "--results", str(folder), "--resume")
@@ -112,7 +121,18 @@ def test_the_joined_file_does_not_depend_on_its_parts(tmp_path, monkeypatch):
     monkeypatch.setattr("rlv_landing.studies.sweep.result_files.GROUP_ROWS", 16)
     study = write_study(tmp_path, samples=30)
     task = Task(read := read_study(study), read.design)
-    made = [[i, task.sample(i), 3, *task.rows(i, i + 1)[0].values(), "0", "why", *[None] * len(task.plan.responses)] for i in range(60)]
+    made = [
+        [
+            i,
+            task.sample(i),
+            3,
+            *task.rows(i, i + 1)[0].values(),
+            "0",
+            "why",
+            *[None] * len(task.plan.responses),
+        ]
+        for i in range(60)
+    ]
     for name, size in (("a", 60), ("b", 7)):
         _, results = taken_up(study, tmp_path / name)
         with results:
@@ -120,7 +140,9 @@ def test_the_joined_file_does_not_depend_on_its_parts(tmp_path, monkeypatch):
                 results.add(made[first : first + size])
                 results.flush()
             results.finish()
-    assert (tmp_path / "a" / "results.parquet").read_bytes() == (tmp_path / "b" / "results.parquet").read_bytes()
+    assert (tmp_path / "a" / "results.parquet").read_bytes() == (
+        tmp_path / "b" / "results.parquet"
+    ).read_bytes()
     assert parquet.ParquetFile(tmp_path / "a" / "results.parquet").num_row_groups == 4
 
 
@@ -132,7 +154,11 @@ def test_a_changed_study_is_not_resumed_and_the_change_is_named(tmp_path, comman
     refused = command("sweep", str(study), "--results", folder)
     assert refused.code == 2
     assert "--resume goes on with it, --results names another folder" in refused.err
-    study.write_text(study.read_text().replace("until = 0.1", "until = 0.2").replace("ground.friction = 0.4", "ground.friction = 0.5"))
+    study.write_text(
+        study.read_text()
+        .replace("until = 0.1", "until = 0.2")
+        .replace("ground.friction = 0.4", "ground.friction = 0.5")
+    )
     changed = command("sweep", str(study), "--results", folder, "--resume")
     assert changed.code == 2
     assert "holds rows of another study: until, set, parameters changed since" in changed.err

@@ -27,7 +27,9 @@ def locked(mode: str = "2-2", **values: float) -> Parameters:
         "drop.vertical_velocity": -0.5,
         "drop.horizontal_velocity": 0.0,
     }
-    return load_preset("yue2022-figures", mode).with_values({**LOCKED, **start, **{n.replace("__", "."): v for n, v in values.items()}})
+    return load_preset("yue2022-figures", mode).with_values(
+        {**LOCKED, **start, **{n.replace("__", "."): v for n, v in values.items()}}
+    )
 
 
 def higher(by: float) -> dict[str, float]:
@@ -64,7 +66,9 @@ def test_the_critical_speed_has_just_the_energy_to_lift_the_cg_over_the_foot():
 def test_the_block_is_its_own_mirror_image():
     for vx in (-4.0, -2.0, 1.0, 3.5):
         for pitch in (-0.2, -0.05, 0.1):
-            mirrored = {"+x": "-x", "-x": "+x", "": ""}[BLOCK.topples(-pitch, -0.04, -vx, -0.5, -0.2)]
+            mirrored = {"+x": "-x", "-x": "+x", "": ""}[
+                BLOCK.topples(-pitch, -0.04, -vx, -0.5, -0.2)
+            ]
             assert BLOCK.topples(pitch, 0.04, vx, -0.5, 0.2) == mirrored
 
 
@@ -97,7 +101,8 @@ def test_the_critical_speed_of_the_locked_vehicle_is_the_blocks(parameters, tole
     [
         # the trailing feet strike first, and the vehicle slaps down on the leading ones
         (locked(drop__tilt=-0.1), (-4.0, 2.5, 4.2)),
-        # uphill: one that does not get over its leading feet swings back and topples over the others
+        # uphill: one that does not get over its leading feet swings back and topples over the
+        # others
         (locked(ground__slope=-0.1), (-3.3, 2.5, 3.3)),
         (locked("1-2-1", drop__tilt=-0.1), (-3.3, 5.0)),
         (locked("1-2-1", ground__slope=-0.1), (-4.1, 4.2)),
@@ -106,13 +111,20 @@ def test_the_critical_speed_of_the_locked_vehicle_is_the_blocks(parameters, tole
 def test_the_locked_vehicle_swings_from_foot_to_foot_as_the_block_does(parameters, speeds):
     block, drop = RigidBlock.of(parameters), parameters.drop
     for vx in speeds:
-        assert side(parameters, vx) == block.topples(drop.tilt, parameters.ground.slope, vx, drop.vertical_velocity), vx
+        assert side(parameters, vx) == block.topples(
+            drop.tilt, parameters.ground.slope, vx, drop.vertical_velocity
+        ), vx
 
 
 def test_the_envelopes_boundary_of_the_locked_vehicle_is_the_blocks():
     """Found by the envelope's own refinement and bisection, in speed and tilt."""
     study = EnvelopeStudy(
-        locked(), Axis(V, 1.7, 3.5, 0.06), Axis("drop.tilt", radians(0.5), radians(8.0), radians(1.0)), cells=2, levels=0, until=3.0
+        locked(),
+        Axis(V, 1.7, 3.5, 0.06),
+        Axis("drop.tilt", radians(0.5), radians(8.0), radians(1.0)),
+        cells=2,
+        levels=0,
+        until=3.0,
     )
     ((line,),) = (f.lines for f in envelope(study, workers=2).families)
     block = RigidBlock.of(study.parameters)
@@ -127,7 +139,11 @@ def test_at_rest_on_a_slope_it_topples_where_the_tangent_passes_half_track_over_
     tipping = tan(RigidBlock.of(parameters).tipping_slope)
     for part, name in ((0.99, "settled or moving"), (1.005, "toppled")):
         slope = atan(part * tipping)
-        found = outcome(whole_landing(Landing(parameters.with_values({"ground.slope": slope, "drop.tilt": slope})), 3.0))
+        found = outcome(
+            whole_landing(
+                Landing(parameters.with_values({"ground.slope": slope, "drop.tilt": slope})), 3.0
+            )
+        )
         assert found.name in name
 
 
@@ -135,8 +151,12 @@ def test_at_rest_on_a_slope_it_topples_where_the_tangent_passes_half_track_over_
 @pytest.mark.parametrize("friction", [0.1, 0.3])
 def test_at_rest_on_a_slope_it_slides_where_the_tangent_passes_the_friction(mode, friction):
     """The share of friction between the directions is settled at once (`direction_speed`)."""
-    parameters = locked(mode, ground__friction=friction, ground__direction_speed=1e-5, drop__vertical_velocity=-1e-3)
+    parameters = locked(
+        mode, ground__friction=friction, ground__direction_speed=1e-5, drop__vertical_velocity=-1e-3
+    )
     for part, name in ((0.99, "settled"), (1.01, "slid")):
         slope = atan(part * friction)
-        history = whole_landing(Landing(parameters.with_values({"ground.slope": slope, "drop.tilt": slope})), 4.0)
+        history = whole_landing(
+            Landing(parameters.with_values({"ground.slope": slope, "drop.tilt": slope})), 4.0
+        )
         assert outcome(history, slide=0.05).name == name

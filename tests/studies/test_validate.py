@@ -31,7 +31,10 @@ def test_json_has_every_printed_scalar_with_the_errors_that_follow_from_it(comma
         if not printed.near_zero:
             assert s["error"] == approx((s["ours"] - s["paper"]) / abs(s["paper"]))
     errors = [abs(s["error"]) for s in record["scalars"]]
-    assert record["counts"] == {**{f"within_{p}": sum(e <= p / 100 for e in errors) for p in (5, 10, 20)}, "of": 48}
+    assert record["counts"] == {
+        **{f"within_{p}": sum(e <= p / 100 for e in errors) for p in (5, 10, 20)},
+        "of": 48,
+    }
     assert record["paper_counts_against_test"]["of"] == record["counts_against_test"]["of"] == 35
     assert record["missed"] == []
     assert {mode: len(legs) for mode, legs in record["measures"].items()} == {"2-2": 4, "1-2-1": 4}
@@ -64,7 +67,9 @@ def test_bounds_are_read_and_missed_as_written():
     found = {"within_5": 36, "within_10": 40, "within_20": 45, "of": 48}
     (line,) = missed_bounds(found, (36, 41, 45))
     assert line == "within 10 % of the paper's simulation: 40 of 48, at least 41 are required"
-    assert stated_bounds(("2-2", "1-2-1")) == tuple(a + b for a, b in zip(stated_bounds(("2-2",)), stated_bounds(("1-2-1",))))
+    assert stated_bounds(("2-2", "1-2-1")) == tuple(
+        a + b for a, b in zip(stated_bounds(("2-2",)), stated_bounds(("1-2-1",)))
+    )
     with pytest.raises(LandingError, match="asks for 49 scalars within 20 %, there are 48"):
         missed_bounds(found, (1, 2, 49))
 
@@ -73,8 +78,17 @@ def test_curves_that_are_the_landings_own_times_a_factor_have_that_rrms(validati
     history = validation.histories["2-2"]
     names = ["body.pitch", FORCE, STROKE]
     data = np.column_stack([history.time, *(1.25 * history[n] for n in names)])
-    np.savetxt(tmp_path / "t.csv", data, delimiter=",", header=",".join(["time", *names]), comments="", fmt="%.17g")
-    found = validate(load_preset("yue2022-figures"), ("2-2",), {"2-2": read_curves(tmp_path / "t.csv")})
+    np.savetxt(
+        tmp_path / "t.csv",
+        data,
+        delimiter=",",
+        header=",".join(["time", *names]),
+        comments="",
+        fmt="%.17g",
+    )
+    found = validate(
+        load_preset("yue2022-figures"), ("2-2",), {"2-2": read_curves(tmp_path / "t.csv")}
+    )
     assert {c.column: c.rrms for c in found.curves} == approx(dict.fromkeys(names, 0.2))
     off = found.discrepancies("2-2", 1)
     assert off is not None
@@ -94,7 +108,9 @@ def test_rrms_and_discrepancies_are_in_json_and_tables(command, validation, tmp_
     assert [(c["mode"], c["column"]) for c in record["rrms"]] == [("1-2-1", n) for n in names]
     assert record["rrms"][0]["rrms"] == approx(0.0, abs=1e-12)
     assert "discrepancy_absorbed" in record["measures"]["1-2-1"][0]
-    assert "RRMS" in command("validate", "--mode", "1-2-1", "--test-data", str(tmp_path / "t.csv")).out
+    assert (
+        "RRMS" in command("validate", "--mode", "1-2-1", "--test-data", str(tmp_path / "t.csv")).out
+    )
 
 
 @pytest.mark.parametrize(
@@ -137,7 +153,9 @@ def test_bad_curves_are_one_clear_line_and_exit_code_2(command, tmp_path, text, 
         (("--preset", "yue2022"), "unknown preset"),
     ],
 )
-def test_bad_input_is_one_clear_line_and_exit_code_2(command, tmp_path, monkeypatch, arguments, message):
+def test_bad_input_is_one_clear_line_and_exit_code_2(
+    command, tmp_path, monkeypatch, arguments, message
+):
     monkeypatch.chdir(tmp_path)
     done = command("validate", *arguments)
     assert done.code == 2

@@ -17,8 +17,13 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "ros"))
 from bridge_tools import log, new_domain, one_log, processes, start  # noqa: F401
 from sight import HEIGHT, WIDTH, Outside, Started, free_port
 
-CHROMIUM = Path(os.environ.get("RLV_CHROMIUM", Path(__file__).resolve().parent.parent.parent / "build" / "chromium"))
-# No graphics card, no sandbox of its own (CI is root), and nothing that Chromium does by itself in the background.
+CHROMIUM = Path(
+    os.environ.get(
+        "RLV_CHROMIUM", Path(__file__).resolve().parent.parent.parent / "build" / "chromium"
+    )
+)
+# No graphics card, no sandbox of its own (CI is root), and nothing that Chromium does by itself in
+# the background.
 SWITCHES = (
     "--no-sandbox", "--no-zygote", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
     "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run",
@@ -35,9 +40,16 @@ def outside() -> Iterator[Outside]:
 @pytest.fixture(scope="module")
 def browser(outside: Outside, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
     """Chromium, from build/chromium, which `make test` fetches."""
-    assert (CHROMIUM / "chromium").is_file(), f"{CHROMIUM} has no Chromium: make build/chromium/.packages"
+    assert (CHROMIUM / "chromium").is_file(), (
+        f"{CHROMIUM} has no Chromium: make build/chromium/.packages"
+    )
     home = tmp_path_factory.mktemp("home")
-    environment = {"LD_LIBRARY_PATH": str(CHROMIUM / "lib"), "FONTCONFIG_PATH": str(CHROMIUM), "HOME": str(home), "TMPDIR": str(home)}
+    environment = {
+        "LD_LIBRARY_PATH": str(CHROMIUM / "lib"),
+        "FONTCONFIG_PATH": str(CHROMIUM),
+        "HOME": str(home),
+        "TMPDIR": str(home),
+    }
     with sync_playwright() as playwright:
         found = playwright.chromium.launch(
             executable_path=CHROMIUM / "chromium",
@@ -57,15 +69,21 @@ def page(browser: Browser) -> Page:
 
 @pytest.fixture
 def viewing(processes: list[subprocess.Popen[str]]) -> Callable[..., Started]:  # noqa: F811
-    """`viewing(*arguments)`: the command `view`, started; its process, the address that it told, and its port."""
+    """`viewing(*arguments)`: the command `view`, started; its process, the address that it told,
+    and its port.
+    """
 
     def begin(*arguments: Any, domain: int | None = None) -> Started:
         port = free_port()
-        view = start("view", *arguments, "--no-browser", "--port", port, domain=domain or new_domain())
+        view = start(
+            "view", *arguments, "--no-browser", "--port", port, domain=domain or new_domain()
+        )
         processes.append(view)
         assert view.stdout is not None
         address = view.stdout.readline().strip()
-        assert address.startswith(f"http://127.0.0.1:{port}/"), address + (view.stderr.read() if view.stderr else "")
+        assert address.startswith(f"http://127.0.0.1:{port}/"), address + (
+            view.stderr.read() if view.stderr else ""
+        )
         return view, address, port
 
     return begin

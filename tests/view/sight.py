@@ -1,4 +1,6 @@
-"""What a viewer's page shows, told from its pixels; and a proxy that stands for the rest of the world."""
+"""What a viewer's page shows, told from its pixels; and a proxy that stands for the rest of the
+world.
+"""
 
 from __future__ import annotations
 
@@ -36,10 +38,15 @@ def vehicle_of(pixels: Pixels) -> Pixels:
 def plot_of(pixels: Pixels, number: int) -> Pixels:
     """The `number`-th plot, 0 at the top, without its title."""
     height = (HEIGHT - TOP - BOTTOM) / PLOTS
-    return pixels[round(TOP + number * height) + TITLE : round(TOP + (number + 1) * height) - 3, WIDTH // 2 + 2 :]
+    return pixels[
+        round(TOP + number * height) + TITLE : round(TOP + (number + 1) * height) - 3,
+        WIDTH // 2 + 2 :,
+    ]
 
 
-def painted(pixels: Pixels, colour: str, within: int = 30) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def painted(
+    pixels: Pixels, colour: str, within: int = 30
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Rows and columns of the pixels that have `colour` (#rrggbb), each part `within` so much."""
     wanted = np.frombuffer(bytes.fromhex(colour[1:]), dtype=np.uint8).astype(np.int16)
     rows, columns = np.nonzero((np.abs(pixels - wanted) <= within).all(axis=-1))
@@ -75,13 +82,20 @@ class Outside:
                 return
             with connection, connection.makefile("rb") as request:
                 self.asked.append(request.readline().decode("latin-1").strip())
-                connection.sendall(b"HTTP/1.1 502 Nobody is there\r\nContent-Length: 0\r\nConnection: close\r\n\r\n")
+                connection.sendall(
+                    b"HTTP/1.1 502 Nobody is there\r\nContent-Length: 0\r\nConnection: close\r\n\r\n"
+                )
 
     def __enter__(self) -> Outside:
         self._thread.start()
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         self._socket.shutdown(socket.SHUT_RDWR)
         self._socket.close()
         self._thread.join()

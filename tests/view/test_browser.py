@@ -23,7 +23,9 @@ FIRST, SECOND = COLOURS[:2]
 
 
 def until(page: Page, seen: Callable[[Pixels], Any]) -> Pixels:
-    """The first picture of the page in which something is `seen`; each takes as long as the page needs to draw itself."""
+    """The first picture of the page in which something is `seen`; each takes as long as the page
+    needs to draw itself.
+    """
     for _ in range(200):
         pixels = screenshot(page)
         if seen(pixels):
@@ -38,7 +40,9 @@ def legs(pixels: Pixels) -> list[int]:
 
 
 def cursor(pixels: Pixels) -> int:
-    """The column of the dark line that marks the present time in the plot of strokes; -1 where there is none."""
+    """The column of the dark line that marks the present time in the plot of strokes; -1 where
+    there is none.
+    """
     dark = (plot_of(pixels, 1).max(axis=-1) < 120).sum(axis=0)
     return int(dark.argmax()) if dark.max() > 0.8 * len(plot_of(pixels, 1)) else -1
 
@@ -57,14 +61,21 @@ class Pictures(NamedTuple):
 def pictures(one_log: Path, page: Page) -> Iterator[Pictures]:
     """A log of the 2-2 drop test."""
     port = free_port()
-    view: subprocess.Popen[str] = start("view", one_log, "--no-browser", "--port", port, domain=new_domain())
+    view: subprocess.Popen[str] = start(
+        "view", one_log, "--no-browser", "--port", port, domain=new_domain()
+    )
     try:
         assert view.stdout is not None
         page.goto(view.stdout.readline().strip() + "&renderer=webgl")
-        playing = until(page, lambda pixels: min(legs(pixels)) > 100 and cursor(pixels) > 0 and pushes(pixels) > 20)
+        playing = until(
+            page,
+            lambda pixels: min(legs(pixels)) > 100 and cursor(pixels) > 0 and pushes(pixels) > 20,
+        )
         later = until(page, lambda pixels: cursor(pixels) not in (-1, cursor(playing)))
         page.keyboard.press("Space")
-        paused = until(page, lambda pixels: cursor(pixels) > 0 and (screenshot(page) == pixels).all())
+        paused = until(
+            page, lambda pixels: cursor(pixels) > 0 and (screenshot(page) == pixels).all()
+        )
         yield Pictures(page, playing, later, paused, screenshot(page))
     finally:
         view.send_signal(signal.SIGINT)
@@ -78,7 +89,9 @@ def pushes(pixels: Pixels) -> int:
 
 def test_the_vehicle_stands_on_its_legs_each_group_in_its_colour(pictures: Pictures) -> None:
     vehicle = vehicle_of(pictures.playing)
-    rows, columns = zip(*(painted(vehicle, colour) for colour in (FIRST, SECOND, INK, FORCE, GROUND)))
+    rows, columns = zip(
+        *(painted(vehicle, colour) for colour in (FIRST, SECOND, INK, FORCE, GROUND))
+    )
     first, second, body, force, ground = range(5)
     assert all(len(found) > 20 for found in rows)
     # Seen from the right, flying to the right: those behind touch down first.
@@ -88,10 +101,15 @@ def test_the_vehicle_stands_on_its_legs_each_group_in_its_colour(pictures: Pictu
     assert max(rows[first].max(), rows[second].max()) > np.median(rows[ground])
 
 
-def test_curves_have_the_legs_colours_and_their_peaks_where_the_log_has_them(pictures: Pictures, one_log: Path) -> None:
+def test_curves_have_the_legs_colours_and_their_peaks_where_the_log_has_them(
+    pictures: Pictures, one_log: Path
+) -> None:
     history = log_history(one_log)
     for number in range(3):
-        assert all(len(painted(plot_of(pictures.playing, number), colour)[0]) > 100 for colour in (FIRST, SECOND))
+        assert all(
+            len(painted(plot_of(pictures.playing, number), colour)[0]) > 100
+            for colour in (FIRST, SECOND)
+        )
     strokes = plot_of(pictures.playing, 1)
     ends = np.concatenate([painted(strokes, colour)[1] for colour in (FIRST, SECOND)])
     for leg, colour in ((1, FIRST), (3, SECOND)):
@@ -108,7 +126,9 @@ def test_time_goes_on_and_moves_the_vehicle_until_space_pauses_it(pictures: Pict
     assert (pictures.still == pictures.paused).all()
 
 
-def test_the_page_asks_nobody_outside_for_anything(pictures: Pictures, browser: Browser, outside: Outside) -> None:
+def test_the_page_asks_nobody_outside_for_anything(
+    pictures: Pictures, browser: Browser, outside: Outside
+) -> None:
     assert outside.asked == []
     # Without the page's policy the same browser would ask, and be heard.
     other = browser.new_page()

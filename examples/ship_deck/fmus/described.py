@@ -33,7 +33,11 @@ class DescribedSlave(Fmi2Slave):
 
     def parameter(self, name: str, unit: str, start: float, meaning: str) -> None:
         setattr(self, name, start)
-        fixed = {"causality": Fmi2Causality.parameter, "variability": Fmi2Variability.fixed, "initial": Fmi2Initial.exact}
+        fixed = {
+            "causality": Fmi2Causality.parameter,
+            "variability": Fmi2Variability.fixed,
+            "initial": Fmi2Initial.exact,
+        }
         self.register_variable(RealWithUnit(name, unit, description=meaning, **fixed))
 
     def output(self, name: str, unit: str, meaning: str) -> None:

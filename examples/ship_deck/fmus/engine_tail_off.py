@@ -6,15 +6,26 @@ from described import DescribedSlave
 
 
 class EngineTailOff(DescribedSlave):
-    """Force on the body in the inertial frame and moment about its CG: what `external.*` of RlvLanding takes."""
+    """Force on the body in the inertial frame and moment about its CG: what `external.*` of
+    RlvLanding takes.
+    """
 
     def __init__(self, **kwargs):
         super().__init__(**kwargs)
         self.parameter("thrust", "N", 1700.0, "thrust up to the cut-off")
         self.parameter("cut_off", "s", 0.3, "time of the cut-off")
-        self.parameter("decay", "s", 0.08, "time constant of the decay; its impulse is thrust times decay")
-        self.parameter("direction", "rad", 0.0, "angle of the thrust from the vertical, clockwise positive")
-        self.parameter("arm", "m", 0.0, "distance by which the thrust's line misses the CG to the left (-x): turns clockwise")
+        self.parameter(
+            "decay", "s", 0.08, "time constant of the decay; its impulse is thrust times decay"
+        )
+        self.parameter(
+            "direction", "rad", 0.0, "angle of the thrust from the vertical, clockwise positive"
+        )
+        self.parameter(
+            "arm",
+            "m",
+            0.0,
+            "distance by which the thrust's line misses the CG to the left (-x): turns clockwise",
+        )
         self.output("force_x", "N", "thrust along inertial x")
         self.output("force_y", "N", "thrust along inertial y (up)")
         self.output("moment", "N.m", "moment of the thrust about the CG, clockwise positive")

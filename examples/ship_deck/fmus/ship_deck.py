@@ -5,18 +5,30 @@ from math import cos, pi, sin
 from described import DescribedSlave
 
 
-def sinusoid(time: float, amplitude: float, period: float, phase: float, start_up: float) -> tuple[float, float]:
-    """Value and rate at `time` [s] of a sinusoid that fades in over `start_up` [s], with (1 - cos)/2, so that value and rate start at 0."""
+def sinusoid(
+    time: float, amplitude: float, period: float, phase: float, start_up: float
+) -> tuple[float, float]:
+    """Value and rate at `time` [s] of a sinusoid that fades in over `start_up` [s], with (1 -
+    cos)/2, so that value and rate start at 0.
+    """
     omega = 2.0 * pi / period
-    wave, wave_rate = amplitude * sin(omega * time + phase), amplitude * omega * cos(omega * time + phase)
+    wave, wave_rate = (
+        amplitude * sin(omega * time + phase),
+        amplitude * omega * cos(omega * time + phase),
+    )
     if time >= start_up:
         return wave, wave_rate
-    fade, fade_rate = 0.5 - 0.5 * cos(pi * time / start_up), 0.5 * pi / start_up * sin(pi * time / start_up)
+    fade, fade_rate = (
+        0.5 - 0.5 * cos(pi * time / start_up),
+        0.5 * pi / start_up * sin(pi * time / start_up),
+    )
     return fade * wave, fade_rate * wave + fade * wave_rate
 
 
 class ShipDeck(DescribedSlave):
-    """Heave (up) and tilt (clockwise positive) of the deck with their rates: what `ground.*` of RlvLanding takes."""
+    """Heave (up) and tilt (clockwise positive) of the deck with their rates: what `ground.*` of
+    RlvLanding takes.
+    """
 
     def __init__(self, **kwargs):
         super().__init__(**kwargs)
@@ -26,7 +38,9 @@ class ShipDeck(DescribedSlave):
         self.parameter("tilt_amplitude", "rad", 0.03, "amplitude of the tilt")
         self.parameter("tilt_period", "s", 6.0, "period of the tilt")
         self.parameter("tilt_phase", "rad", 0.0, "phase of the tilt at time 0")
-        self.parameter("start_up", "s", 0.5, "time over which the motion fades in; 0: it is there at once")
+        self.parameter(
+            "start_up", "s", 0.5, "time over which the motion fades in; 0: it is there at once"
+        )
         self.output("heave", "m", "lift of the deck")
         self.output("heave_rate", "m/s", "rate of the lift")
         self.output("tilt", "rad", "tilt of the deck, clockwise positive")
@@ -40,5 +54,9 @@ class ShipDeck(DescribedSlave):
         return True
 
     def move(self, time: float) -> None:
-        self.heave, self.heave_rate = sinusoid(time, self.heave_amplitude, self.heave_period, self.heave_phase, self.start_up)
-        self.tilt, self.tilt_rate = sinusoid(time, self.tilt_amplitude, self.tilt_period, self.tilt_phase, self.start_up)
+        self.heave, self.heave_rate = sinusoid(
+            time, self.heave_amplitude, self.heave_period, self.heave_phase, self.start_up
+        )
+        self.tilt, self.tilt_rate = sinusoid(
+            time, self.tilt_amplitude, self.tilt_period, self.tilt_phase, self.start_up
+        )

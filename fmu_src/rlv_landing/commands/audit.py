@@ -16,11 +16,20 @@ FAILED = 1
 @click.argument("name", metavar="[PRESET]", required=False)
 @parameter_options
 @click.option("--json", "as_json", is_flag=True, help="Print as JSON.")
-def audit(name: str | None, preset: str | None, file: str | None, mode: str | None, pairs: tuple[str, ...], as_json: bool) -> int:
-    """Audit a preset (default yue2022-figures) or a parameter file: energy term by term, liquid mass, momentum, rest, convergence.
+def audit(
+    name: str | None,
+    preset: str | None,
+    file: str | None,
+    mode: str | None,
+    pairs: tuple[str, ...],
+    as_json: bool,
+) -> int:
+    """Audit a preset (default yue2022-figures) or a parameter file: energy term by term, liquid
+    mass, momentum, rest, convergence.
 
-    Momentum is audited in free flight and in contact, against the integral of contact forces and weight. Every value is held against a
-    bound that is printed with its reason. Both drop tests unless --mode names one. Exit code 1 when a bound is missed.
+    Momentum is audited in free flight and in contact, against the integral of contact forces and
+    weight. Every value is held against a bound that is printed with its reason. Both drop tests
+    unless --mode names one. Exit code 1 when a bound is missed.
 
     \b
     rlv-landing audit yue2022-figures
@@ -35,7 +44,12 @@ def audit(name: str | None, preset: str | None, file: str | None, mode: str | No
     audits = run(parameters, modes)
     missed = missed_lines(audits)
     if as_json:
-        record = {"parameters": label, "passed": not missed, "missed": missed, "audits": [a.record() for a in audits]}
+        record = {
+            "parameters": label,
+            "passed": not missed,
+            "missed": missed,
+            "audits": [a.record() for a in audits],
+        }
         click.echo(json.dumps(record, indent=1, allow_nan=False))
     else:
         click.echo(audit_tables(audits), nl=False)

@@ -14,13 +14,29 @@ from .options import choose, parameter_options
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @parameter_options
-@click.option("--free", metavar="NAME[,NAME...]", help="What to identify [default: all that have a prior, see --priors].")
-@click.option("--bound", "bounds", metavar="NAME=LO..HI", multiple=True, help="Bounds for a parameter, SI. Repeat.")
 @click.option(
-    "--targets", type=click.Path(path_type=Path), metavar="FILE.csv", help="Measured scalars: id,value,unit [default: the paper's 48]."
+    "--free",
+    metavar="NAME[,NAME...]",
+    help="What to identify [default: all that have a prior, see --priors].",
 )
 @click.option(
-    "--series", metavar="MODE=FILE.csv", multiple=True, help="Measured curves: time, then columns named as our outputs, SI. Repeat."
+    "--bound",
+    "bounds",
+    metavar="NAME=LO..HI",
+    multiple=True,
+    help="Bounds for a parameter, SI. Repeat.",
+)
+@click.option(
+    "--targets",
+    type=click.Path(path_type=Path),
+    metavar="FILE.csv",
+    help="Measured scalars: id,value,unit [default: the paper's 48].",
+)
+@click.option(
+    "--series",
+    metavar="MODE=FILE.csv",
+    multiple=True,
+    help="Measured curves: time, then columns named as our outputs, SI. Repeat.",
 )
 @click.option(
     "--conditions/--no-conditions",
@@ -28,62 +44,119 @@ from .options import choose, parameter_options
     help="Hold landings to sense, by the prototype's limits [default: with the paper's scalars].",
 )
 @click.option(
-    "--work", type=click.Path(path_type=Path), default=Path("identification"), show_default=True, help="Folder for state and results."
+    "--work",
+    type=click.Path(path_type=Path),
+    default=Path("identification"),
+    show_default=True,
+    help="Folder for state and results.",
 )
 @click.option(
-    "--evaluations", default=20000, show_default=True, type=click.IntRange(1), metavar="N", help="Landings of both modes to try at most."
+    "--evaluations",
+    default=20000,
+    show_default=True,
+    type=click.IntRange(1),
+    metavar="N",
+    help="Landings of both modes to try at most.",
 )
-@click.option("--polish", default=2000, show_default=True, type=click.IntRange(0), help="Landings for the least squares after it.")
 @click.option(
-    "--sigma", default=0.1, show_default=True, type=click.FloatRange(1e-4, 1.0), help="First spread of the search, as a part of the bounds."
+    "--polish",
+    default=2000,
+    show_default=True,
+    type=click.IntRange(0),
+    help="Landings for the least squares after it.",
 )
-@click.option("--population", default=32, show_default=True, type=click.IntRange(4), help="Points a generation.")
-@click.option("--seed", default=1, show_default=True, type=click.IntRange(1), help="Seed of the search.")
+@click.option(
+    "--sigma",
+    default=0.1,
+    show_default=True,
+    type=click.FloatRange(1e-4, 1.0),
+    help="First spread of the search, as a part of the bounds.",
+)
+@click.option(
+    "--population",
+    default=32,
+    show_default=True,
+    type=click.IntRange(4),
+    help="Points a generation.",
+)
+@click.option(
+    "--seed", default=1, show_default=True, type=click.IntRange(1), help="Seed of the search."
+)
 @click.option("--workers", type=click.IntRange(1), help="Processes [default: all cores].")
 @click.option("--resume", is_flag=True, help="Go on with the search in --work.")
-@click.option("--priors", "list_priors", is_flag=True, help="Print what can be identified, between which bounds and why, and stop.")
+@click.option(
+    "--priors",
+    "list_priors",
+    is_flag=True,
+    help="Print what can be identified, between which bounds and why, and stop.",
+)
 def identify(
     preset: str | None, file: str | None, mode: str | None, pairs: tuple[str, ...], free: str | None, bounds: tuple[str, ...],
     targets: Path | None, series: tuple[str, ...], work: Path, evaluations: int, polish: int, sigma: float, population: int, seed: int,
     workers: int | None, resume: bool, list_priors: bool, conditions: bool | None,
 ) -> None:  # fmt: skip
-    """Estimate what the paper does not print, or your own vehicle's parameters, from peaks, times and curves of landings.
+    """Estimate what the paper does not print, or your own vehicle's parameters, from peaks, times
+    and curves of landings.
 
-    A global search (CMA-ES) on all cores, then least squares; both modes at once. Writes identified.toml (take it by --parameters) and
-    report.md (fit, numbers at bounds, how well each is determined) to the folder --work, which also keeps the best point all along:
-    Ctrl-C loses nothing, --resume goes on. What is not free stays as preset, file and --set say; --mode takes one drop test's numbers only.
+    A global search (CMA-ES) on all cores, then least squares; both modes at once. Writes
+    identified.toml (take it by --parameters) and report.md (fit, numbers at bounds, how well each
+    is determined) to the folder --work, which also keeps the best point all along: Ctrl-C loses
+    nothing, --resume goes on. What is not free stays as preset, file and --set say; --mode takes
+    one drop test's numbers only.
 
     \b
     rlv-landing identify --work identification --seed 3
     rlv-landing identify --resume --work identification --evaluations 40000
     rlv-landing identify --parameters mine.toml --targets measured.csv --free main_strut.orifice_area_compression,ground.friction
 
-    Exit codes: 0 done, 1 nothing better than the start was found, 2 bad input, 130 interrupted (the best so far is written).
+    Exit codes: 0 done, 1 nothing better than the start was found, 2 bad input, 130 interrupted (the
+        best so far is written).
     """
     from tqdm import tqdm
 
     from ..identification.identify import Search
     from ..identification.identify_report import write_report
-    from ..identification.objective import CONDITIONS, Objective, Series, paper_targets, read_targets
+    from ..identification.objective import (
+        CONDITIONS,
+        Objective,
+        Series,
+        paper_targets,
+        read_targets,
+    )
     from ..identification.priors import PRIORS, FreeNumbers
     from ..presets import to_toml
     from ..validation.curves import read_curves
 
     if list_priors:
         for p in PRIORS:
-            click.echo(f"{p.name:42s} {p.lo:10.4g} ... {p.hi:<10.4g} {'each mode; ' if p.by_mode else ''}{p.reason}")
+            click.echo(
+                f"{p.name:42s} {p.lo:10.4g} ... {p.hi:<10.4g} {'each mode; ' if p.by_mode else ''}{p.reason}"
+            )
         return
     parameters, modes, _ = choose(preset, file, mode, pairs)
     numbers = FreeNumbers(parameters, free.split(",") if free else None, dict(map(_bound, bounds)))
     curves = [Series(which, read_curves(path)) for which, path in map(_pair, series)]
-    wanted = read_targets(targets) if targets else [] if curves else [t for t in paper_targets() if t.mode in modes]
+    wanted = (
+        read_targets(targets)
+        if targets
+        else []
+        if curves
+        else [t for t in paper_targets() if t.mode in modes]
+    )
     interrupted = False
     # SIGTERM ends as Ctrl-C does: with everything written
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     held = CONDITIONS if (conditions if conditions is not None else not (targets or curves)) else ()
     with Search(Objective(numbers, wanted, curves, held), work, seed, workers, resume) as search:
-        bar_format = "{desc} {percentage:3.0f}%|{bar}| {n}/{total} [{elapsed}<{remaining}] {postfix}"
-        with tqdm(total=evaluations, initial=search.best.evaluations, disable=not sys.stderr.isatty(), bar_format=bar_format) as bar:
+        bar_format = (
+            "{desc} {percentage:3.0f}%|{bar}| {n}/{total} [{elapsed}<{remaining}] {postfix}"
+        )
+        with tqdm(
+            total=evaluations,
+            initial=search.best.evaluations,
+            disable=not sys.stderr.isatty(),
+            bar_format=bar_format,
+        ) as bar:
 
             def tell(done: int, loss: float) -> None:
                 bar.total = max(bar.total or 0, done)
@@ -104,13 +177,21 @@ def identify(
         (work / "identified.toml").write_text(to_toml(best), encoding="utf-8")
         if not interrupted:
             (work / "report.md").write_text(write_report(search, best), encoding="utf-8")
-    click.echo(f"loss {search.start_loss:.3f} at the start, {search.best.loss:.3f} at the best of {search.best.evaluations} evaluations")
-    click.echo(f"parameters: {work / 'identified.toml'}" + ("" if interrupted else f"\nreport: {work / 'report.md'}"))
+    click.echo(
+        f"loss {search.start_loss:.3f} at the start, {search.best.loss:.3f} at the best of {search.best.evaluations} evaluations"
+    )
+    click.echo(
+        f"parameters: {work / 'identified.toml'}"
+        + ("" if interrupted else f"\nreport: {work / 'report.md'}")
+    )
     if interrupted:
         click.echo("interrupted; --resume goes on", err=True)
         sys.exit(130)
     if not search.best.loss < search.start_loss:
-        click.echo("error: nothing better than the start was found; free more, widen --bound, or try another --seed or --sigma", err=True)
+        click.echo(
+            "error: nothing better than the start was found; free more, widen --bound, or try another --seed or --sigma",
+            err=True,
+        )
         sys.exit(1)
 
 
@@ -127,4 +208,6 @@ def _bound(text: str) -> tuple[str, tuple[float, float]]:
     try:
         return name, (float(lo), float(hi if dots else "x"))
     except ValueError:
-        raise LandingError(f"--bound {text}: write NAME=LO..HI with two numbers in SI, for example ground.friction=0.1..0.5") from None
+        raise LandingError(
+            f"--bound {text}: write NAME=LO..HI with two numbers in SI, for example ground.friction=0.1..0.5"
+        ) from None

@@ -19,11 +19,25 @@ F = TypeVar("F", bound=Callable[..., Any])
 def parameter_options(command: F) -> F:
     """Options that choose vehicle, ground and drop."""
     options = (
-        click.option("--preset", metavar="NAME", help="Named parameters [default: yue2022-figures]; also yue2022-table2."),
-        click.option("--parameters", "file", metavar="FILE.toml", help="Parameters from a TOML file instead."),
-        click.option("--mode", metavar="MODE", help="Landing mode: 2-2 or 1-2-1 (legs that touch first, second, third)."),
         click.option(
-            "--set", "pairs", metavar="NAME=VALUE", multiple=True, help='One parameter, SI or with a unit: drop.tilt="-2 deg". Repeat.'
+            "--preset",
+            metavar="NAME",
+            help="Named parameters [default: yue2022-figures]; also yue2022-table2.",
+        ),
+        click.option(
+            "--parameters", "file", metavar="FILE.toml", help="Parameters from a TOML file instead."
+        ),
+        click.option(
+            "--mode",
+            metavar="MODE",
+            help="Landing mode: 2-2 or 1-2-1 (legs that touch first, second, third).",
+        ),
+        click.option(
+            "--set",
+            "pairs",
+            metavar="NAME=VALUE",
+            multiple=True,
+            help='One parameter, SI or with a unit: drop.tilt="-2 deg". Repeat.',
         ),
     )
     for option in reversed(options):
@@ -31,8 +45,12 @@ def parameter_options(command: F) -> F:
     return command
 
 
-def choose(preset: str | None, file: str | None, mode: str | None, pairs: tuple[str, ...]) -> tuple[Parameters, tuple[str, ...], str]:
-    """For a command that runs both modes unless one is named: the parameters, the modes, and what to call the parameters."""
+def choose(
+    preset: str | None, file: str | None, mode: str | None, pairs: tuple[str, ...]
+) -> tuple[Parameters, tuple[str, ...], str]:
+    """For a command that runs both modes unless one is named: the parameters, the modes, and what
+    to call the parameters.
+    """
     from ..choices import choose_parameters, parse_pairs
     from ..parameters import PARAMETER_QUANTITIES
     from ..presets import DEFAULT_PRESET
@@ -47,7 +65,9 @@ def choose(preset: str | None, file: str | None, mode: str | None, pairs: tuple[
 
 
 def check_writable(path: Path | None, ending: str, force: bool) -> None:
-    """Raises LandingError unless a file `path` with this ending can be made; one that exists needs `force`."""
+    """Raises LandingError unless a file `path` with this ending can be made; one that exists needs
+    `force`.
+    """
     if path is None:
         return
     if path.suffix != ending:

@@ -16,9 +16,16 @@ from .options import parameter_options
 @click.option("--inputs", "what", flag_value="inputs", help="List the inputs instead.")
 @click.option("--outputs", "what", flag_value="outputs", help="List the outputs instead.")
 def parameters(
-    preset: str | None, file: str | None, mode: str | None, pairs: tuple[str, ...], toml: bool, as_json: bool, what: str | None
+    preset: str | None,
+    file: str | None,
+    mode: str | None,
+    pairs: tuple[str, ...],
+    toml: bool,
+    as_json: bool,
+    what: str | None,
 ) -> None:
-    """Print the table of parameters: value, unit, bounds, where it comes from (paper, derived, closure, identified), meaning.
+    """Print the table of parameters: value, unit, bounds, where it comes from (paper, derived,
+    closure, identified), meaning.
 
     \b
     rlv-landing parameters --preset yue2022-table2 --mode 1-2-1
@@ -33,11 +40,18 @@ def parameters(
     if what is not None:
         quantities = INPUT_QUANTITIES if what == "inputs" else OUTPUT_QUANTITIES
         if as_json:
-            click.echo(json.dumps([{"name": q.name, "unit": q.unit, "meaning": q.meaning} for q in quantities], indent=1))
+            click.echo(
+                json.dumps(
+                    [{"name": q.name, "unit": q.unit, "meaning": q.meaning} for q in quantities],
+                    indent=1,
+                )
+            )
         else:
             click.echo(quantity_table(what, quantities), nl=False)
         return
-    chosen = choose_parameters(preset, file, mode, parse_pairs(pairs, PARAMETER_QUANTITIES, "parameter"))
+    chosen = choose_parameters(
+        preset, file, mode, parse_pairs(pairs, PARAMETER_QUANTITIES, "parameter")
+    )
     if toml:
         click.echo(to_toml(chosen), nl=False)
     elif as_json:

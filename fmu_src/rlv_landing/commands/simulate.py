@@ -16,16 +16,38 @@ from .options import check_writable, parameter_options
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @parameter_options
 @click.option(
-    "--input", "inputs", metavar="NAME=VALUE", multiple=True, help="A constant input: external.force_x=500, ground.tilt='2 deg'. Repeat."
+    "--input",
+    "inputs",
+    metavar="NAME=VALUE",
+    multiple=True,
+    help="A constant input: external.force_x=500, ground.tilt='2 deg'. Repeat.",
 )
 @click.option("--until", default=1.0, show_default=True, metavar="S", help="End time [s].")
-@click.option("--every", default=1e-3, show_default=True, metavar="S", help="Time between samples [s].")
-@click.option("--rtol", default=DEFAULT_RTOL, show_default=True, help="Relative tolerance of the integrator.")
 @click.option(
-    "--method", type=click.Choice(list(METHODS)), default="exponential", show_default=True, help="Integrator; dormand-prince: the paper's."
+    "--every", default=1e-3, show_default=True, metavar="S", help="Time between samples [s]."
 )
-@click.option("--output", metavar="FILE.csv", type=click.Path(path_type=Path), help="Write every output at every sample (SI units).")
-@click.option("--plot", metavar="FILE.png", type=click.Path(path_type=Path), help="Draw forces, strokes and acceleration.")
+@click.option(
+    "--rtol", default=DEFAULT_RTOL, show_default=True, help="Relative tolerance of the integrator."
+)
+@click.option(
+    "--method",
+    type=click.Choice(list(METHODS)),
+    default="exponential",
+    show_default=True,
+    help="Integrator; dormand-prince: the paper's.",
+)
+@click.option(
+    "--output",
+    metavar="FILE.csv",
+    type=click.Path(path_type=Path),
+    help="Write every output at every sample (SI units).",
+)
+@click.option(
+    "--plot",
+    metavar="FILE.png",
+    type=click.Path(path_type=Path),
+    help="Draw forces, strokes and acceleration.",
+)
 @click.option("--compare", "comparison", is_flag=True, help="Print our numbers beside the paper's.")
 @click.option("--json", "as_json", is_flag=True, help="Print outcome and peaks as JSON.")
 @click.option("--force", is_flag=True, help="Overwrite files that exist.")
@@ -48,11 +70,17 @@ def simulate(
 
     for path, ending in ((output, ".csv"), (plot, ".png")):
         check_writable(path, ending, force)
-    parameters = choose_parameters(preset, file, mode, parse_pairs(pairs, PARAMETER_QUANTITIES, "parameter"))
+    parameters = choose_parameters(
+        preset, file, mode, parse_pairs(pairs, PARAMETER_QUANTITIES, "parameter")
+    )
     landing = Landing(parameters, rtol=rtol, method=method)
     landing.set_inputs(parse_pairs(inputs, {q.name: q for q in INPUT_QUANTITIES}, "input"))
     with tqdm(
-        total=until, unit="s", desc="landing", disable=not sys.stderr.isatty(), bar_format="{l_bar}{bar}| {n:.2f}/{total:.2f} s"
+        total=until,
+        unit="s",
+        desc="landing",
+        disable=not sys.stderr.isatty(),
+        bar_format="{l_bar}{bar}| {n:.2f}/{total:.2f} s",
     ) as bar:
         history = landing.run(until, every, lambda t: bar.update(t - bar.n))
     title = f"{parameters.drop.mode} landing"
@@ -76,4 +104,6 @@ def simulate(
 
             save_overview(history, plot, title)
     except OSError as e:
-        raise LandingError(f"{e.filename or output or plot} cannot be written: {e.strerror or e}") from None
+        raise LandingError(
+            f"{e.filename or output or plot} cannot be written: {e.strerror or e}"
+        ) from None

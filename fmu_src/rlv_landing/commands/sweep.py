@@ -24,7 +24,8 @@ def sweep(
 ) -> None:  # fmt: skip
     """Land once for every point of a study and keep one row of responses a landing, as Parquet.
 
-    The study says what varies (any parameter, drop quantity or constant input), how points are drawn, and what is taken off each landing:
+    The study says what varies (any parameter, drop quantity or constant input), how points are
+    drawn, and what is taken off each landing:
 
     \b
     [study]
@@ -45,11 +46,13 @@ def sweep(
     rlv-landing sweep study.toml --results folder --resume
     rlv-landing sweep study.toml --scheduler tcp://host:8786
 
-    The same study gives the same rows, in the order of their index, on any number of threads or workers. The folder holds
-    results.parquet in the end, and parts of it until then: Ctrl-C, kill -9 or a full disk lose seconds of work at most, --resume goes on.
-    A landing that cannot be made is a row with its reason in the column `error`. docs/studies.md has every key.
+    The same study gives the same rows, in the order of their index, on any number of threads or
+    workers. The folder holds results.parquet in the end, and parts of it until then: Ctrl-C, kill
+    -9 or a full disk lose seconds of work at most, --resume goes on. A landing that cannot be made
+    is a row with its reason in the column `error`. docs/studies.md has every key.
 
-    Exit codes: 0 done, 1 ended before its time (a full disk, a lost cluster, --strict), 2 bad input, 130 interrupted.
+    Exit codes: 0 done, 1 ended before its time (a full disk, a lost cluster, --strict), 2 bad
+        input, 130 interrupted.
     """
     from ..studies.sweep.row import Task
     from ..studies.sweep.study import read_study
@@ -66,14 +69,22 @@ def sweep(
 
     summary = summarise_results(path)
     if as_json:
-        click.echo(json.dumps({"study": read.name, "results": str(path), **summary.record()}, indent=1, allow_nan=False))
+        click.echo(
+            json.dumps(
+                {"study": read.name, "results": str(path), **summary.record()},
+                indent=1,
+                allow_nan=False,
+            )
+        )
     else:
         click.echo(summary_table(read.name, summary), nl=False)
         click.echo(f"results: {path}")
 
 
 def show_plan(task: Task, workers: int | None, as_json: bool, notes: tuple[str, ...] = ()) -> None:
-    """Print how many landings a study makes, its first rows, and how long it may take by one timed landing."""
+    """Print how many landings a study makes, its first rows, and how long it may take by one timed
+    landing.
+    """
     from ..studies.sweep.sweep import default_workers
     from ..tables.sweep_tables import FIRST_ROWS, plan_table
 
@@ -96,7 +107,9 @@ def show_plan(task: Task, workers: int | None, as_json: bool, notes: tuple[str, 
         return
     click.echo(plan_table(task), nl=False)
     click.echo(f"{len(task)} landings, {len(task.plan.responses)} responses each")
-    click.echo(f"the first took {seconds * 1e3:.1f} ms: about {_duration(estimate)} on {count} threads, if they have a core each")
+    click.echo(
+        f"the first took {seconds * 1e3:.1f} ms: about {_duration(estimate)} on {count} threads, if they have a core each"
+    )
     for note in (*notes, *([f"the first landing fails: {row[1]}"] if row[1] is not None else [])):
         click.echo(f"note: {note}")
 

@@ -24,13 +24,22 @@ FAILED = 1
     help="Measured curves: first column time [s], then columns named as our outputs, SI. Name the mode here or by --mode. Repeat.",
 )  # fmt: skip
 @click.option(
-    "--phase", type=click.Choice(["zero", "forward"]), default="zero", show_default=True, help="Phase of the sensors' 100 Hz low-pass."
+    "--phase",
+    type=click.Choice(["zero", "forward"]),
+    default="zero",
+    show_default=True,
+    help="Phase of the sensors' 100 Hz low-pass.",
 )
 @click.option(
-    "--html", metavar="FILE.html", type=click.Path(path_type=Path), help="Write a report with all figures, one self-contained page."
+    "--html",
+    metavar="FILE.html",
+    type=click.Path(path_type=Path),
+    help="Write a report with all figures, one self-contained page.",
 )
 @click.option(
-    "--require", metavar="A/B/C", help="Least counts within 5, 10, 20 % of the simulation, or none [default: yue2022-figures' own]."
+    "--require",
+    metavar="A/B/C",
+    help="Least counts within 5, 10, 20 % of the simulation, or none [default: yue2022-figures' own].",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print as JSON.")
 @click.option("--force", is_flag=True, help="Overwrite the report if it exists.")
@@ -38,10 +47,11 @@ def validate(
     preset: str | None, file: str | None, mode: str | None, pairs: tuple[str, ...], tests: tuple[str, ...], phase: str, html: Path | None,
     require: str | None, as_json: bool, force: bool,
 ) -> int:  # fmt: skip
-    """Set landings beside the paper's section 5: every printed scalar, the summary measures, counts within 5, 10 and 20 %.
+    """Set landings beside the paper's section 5: every printed scalar, the summary measures, counts
+    within 5, 10 and 20 %.
 
-    Both drop tests unless --mode names one. Errors are on the scale of the paper's simulation, near-zero scalars on that of their curve.
-    Exit code 1 when the counts are below those required.
+    Both drop tests unless --mode names one. Errors are on the scale of the paper's simulation,
+    near-zero scalars on that of their curve. Exit code 1 when the counts are below those required.
 
     \b
     rlv-landing validate
@@ -53,7 +63,13 @@ def validate(
 
     check_writable(html, ".html", force)
     parameters, modes, label = choose(preset, file, mode, pairs)
-    bounds = None if require == "none" else stated_bounds(modes) if require is None else parse_bounds(require)
+    bounds = (
+        None
+        if require == "none"
+        else stated_bounds(modes)
+        if require is None
+        else parse_bounds(require)
+    )
     measured = _measured(tests, modes)
     found = run(parameters, modes, measured, "forward" if phase == "forward" else "zero")
     missed = [] if bounds is None else missed_bounds(found.counts, bounds)
@@ -62,8 +78,16 @@ def validate(
 
         write_report(found, parameters, html, label, phase)
     if as_json:
-        required = None if bounds is None else dict(zip(("within_5", "within_10", "within_20"), bounds))
-        record = {**found.record(), "parameters": label, "modes": list(modes), "required": required, "missed": missed}
+        required = (
+            None if bounds is None else dict(zip(("within_5", "within_10", "within_20"), bounds))
+        )
+        record = {
+            **found.record(),
+            "parameters": label,
+            "modes": list(modes),
+            "required": required,
+            "missed": missed,
+        }
         click.echo(json.dumps(record, indent=1, allow_nan=False))
     else:
         from ..tables.study_tables import validation_tables
@@ -75,7 +99,10 @@ def validate(
 
 
 def _measured(tests: tuple[str, ...], modes: tuple[str, ...]) -> dict[str, History]:
-    """The measured curves by mode. Raises LandingError where a mode is not named, not run, or named twice."""
+    """The measured curves by mode.
+
+    Raises LandingError where a mode is not named, not run, or named twice.
+    """
     from ..quantities import MODES
     from ..validation.curves import read_curves
 
@@ -84,13 +111,19 @@ def _measured(tests: tuple[str, ...], modes: tuple[str, ...]) -> dict[str, Histo
         mode, equals, path = text.partition("=")
         if not equals:
             if len(modes) > 1:
-                raise LandingError(f"--test-data {text}: of which drop test? Write --test-data 2-2={text}, or name one with --mode")
+                raise LandingError(
+                    f"--test-data {text}: of which drop test? Write --test-data 2-2={text}, or name one with --mode"
+                )
             mode, path = modes[0], text
         if mode not in MODES:
             raise unknown("landing mode", mode, MODES)
         if mode not in modes:
-            raise LandingError(f"--test-data {text}: mode {mode} is not run; leave --mode out or make it {mode}")
+            raise LandingError(
+                f"--test-data {text}: mode {mode} is not run; leave --mode out or make it {mode}"
+            )
         if mode in found:
-            raise LandingError(f"--test-data {text}: there is a file for mode {mode} already; put all curves of a drop test into one")
+            raise LandingError(
+                f"--test-data {text}: there is a file for mode {mode} already; put all curves of a drop test into one"
+            )
         found[mode] = read_curves(path)
     return found

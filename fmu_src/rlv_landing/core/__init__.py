@@ -22,4 +22,13 @@ except ImportError:
 
     COMPILED = False
 
-__all__ = ["COMPILED", "DormandPrince", "Exponential", "Model", "Solver", "layout", "output_size", "state_size"]
+__all__ = [
+    "COMPILED",
+    "DormandPrince",
+    "Exponential",
+    "Model",
+    "Solver",
+    "layout",
+    "output_size",
+    "state_size",
+]

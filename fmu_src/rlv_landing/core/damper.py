@@ -13,7 +13,9 @@ def orifice_flow(dP, density_ratio, p):
     `density_ratio` is the mean of rho/rho0 in the two chambers. Compression and rebound have areas of their own.
     """
     area = p.CdAo_c if dP > 0.0 else p.CdAo_r
-    return area * sqrt(2.0 / (p.rho0 * density_ratio)) * dP / sqrt(sqrt(dP * dP + p.dP_lam * p.dP_lam))
+    return (
+        area * sqrt(2.0 / (p.rho0 * density_ratio)) * dP / sqrt(sqrt(dP * dP + p.dP_lam * p.dP_lam))
+    )
 
 
 def seal_friction(v, P1, P2, p):
@@ -46,7 +48,12 @@ def orifice_slope(dP, density_ratio, p):
     """Derivative of `orifice_flow` by `dP` [m3/(s Pa)]."""
     area = p.CdAo_c if dP > 0.0 else p.CdAo_r
     square = dP * dP + p.dP_lam * p.dP_lam
-    return area * sqrt(2.0 / (p.rho0 * density_ratio)) * (square - 0.5 * dP * dP) / (square * sqrt(sqrt(square)))
+    return (
+        area
+        * sqrt(2.0 / (p.rho0 * density_ratio))
+        * (square - 0.5 * dP * dP)
+        / (square * sqrt(sqrt(square)))
+    )
 
 
 def damper(s, v, P1, P2, p):
@@ -67,4 +74,13 @@ def damper(s, v, P1, P2, p):
     F_seal = seal_friction(v, P1, P2, p)
     F_stop, stop_power = stop_force(s, v, p)
     force = (P2 - p.Pa) * p.A2 - (P1 - p.Pa) * p.A1 + F_seal + F_stop
-    return force, dP1, dP2, ratio * Q * (h2 - h1), F_seal * v, stop_power, stiffness1 * v1 * slope, stiffness2 * v2 * slope
+    return (
+        force,
+        dP1,
+        dP2,
+        ratio * Q * (h2 - h1),
+        F_seal * v,
+        stop_power,
+        stiffness1 * v1 * slope,
+        stiffness2 * v2 * slope,
+    )

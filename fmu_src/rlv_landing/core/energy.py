@@ -3,7 +3,25 @@
 from math import cos, fabs, pow, sin
 
 from .fluid import strain_energy
-from .layout import BODY, L_PENETRATION, L_STROKE, L_STROKE_AUX, LEG, LOADS, P1, P2, PITCH, PITCH_RATE, VH, VR, VX, VY, H, R, Y
+from .layout import (
+    BODY,
+    L_PENETRATION,
+    L_STROKE,
+    L_STROKE_AUX,
+    LEG,
+    LOADS,
+    P1,
+    P2,
+    PITCH,
+    PITCH_RATE,
+    VH,
+    VR,
+    VX,
+    VY,
+    H,
+    R,
+    Y,
+)
 from .model import Model  # noqa: F401  (the compiled core needs the type)
 
 
@@ -51,7 +69,9 @@ def auxiliary_energy(p, w):
     """Energy [J] that the auxiliary struts' springs hold."""
     total = 0.0
     for i in range(p.n_groups):
-        total += p.count[i] * p.Ka * pow(fabs(w[LOADS * i + L_STROKE_AUX]), p.ek + 1.0) / (p.ek + 1.0)
+        total += (
+            p.count[i] * p.Ka * pow(fabs(w[LOADS * i + L_STROKE_AUX]), p.ek + 1.0) / (p.ek + 1.0)
+        )
     return total
 
 

@@ -33,7 +33,9 @@ def phi2(z, f1):
     """(1 - phi1)/z, from `f1` = phi1(z); Taylor's series where that would cancel."""
     if z > SMALL:
         return (1.0 - f1) / z
-    tail = 1.0 / 720.0 - z * (1.0 / 5040.0 - z * (1.0 / 40320.0 - z * (1.0 / 362880.0 - z / 3628800.0)))
+    tail = 1.0 / 720.0 - z * (
+        1.0 / 5040.0 - z * (1.0 / 40320.0 - z * (1.0 / 362880.0 - z / 3628800.0))
+    )
     return 0.5 - z * (1.0 / 6.0 - z * (1.0 / 24.0 - z * (1.0 / 120.0 - z * tail)))
 
 
@@ -41,7 +43,9 @@ def phi3(z, f2):
     """(1/2 - phi2)/z, from `f2` = phi2(z); Taylor's series where that would cancel."""
     if z > SMALL:
         return (0.5 - f2) / z
-    tail = 1.0 / 5040.0 - z * (1.0 / 40320.0 - z * (1.0 / 362880.0 - z * (1.0 / 3628800.0 - z / 39916800.0)))
+    tail = 1.0 / 5040.0 - z * (
+        1.0 / 40320.0 - z * (1.0 / 362880.0 - z * (1.0 / 3628800.0 - z / 39916800.0))
+    )
     return 1.0 / 6.0 - z * (1.0 / 24.0 - z * (1.0 / 120.0 - z * (1.0 / 720.0 - z * tail)))
 
 
@@ -90,7 +94,9 @@ class Exponential(Solver):
         for g in range(self.model.n_groups):
             j = BODY + LEG * g
             growth = s[j + P2] - s[j + P1] - (y[j + P2] - y[j + P1])
-            self.driven[STAGES * g + stage] = k[j + P2] - k[j + P1] + (self.decay[2 * g] + self.decay[2 * g + 1]) * growth
+            self.driven[STAGES * g + stage] = (
+                k[j + P2] - k[j + P1] + (self.decay[2 * g] + self.decay[2 * g + 1]) * growth
+            )
 
     def settle(self, g, s, growth, plain):
         """In `s`, put `growth` [Pa] of leg `g`'s P2 - P1 in the place of the classic scheme's `plain` one; what does not decay stays."""
@@ -108,7 +114,9 @@ class Exponential(Solver):
             s[j] = y[j] + ahead * k[j]
         for g in range(self.model.n_groups):
             j, q, v = BODY + LEG * g, STAGES * g, WEIGHTS * g + 2 * (i - 1)
-            self.settle(g, s, h * (w[v] * d[q] + w[v + 1] * d[q + i - 1]), ahead * (k[j + P2] - k[j + P1]))
+            self.settle(
+                g, s, h * (w[v] * d[q] + w[v + 1] * d[q + i - 1]), ahead * (k[j + P2] - k[j + P1])
+            )
         self.slope(self.t + ahead, s, k_next)
         self.drive(i, s, k_next)
 
@@ -123,8 +131,20 @@ class Exponential(Solver):
 
     def finish(self, h):
         """The new state from the four stages, the right-hand side there, and the error."""
-        y, s, e, d, w = data(self.y), data(self.y_new), data(self.deviation), data(self.driven), data(self.weights)
-        k1, k2, k3, k4, k5 = data(self.k1), data(self.k2), data(self.k3), data(self.k4), data(self.k_end)
+        y, s, e, d, w = (
+            data(self.y),
+            data(self.y_new),
+            data(self.deviation),
+            data(self.driven),
+            data(self.weights),
+        )
+        k1, k2, k3, k4, k5 = (
+            data(self.k1),
+            data(self.k2),
+            data(self.k3),
+            data(self.k4),
+            data(self.k_end),
+        )
         for i in range(self.n):
             s[i] = y[i] + h * (SIXTH * (k1[i] + k4[i]) + THIRD * (k2[i] + k3[i]))
         for g in range(self.model.n_groups):

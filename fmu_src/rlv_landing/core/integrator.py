@@ -6,7 +6,20 @@ Step control and interpolants: Hairer, Norsett and Wanner, Solving Ordinary Diff
 from array import array
 from math import fabs, pow, sqrt
 
-from .layout import BODY, BODY_LOADS, HEAVE, HEAVE_RATE, INPUTS, INTEGRALS, LEG, LOADS, SX, SZ, TILT, TILT_RATE
+from .layout import (
+    BODY,
+    BODY_LOADS,
+    HEAVE,
+    HEAVE_RATE,
+    INPUTS,
+    INTEGRALS,
+    LEG,
+    LOADS,
+    SX,
+    SZ,
+    TILT,
+    TILT_RATE,
+)
 from .model import Model  # noqa: F401  (the compiled core needs the type)
 from .outputs import BODY_OUTPUTS, ENERGY_OUTPUTS, LEG_OUTPUTS, STATUS_OUTPUTS, outputs
 from .pointer import data, nogil
@@ -71,8 +84,12 @@ class Solver:
         dt = t - self.t_input
         for i in range(INPUTS):
             self.u_now[i] = self.u[i] + self.u_rate[i] * dt
-        self.u_now[HEAVE] = self.u[HEAVE] + (self.u[HEAVE_RATE] + 0.5 * self.u_rate[HEAVE_RATE] * dt) * dt
-        self.u_now[TILT] = self.u[TILT] + (self.u[TILT_RATE] + 0.5 * self.u_rate[TILT_RATE] * dt) * dt
+        self.u_now[HEAVE] = (
+            self.u[HEAVE] + (self.u[HEAVE_RATE] + 0.5 * self.u_rate[HEAVE_RATE] * dt) * dt
+        )
+        self.u_now[TILT] = (
+            self.u[TILT] + (self.u[TILT_RATE] + 0.5 * self.u_rate[TILT_RATE] * dt) * dt
+        )
 
     def derivatives(self, t, y, dy):
         """Write dy/dt at time `t` [s] and state `y` to `dy`, for other solvers."""
@@ -109,7 +126,13 @@ class Solver:
 
     def error(self):
         """Error of the step just computed, in units of the tolerance (root mean square over the state without the energy integrals)."""
-        y, end, scale, relative, deviation = data(self.y), data(self.y_new), data(self.scale), data(self.relative), data(self.deviation)
+        y, end, scale, relative, deviation = (
+            data(self.y),
+            data(self.y_new),
+            data(self.scale),
+            data(self.relative),
+            data(self.deviation),
+        )
         total = 0.0
         m = self.n - INTEGRALS
         for i in range(m):
@@ -129,7 +152,13 @@ class Solver:
     def accept(self, h):
         """Make the step just computed the last one: keep its interpolant, move on."""
         n = self.n
-        d, y, end, k1, k_end = data(self.dense), data(self.y), data(self.y_new), data(self.k1), data(self.k_end)
+        d, y, end, k1, k_end = (
+            data(self.dense),
+            data(self.y),
+            data(self.y_new),
+            data(self.k1),
+            data(self.k_end),
+        )
         for i in range(n):
             change = end[i] - y[i]
             bend = h * k1[i] - change
@@ -187,7 +216,9 @@ class Solver:
         a = (t - self.t_old) / span if span > 0.0 else 0.0
         b = 1.0 - a
         for i in range(n):
-            y[i] = d[i] + a * (d[n + i] + b * (d[2 * n + i] + a * (d[3 * n + i] + b * d[4 * n + i])))
+            y[i] = d[i] + a * (
+                d[n + i] + b * (d[2 * n + i] + a * (d[3 * n + i] + b * d[4 * n + i]))
+            )
 
     def interpolate(self, t, y):
         """Write the state at time `t` [s], inside the last internal step, to `y`."""
@@ -196,7 +227,16 @@ class Solver:
     def outputs_at(self, t, y, out):
         """Write the outputs at time `t` [s] and state `y` to `out`; uses and spoils the stage arrays."""
         self.move_inputs(t)
-        outputs(data(y), data(self.u_now), self.model, data(self.k2), data(self.w), self.energy_start, data(out), 0)
+        outputs(
+            data(y),
+            data(self.u_now),
+            self.model,
+            data(self.k2),
+            data(self.w),
+            self.energy_start,
+            data(out),
+            0,
+        )
 
     def fill(self, start, every, first, last, rows):
         """What `record` does, for the kernels."""
@@ -207,7 +247,16 @@ class Solver:
                 return k
             self.state_at(t, y)
             self.move_inputs(t)
-            outputs(y, data(self.u_now), self.model, data(self.k2), data(self.w), self.energy_start, rows, k * self.row)
+            outputs(
+                y,
+                data(self.u_now),
+                self.model,
+                data(self.k2),
+                data(self.w),
+                self.energy_start,
+                rows,
+                k * self.row,
+            )
         return last
 
     def record(self, start, every, first, last, rows):

@@ -14,7 +14,17 @@ R, H, VR, VH, P1, P2, SX, SZ = 0, 1, 2, 3, 4, 5, 6, 7
 LEG = 8
 
 # energy integrals, behind the last leg group
-E_ORIFICE, E_SEAL, E_STOP, E_AUXILIARY, E_CONTACT, E_FRICTION, W_EXTERNAL, W_GROUND, W_TRANSVERSE = 0, 1, 2, 3, 4, 5, 6, 7, 8
+(
+    E_ORIFICE,
+    E_SEAL,
+    E_STOP,
+    E_AUXILIARY,
+    E_CONTACT,
+    E_FRICTION,
+    W_EXTERNAL,
+    W_GROUND,
+    W_TRANSVERSE,
+) = 0, 1, 2, 3, 4, 5, 6, 7, 8
 INTEGRALS = 9
 
 # inputs: load on the body at the CG, motion of the ground
@@ -28,7 +38,15 @@ L_CONTACT_X, L_CONTACT_Y, L_CONTACT_Z = 10, 11, 12
 L_RADIAL, L_VERTICAL, L_TANGENTIAL = 13, 14, 15
 L_BODY_X, L_BODY_Y, L_BODY_MOMENT = 16, 17, 18
 L_DP1, L_DP2, L_DSX, L_DSZ = 19, 20, 21, 22
-L_ORIFICE, L_SEAL, L_STOP, L_DISSIPATED_AUX, L_DISSIPATED_CONTACT, L_FRICTION, L_GROUND = 23, 24, 25, 26, 27, 28, 29
+L_ORIFICE, L_SEAL, L_STOP, L_DISSIPATED_AUX, L_DISSIPATED_CONTACT, L_FRICTION, L_GROUND = (
+    23,
+    24,
+    25,
+    26,
+    27,
+    28,
+    29,
+)
 L_DECAY1, L_DECAY2 = 30, 31
 LOADS = 32
 

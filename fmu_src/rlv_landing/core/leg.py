@@ -81,7 +81,14 @@ def ground_frame(x, y, z_rate, vx, vy, sin_a, cos_a, u):
     gy = u[HEAVE_RATE] - u[TILT_RATE] * x
     rx = vx - gx
     ry = vy - gy
-    return -(x * sin_a + yo * cos_a), -(rx * sin_a + ry * cos_a), rx * cos_a - ry * sin_a, z_rate, gx, gy
+    return (
+        -(x * sin_a + yo * cos_a),
+        -(rx * sin_a + ry * cos_a),
+        rx * cos_a - ry * sin_a,
+        z_rate,
+        gx,
+        gy,
+    )
 
 
 def leg_loads(y, k, sin_g, cos_g, share_x, sin_p, cos_p, sin_a, cos_a, u, p, w, j):
@@ -94,7 +101,9 @@ def leg_loads(y, k, sin_g, cos_g, share_x, sin_p, cos_p, sin_a, cos_a, u, p, w, 
 
     s, v, er, eh = strut(r, h, vr, vh, p.La, p.Lb, p.Lm0)
     sa, va, ar, ah = strut(r, h, vr, vh, p.Lc, p.Ld, p.Ls0)
-    Fh, dP1, dP2, orifice_power, seal_power, stop_power, decay1, decay2 = damper(s, v, y[k + P1], y[k + P2], p)
+    Fh, dP1, dP2, orifice_power, seal_power, stop_power, decay1, decay2 = damper(
+        s, v, y[k + P1], y[k + P2], p
+    )
     Fa, auxiliary_power = auxiliary(sa, va, p)
 
     bx = r * cos_g
@@ -104,8 +113,12 @@ def leg_loads(y, k, sin_g, cos_g, share_x, sin_p, cos_p, sin_a, cos_a, u, p, w, 
     foot_y = y[Y] - bx * sin_p + h * cos_p
     foot_vx = y[VX] + vbx * cos_p + vby * sin_p
     foot_vy = y[VY] - vbx * sin_p + vby * cos_p
-    d, dv, slip_x, slip_z, gx, gy = ground_frame(foot_x, foot_y, vr * sin_g, foot_vx, foot_vy, sin_a, cos_a, u)
-    Fn, Fx, Fz, dsx, dsz, contact_power, friction_power = contact(d, dv, slip_x, slip_z, y[k + SX], y[k + SZ], share_x, p)
+    d, dv, slip_x, slip_z, gx, gy = ground_frame(
+        foot_x, foot_y, vr * sin_g, foot_vx, foot_vy, sin_a, cos_a, u
+    )
+    Fn, Fx, Fz, dsx, dsz, contact_power, friction_power = contact(
+        d, dv, slip_x, slip_z, y[k + SX], y[k + SZ], share_x, p
+    )
 
     Cx = Fx * cos_a + Fn * sin_a
     Cy = Fn * cos_a - Fx * sin_a

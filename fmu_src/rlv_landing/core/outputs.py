@@ -6,7 +6,14 @@ where the names are made.
 
 from math import fabs
 
-from .energy import auxiliary_energy, contact_energy, kinetic_energy, liquid_energy, potential_energy, stop_energy
+from .energy import (
+    auxiliary_energy,
+    contact_energy,
+    kinetic_energy,
+    liquid_energy,
+    potential_energy,
+    stop_energy,
+)
 from .fluid import fluid
 from .layout import (
     B_AY,

@@ -92,7 +92,14 @@ def body_acceleration(y, u, p, w, sin_p, cos_p):
         m12 += mass * h
         m21 += mass * yn
         m22 += mass * yn * h
-        bias = n * s * (w[j + L_TANGENTIAL] + p.m_d * s * (2.0 * rate * y[k + VH] - rate * rate * y[k + R] * p.cos_g[i]))
+        bias = (
+            n
+            * s
+            * (
+                w[j + L_TANGENTIAL]
+                + p.m_d * s * (2.0 * rate * y[k + VH] - rate * rate * y[k + R] * p.cos_g[i])
+            )
+        )
         force_x += n * w[j + L_BODY_X] - bias
         force_y += n * w[j + L_BODY_Y]
         moment += n * w[j + L_BODY_MOMENT] - bias * yn
@@ -133,7 +140,21 @@ def right_hand_side(y, u, p, dy, w):
     cos_a = cos(p.alpha + u[TILT])
     for i in range(p.n_groups):
         k = BODY + LEG * i
-        leg_loads(y, k, p.sin_g[i], p.cos_g[i], p.share_x[i], sin_p, cos_p, sin_a, cos_a, u, p, w, LOADS * i)
+        leg_loads(
+            y,
+            k,
+            p.sin_g[i],
+            p.cos_g[i],
+            p.share_x[i],
+            sin_p,
+            cos_p,
+            sin_a,
+            cos_a,
+            u,
+            p,
+            w,
+            LOADS * i,
+        )
     body_acceleration(y, u, p, w, sin_p, cos_p)
     j = LOADS * p.n_groups
     ax = w[j + B_AX]

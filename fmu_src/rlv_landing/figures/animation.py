@@ -1,4 +1,6 @@
-"""A landing as a moving picture: the vehicle beside its force and stroke curves, as the paper's Figs. 12 and 18 in motion."""
+"""A landing as a moving picture: the vehicle beside its force and stroke curves, as the paper's
+Figs. 12 and 18 in motion.
+"""
 
 from __future__ import annotations
 
@@ -25,13 +27,15 @@ ENDINGS = (".gif", ".mp4")
 MOST_FRAMES = 3000
 # matplotlib cuts a frame's milliseconds to a whole number, so 30 must not come out as 29.999
 BELOW = 1.0 - 1e-12
-# A GIF counts a frame's time in hundredths of a second; most viewers show one of less than two for ten.
+# A GIF counts a frame's time in hundredths of a second; most viewers show one of less than two for
+# ten.
 GIF_TICKS, GIF_LEAST = 100.0, 2
 
 
 @dataclass(frozen=True)
 class Film:
-    """How a landing is shown: `fps` frames a second, `slow_motion` times slower than it was, from `start` to `end` [s] (None: all of it).
+    """How a landing is shown: `fps` frames a second, `slow_motion` times slower than it was, from
+    `start` to `end` [s] (None: all of it).
 
     `view` is `side`, the symmetric plane, or `3d`; `width` the picture's [pixels].
     """
@@ -46,7 +50,9 @@ class Film:
 
 @dataclass(frozen=True)
 class Filmed:
-    """What was written: how many frames, and how many a second; a GIF's are rounded to what the format can say."""
+    """What was written: how many frames, and how many a second; a GIF's are rounded to what the
+    format can say.
+    """
 
     frames: int
     fps: float
@@ -60,12 +66,15 @@ def save_animation(
     film: Film = Film(),
     tell: Callable[[int, int], None] | None = None,
 ) -> Filmed:
-    """Write `history` of a vehicle with `parameters` to `path`, `.gif` or `.mp4` by its ending, whole or not at all.
+    """Write `history` of a vehicle with `parameters` to `path`, `.gif` or `.mp4` by its ending,
+    whole or not at all.
 
-    `tell` is called with the frames done and all frames. Every frame shows the sample nearest to its time; none is made up between.
+    `tell` is called with the frames done and all frames. Every frame shows the sample nearest to
+    its time; none is made up between.
 
     Raises:
-        LandingError: another ending, a number that cannot be, nothing lies between start and end, no ffmpeg, the disk refuses.
+        LandingError: another ending, a number that cannot be, nothing lies between start and end,
+            no ffmpeg, the disk refuses.
     """
     path = Path(path)
     if path.suffix not in ENDINGS:
@@ -79,10 +88,18 @@ def save_animation(
             _write(writer_class(fps=fps * BELOW), figure, unfinished, film.width / WIDTH, tell)
         unfinished.replace(path)
     except OSError as e:
-        raise LandingError(f"{path} cannot be written: {e.strerror or e}; make room, or name another file") from None
+        raise LandingError(
+            f"{path} cannot be written: {e.strerror or e}; make room, or name another file"
+        ) from None
     except CalledProcessError as e:
-        said = (e.stderr or b"").decode("utf-8", "replace").strip() if isinstance(e.stderr, bytes) else str(e.stderr or "")
-        raise LandingError(f"{path} cannot be written: ffmpeg ended with {e.returncode} {said[-300:]}; try a .gif") from None
+        said = (
+            (e.stderr or b"").decode("utf-8", "replace").strip()
+            if isinstance(e.stderr, bytes)
+            else str(e.stderr or "")
+        )
+        raise LandingError(
+            f"{path} cannot be written: ffmpeg ended with {e.returncode} {said[-300:]}; try a .gif"
+        ) from None
     finally:
         with suppress(OSError):
             unfinished.unlink()
@@ -90,7 +107,10 @@ def save_animation(
 
 
 def frame_rows(history: History, film: Film, fps: float) -> NDArray[np.intp]:
-    """The row of `history` that each frame shows. Raises LandingError: nothing lies there, or too many frames."""
+    """The row of `history` that each frame shows.
+
+    Raises LandingError: nothing lies there, or too many frames.
+    """
     time = history.time
     start = float(time[0]) if film.start is None else film.start
     end = float(time[-1]) if film.end is None else film.end
@@ -100,7 +120,9 @@ def frame_rows(history: History, film: Film, fps: float) -> NDArray[np.intp]:
         )
     count = int(np.floor((end - start) * film.slow_motion * fps + 1e-9)) + 1
     if not 2 <= count <= MOST_FRAMES:
-        raise LandingError(f"that makes {count} frames; 2 to {MOST_FRAMES} can be: change fps, slow motion, start or end")
+        raise LandingError(
+            f"that makes {count} frames; 2 to {MOST_FRAMES} can be: change fps, slow motion, start or end"
+        )
     wanted = start + np.arange(count) / (fps * film.slow_motion)
     right = np.clip(np.searchsorted(time, wanted), 1, len(time) - 1)
     return right - (wanted - time[right - 1] < time[right] - wanted)
@@ -113,7 +135,9 @@ def _frames_per_second(film: Film, ending: str) -> float:
         ("width", film.width, 320, 3840),
     ):
         if not low <= value <= high:
-            raise LandingError(f"{name} = {value:g} is outside [{low:g}, {high:g}]{' pixels' if name == 'width' else ''}")
+            raise LandingError(
+                f"{name} = {value:g} is outside [{low:g}, {high:g}]{' pixels' if name == 'width' else ''}"
+            )
     if ending != ".gif":
         return film.fps
     return GIF_TICKS / max(GIF_LEAST, round(GIF_TICKS / film.fps))
@@ -121,7 +145,9 @@ def _frames_per_second(film: Film, ending: str) -> float:
 
 @contextmanager
 def _ffmpeg(ending: str) -> Iterator[Any]:
-    """matplotlib's writer for `ending`; for a film, ffmpeg of the wheel imageio-ffmpeg, else that on the path."""
+    """matplotlib's writer for `ending`; for a film, ffmpeg of the wheel imageio-ffmpeg, else that
+    on the path.
+    """
     import matplotlib as mpl
     from matplotlib.animation import FFMpegWriter, PillowWriter
 
@@ -135,7 +161,9 @@ def _ffmpeg(ending: str) -> Iterator[Any]:
     except (ImportError, RuntimeError):
         program = shutil.which("ffmpeg")
     if program is None:
-        raise LandingError('mp4 needs ffmpeg; install it with pip install "rlv-landing[video]", or write a .gif')
+        raise LandingError(
+            'mp4 needs ffmpeg; install it with pip install "rlv-landing[video]", or write a .gif'
+        )
 
     with mpl.rc_context({"animation.ffmpeg_path": program, "animation.codec": "h264"}):
         yield FFMpegWriter
@@ -143,7 +171,9 @@ def _ffmpeg(ending: str) -> Iterator[Any]:
 
 @contextmanager
 def _signals_held() -> Iterator[None]:
-    """Signals that end the program wait meanwhile, and never reach the programs that are started here: ffmpeg ends with its input."""
+    """Signals that end the program wait meanwhile, and never reach the programs that are started
+    here: ffmpeg ends with its input.
+    """
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -154,7 +184,13 @@ def _signals_held() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _write(writer: Any, figure: MovingFigure, path: Path, dpi: float, tell: Callable[[int, int], None] | None) -> None:
+def _write(
+    writer: Any,
+    figure: MovingFigure,
+    path: Path,
+    dpi: float,
+    tell: Callable[[int, int], None] | None,
+) -> None:
     stopped: BaseException | None = None
     try:
         with ExitStack() as saving:

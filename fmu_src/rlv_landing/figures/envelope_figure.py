@@ -1,4 +1,6 @@
-"""The picture of an envelope: boundaries by family, every landing, and the critical condition along each boundary."""
+"""The picture of an envelope: boundaries by family, every landing, and the critical condition along
+each boundary.
+"""
 
 from __future__ import annotations
 
@@ -19,9 +21,13 @@ MARKERS = "osD^v<>Ph*X"
 
 
 def save_envelope(envelope: Envelope, path: str | Path) -> None:
-    """Write a PNG or SVG. A panel for each combination of the families' values but the first quantity's, which has the colours.
+    """Write a PNG or SVG.
 
-    Lines are boundaries, dots landings (filled: lost). Markers on a line say what is critical there, where it changes and halfway between.
+    A panel for each combination of the families' values but the first quantity's, which has the
+    colours.
+
+    Lines are boundaries, dots landings (filled: lost). Markers on a line say what is critical
+    there, where it changes and halfway between.
     """
     import matplotlib as mpl
     from matplotlib.figure import Figure
@@ -31,7 +37,11 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
     columns = min(len(panels), 3)
     rows = -(-len(panels) // columns)
     figure = Figure(figsize=(1.5 + 4.6 * columns, 1.6 + 4.2 * rows), layout="constrained")
-    conditions = list(dict.fromkeys(r.condition for f in envelope.families for line in f.lines for r in runs(line)))
+    conditions = list(
+        dict.fromkeys(
+            r.condition for f in envelope.families for line in f.lines for r in runs(line)
+        )
+    )
     markers = {condition: MARKERS[k % len(MARKERS)] for k, condition in enumerate(conditions)}
     axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).flatten()
     named: dict[str, Line2D] = {}
@@ -50,18 +60,29 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
         ax.set_ylabel(_label(envelope.study.y.quantity))
     for condition, marker in markers.items():
         named[condition] = Line2D([], [], color="#666666", marker=marker, linestyle="none")
-    figure.legend(named.values(), named.keys(), loc="outside lower center", frameon=False, fontsize="small", ncols=2)
+    figure.legend(
+        named.values(),
+        named.keys(),
+        loc="outside lower center",
+        frameon=False,
+        fontsize="small",
+        ncols=2,
+    )
     told = f"lost: {envelope.study.criterion}; {envelope.landings} landings (a uniform grid: {envelope.uniform})"
     figure.suptitle(told, fontsize="medium", x=0.01, ha="left")
     with mpl.rc_context({"svg.hashsalt": "envelope", "svg.fonttype": "none"}):
-        figure.savefig(path, dpi=110, metadata={"Date": None} if Path(path).suffix == ".svg" else None)
+        figure.savefig(
+            path, dpi=110, metadata={"Date": None} if Path(path).suffix == ".svg" else None
+        )
 
 
 def _panels(envelope: Envelope) -> dict[str, list[Family]]:
     panels: dict[str, list[Family]] = {}
     for family in envelope.families:
         rest = list(family.values.items())[1:]
-        panels.setdefault(", ".join(f"{n} = {value_text(n, v)}" for n, v in rest), []).append(family)
+        panels.setdefault(", ".join(f"{n} = {value_text(n, v)}" for n, v in rest), []).append(
+            family
+        )
     return panels
 
 
@@ -72,19 +93,43 @@ def _label(q: Quantity) -> str:
 
 def _name(family: Family) -> str:
     """What the legend calls a family: its first quantity's value."""
-    return next((f"{name} = {value_text(name, value)}" for name, value in family.values.items()), "boundary")
+    return next(
+        (f"{name} = {value_text(name, value)}" for name, value in family.values.items()), "boundary"
+    )
 
 
-def _draw(ax: Axes, envelope: Envelope, family: Family, colour: str, markers: dict[str, str]) -> None:
+def _draw(
+    ax: Axes, envelope: Envelope, family: Family, colour: str, markers: dict[str, str]
+) -> None:
     (_, sx), (_, sy) = shown(envelope.study.x.quantity), shown(envelope.study.y.quantity)
     for lost in (False, True):
-        points = [(x / sx, y / sy) for x, y, landed in family.landings if landed.lost(envelope.study.criterion) == lost]
+        points = [
+            (x / sx, y / sy)
+            for x, y, landed in family.landings
+            if landed.lost(envelope.study.criterion) == lost
+        ]
         if points:
             xs, ys = map(list, zip(*points))
-            ax.scatter(xs, ys, s=5, facecolors=colour if lost else "none", edgecolors=colour, linewidths=0.4, alpha=0.35)
+            ax.scatter(
+                xs,
+                ys,
+                s=5,
+                facecolors=colour if lost else "none",
+                edgecolors=colour,
+                linewidths=0.4,
+                alpha=0.35,
+            )
     for line in family.lines:
         ax.plot([c.x / sx for c in line], [c.y / sy for c in line], color=colour, linewidth=1.6)
         for run in runs(line):
             marked = (run.points[0], run.points[len(run.points) // 2])
             xs, ys = [c.x / sx for c in marked], [c.y / sy for c in marked]
-            ax.plot(xs, ys, markers[run.condition], color=colour, markeredgecolor="white", markersize=7, linestyle="none")
+            ax.plot(
+                xs,
+                ys,
+                markers[run.condition],
+                color=colour,
+                markeredgecolor="white",
+                markersize=7,
+                linestyle="none",
+            )

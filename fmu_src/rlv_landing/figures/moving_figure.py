@@ -1,4 +1,6 @@
-"""A figure that shows one instant of a landing after another: the vehicle, and its curves with a mark that moves."""
+"""A figure that shows one instant of a landing after another: the vehicle, and its curves with a
+mark that moves.
+"""
 
 from __future__ import annotations
 
@@ -17,14 +19,27 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT = 9.6, 5.28
 INK, FAINT, GROUND = "#222222", "#999999", "#555555"
-CURVES = (("main_strut.force", 1e-3, "main strut force [kN]"), ("main_strut.stroke", 1e3, "main strut stroke [mm]"))
+CURVES = (
+    ("main_strut.force", 1e-3, "main strut force [kN]"),
+    ("main_strut.stroke", 1e3, "main strut stroke [mm]"),
+)
 WIDTHS = {"hull": 0.6, "outline": 1.4, "main": 2.2, "auxiliary": 1.2}
 
 
 class MovingFigure:
-    """The figure of a landing, WIDTH inches wide, that `show(i)` sets to the i-th of `rows`. `view` is `side` or `3d`."""
+    """The figure of a landing, WIDTH inches wide, that `show(i)` sets to the i-th of `rows`.
 
-    def __init__(self, history: History, parameters: Parameters, rows: NDArray[np.intp], title: str, view: str) -> None:
+    `view` is `side` or `3d`.
+    """
+
+    def __init__(
+        self,
+        history: History,
+        parameters: Parameters,
+        rows: NDArray[np.intp],
+        title: str,
+        view: str,
+    ) -> None:
         from matplotlib.figure import Figure
 
         self.figure = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
@@ -36,8 +51,13 @@ class MovingFigure:
         self._colours = {leg: colour for g, colour in zip(groups, COLOURS) for leg, _ in g.legs}
         grid = self.figure.add_gridspec(len(CURVES), 2, width_ratios=(1.0, 1.15))
         # Any: matplotlib's types do not tell axes in space from others
-        self._vehicle: Any = self.figure.add_subplot(grid[:, 0], **({"projection": "3d", "computed_zorder": False} if self._solid else {}))
-        self._drawn = {part: [self._line(part, i) for i in range(self._lines[part].shape[1])] for part in self._lines}
+        self._vehicle: Any = self.figure.add_subplot(
+            grid[:, 0], **({"projection": "3d", "computed_zorder": False} if self._solid else {})
+        )
+        self._drawn = {
+            part: [self._line(part, i) for i in range(self._lines[part].shape[1])]
+            for part in self._lines
+        }
         self._dress_vehicle(parameters, title)
         first = [min(leg for leg, _ in g.legs) for g in groups]
         axes = [self.figure.add_subplot(grid[i, 1]) for i in range(len(CURVES))]
@@ -73,7 +93,12 @@ class MovingFigure:
         else:
             colour = self._colours[LEGS[i]] if part in ("main", "auxiliary") else INK
             visible = self._solid or part != "hull"
-            style = {"linewidth": WIDTHS[part], "color": colour, "solid_capstyle": "round", "visible": visible}
+            style = {
+                "linewidth": WIDTHS[part],
+                "color": colour,
+                "solid_capstyle": "round",
+                "visible": visible,
+            }
         (line,) = self._vehicle.plot(*([(), (), ()] if self._solid else [(), ()]), **style)
         return line
 
@@ -88,8 +113,24 @@ class MovingFigure:
         if self._solid:
             across = max(-low[2], high[2])
             x, y = np.meshgrid(ends, (-across, across))
-            ax.plot_surface(x, y, ground_height(parameters, x), color="#d9dde0", alpha=0.6, shade=False, linewidth=0, zorder=0)
-            ax.set(xlim=ends, ylim=(-across, across), zlim=(low[1], high[1]), xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
+            ax.plot_surface(
+                x,
+                y,
+                ground_height(parameters, x),
+                color="#d9dde0",
+                alpha=0.6,
+                shade=False,
+                linewidth=0,
+                zorder=0,
+            )
+            ax.set(
+                xlim=ends,
+                ylim=(-across, across),
+                zlim=(low[1], high[1]),
+                xlabel="x [m]",
+                ylabel="y [m]",
+                zlabel="z [m]",
+            )
             ax.set_box_aspect((ends[1] - ends[0], 2.0 * across, high[1] - low[1]), zoom=1.1)
             ax.view_init(elev=14.0, azim=-62.0)
             ax.locator_params(nbins=4)
@@ -103,14 +144,26 @@ class MovingFigure:
         self._said = ax.set_title("t", loc="left", fontsize=10, family="monospace")
         self.figure.suptitle(title, fontsize=11)
 
-    def _curve(self, ax: Any, legs: list[int], name: str, factor: float, label: str) -> tuple[Any, list[tuple[Any, Any]]]:
-        """Draw a quantity of a leg of each touchdown; the bar and the dots that move, the dots with the values they ride on."""
+    def _curve(
+        self, ax: Any, legs: list[int], name: str, factor: float, label: str
+    ) -> tuple[Any, list[tuple[Any, Any]]]:
+        """Draw a quantity of a leg of each touchdown; the bar and the dots that move, the dots with
+        the values they ride on.
+        """
         span = slice(self._rows[0], self._rows[-1] + 1)
         dots = []
         for leg in legs:
             values = self._history[f"leg[{leg}].{name}"] * factor
-            ax.plot(self._history.time[span], values[span], color=self._colours[leg], linewidth=1.2, label=self._legs_like(leg))
-            dots.append((ax.plot((), (), "o", color=self._colours[leg], markersize=6, zorder=5)[0], values))
+            ax.plot(
+                self._history.time[span],
+                values[span],
+                color=self._colours[leg],
+                linewidth=1.2,
+                label=self._legs_like(leg),
+            )
+            dots.append(
+                (ax.plot((), (), "o", color=self._colours[leg], markersize=6, zorder=5)[0], values)
+            )
         bar = ax.axvline(self._history.time[span.start], color=INK, linewidth=1.0, zorder=4)
         ax.axhline(0.0, color=FAINT, linewidth=0.6)
         ax.set_ylabel(label)
@@ -120,4 +173,6 @@ class MovingFigure:
         return bar, dots
 
     def _legs_like(self, leg: int) -> str:
-        return "leg " + "/".join(str(other) for other in LEGS if self._colours[other] == self._colours[leg])
+        return "leg " + "/".join(
+            str(other) for other in LEGS if self._colours[other] == self._colours[leg]
+        )

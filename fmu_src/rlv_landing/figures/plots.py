@@ -20,7 +20,8 @@ COLOURS = ("#0b6e99", "#c8553d", "#5b8c3e")
 
 
 def save_overview(history: History, path: str | Path, title: str) -> None:
-    """Write a PNG of main strut forces, strokes, auxiliary strut forces and the top's acceleration over time.
+    """Write a PNG of main strut forces, strokes, auxiliary strut forces and the top's acceleration
+    over time.
 
     Legs that are mirror images share a curve. Dotted lines mark each leg's first contact.
     """
@@ -32,15 +33,31 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
     for legs, colour in zip(groups, COLOURS):
         leg = legs[0]
         label = "leg " + "/".join(map(str, legs))
-        axes[0].plot(history.time, history[f"leg[{leg}].main_strut.force"] / 1e3, color=colour, label=label)
-        axes[1].plot(history.time, history[f"leg[{leg}].main_strut.stroke"] * 1e3, color=colour, label=label)
-        axes[2].plot(history.time, history[f"leg[{leg}].auxiliary_strut.force"] / 1e3, color=colour, label=label)
+        axes[0].plot(
+            history.time, history[f"leg[{leg}].main_strut.force"] / 1e3, color=colour, label=label
+        )
+        axes[1].plot(
+            history.time, history[f"leg[{leg}].main_strut.stroke"] * 1e3, color=colour, label=label
+        )
+        axes[2].plot(
+            history.time,
+            history[f"leg[{leg}].auxiliary_strut.force"] / 1e3,
+            color=colour,
+            label=label,
+        )
         touching = np.flatnonzero(history[f"leg[{leg}].contact.force_y"] > 0.0)
         if len(touching):
             for ax in axes:
                 ax.axvline(history.time[touching[0]], color=colour, linestyle=":", linewidth=0.8)
-    axes[3].plot(history.time, history["body.top_axial_acceleration"], color="#333333", linewidth=1.0)
-    labels = ("main strut force [kN]", "main strut stroke [mm]", "auxiliary strut force [kN]", "axial acceleration\nat the top [m/s²]")
+    axes[3].plot(
+        history.time, history["body.top_axial_acceleration"], color="#333333", linewidth=1.0
+    )
+    labels = (
+        "main strut force [kN]",
+        "main strut stroke [mm]",
+        "auxiliary strut force [kN]",
+        "axial acceleration\nat the top [m/s²]",
+    )
     for ax, label in zip(axes, labels):
         ax.set_ylabel(label)
         ax.axhline(0.0, color="#999999", linewidth=0.6)
@@ -48,17 +65,25 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
         ax.margins(x=0.0)
     axes[0].legend(loc="lower right", frameon=False, ncols=len(groups))
     axes[0].set_title(title, loc="left")
-    axes[-1].set_xlabel("time [s]   (dotted: first contact; forces negative in compression, strokes positive)")
+    axes[-1].set_xlabel(
+        "time [s]   (dotted: first contact; forces negative in compression, strokes positive)"
+    )
     figure.savefig(path, dpi=120)
 
 
 def inline_svg(figure: Figure, prefix: str, label: str, said: dict[str, str] | None = None) -> str:
-    """A figure as SVG to stand in a page: no links, ids of its own by `prefix`, text as text, and what each mark says as its tooltip."""
+    """A figure as SVG to stand in a page: no links, ids of its own by `prefix`, text as text, and
+    what each mark says as its tooltip.
+    """
     import matplotlib as mpl
 
     out = io.StringIO()
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": prefix}):
-        figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+        figure.savefig(
+            out,
+            format="svg",
+            metadata={"Date": None, "Creator": None, "Format": None, "Type": None},
+        )
     svg = out.getvalue()
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.S)

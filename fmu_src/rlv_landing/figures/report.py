@@ -1,4 +1,7 @@
-"""The validation as one self-contained HTML page: tables, and the counterparts of the paper's Figs. 7-19 as inline SVG."""
+"""The validation as one self-contained HTML page: tables, and the counterparts of the paper's Figs.
+
+7-19 as inline SVG.
+"""
 
 from __future__ import annotations
 
@@ -30,18 +33,23 @@ from .report_movement import movement_figure
 TEMPLATE = Path(__file__).with_name("report.html.j2")
 
 
-def write_report(found: Validation, parameters: Parameters, path: Path, label: str, phase: str = "zero") -> None:
+def write_report(
+    found: Validation, parameters: Parameters, path: Path, label: str, phase: str = "zero"
+) -> None:
     """Write the page to `path`. Raises LandingError where it cannot be written."""
     write_whole(render_report(found, parameters, label, phase), path)
 
 
 def write_whole(text: str, path: Path) -> None:
-    """Write `text` to `path` by a temporary name beside it, so that the file is there whole or as it was.
+    """Write `text` to `path` by a temporary name beside it, so that the file is there whole or as
+    it was.
 
     Raises LandingError where it cannot be written.
     """
     try:
-        handle, name = tempfile.mkstemp(dir=path.resolve().parent, prefix=f".{path.name}.", suffix=".part")
+        handle, name = tempfile.mkstemp(
+            dir=path.resolve().parent, prefix=f".{path.name}.", suffix=".part"
+        )
         try:
             with os.fdopen(handle, "w", encoding="utf-8") as f:
                 f.write(text)
@@ -56,11 +64,15 @@ def write_whole(text: str, path: Path) -> None:
         raise LandingError(f"{path} cannot be written: {e.strerror or e}") from None
 
 
-def render_report(found: Validation, parameters: Parameters, label: str, phase: str = "zero") -> str:
+def render_report(
+    found: Validation, parameters: Parameters, label: str, phase: str = "zero"
+) -> str:
     """The page as a text."""
     from jinja2 import Environment, StrictUndefined
 
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
     return environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
         label=label,
         version=__version__,
@@ -74,10 +86,13 @@ def render_report(found: Validation, parameters: Parameters, label: str, phase: 
         work=_work_rows(found),
         curves=found.curves,
         figures={mode: _mode_figures(found, mode) for mode in found.modes},
-        measures=inline_svg(measures_figure(found), "measures", "Energies and efficiency of every damper"),
+        measures=inline_svg(
+            measures_figure(found), "measures", "Energies and efficiency of every damper"
+        ),
         errors=inline_svg(error_figure(found), "errors", "Error of every printed scalar"),
         parameters=[
-            {**r, "value": r["value"] if isinstance(r["value"], str) else f"{r['value']:.6g}"} for r in parameter_records(parameters)
+            {**r, "value": r["value"] if isinstance(r["value"], str) else f"{r['value']:.6g}"}
+            for r in parameter_records(parameters)
         ],
     )
 
@@ -87,13 +102,26 @@ def _mode_figures(found: Validation, mode: str) -> list[dict[str, str]]:
     drawn = (
         ("Main strut forces", "negative in compression", curve_figure(found, mode, FORCE)),
         ("Main strut strokes", "positive in compression", curve_figure(found, mode, STROKE)),
-        ("Force over stroke of the dampers", "shaded: absorbed in the first compression; dotted: Fmax Smax", loop_figure(found, mode)),
+        (
+            "Force over stroke of the dampers",
+            "shaded: absorbed in the first compression; dotted: Fmax Smax",
+            loop_figure(found, mode),
+        ),
         ("Auxiliary strut forces", "tension positive", curve_figure(found, mode, AUXILIARY)),
-        ("Axial acceleration at the top", "-g in free fall, 0 at rest", acceleration_figure(found, mode)),
+        (
+            "Axial acceleration at the top",
+            "-g in free fall, 0 at rest",
+            acceleration_figure(found, mode),
+        ),
         ("Movement", "wireframe in the symmetric plane", movement_figure(found, mode)),
     )
     return [
-        {"title": title, "note": note, "number": str(n), "svg": inline_svg(figure, f"fig{n}", f"{title}, {mode}", said)}
+        {
+            "title": title,
+            "note": note,
+            "number": str(n),
+            "svg": inline_svg(figure, f"fig{n}", f"{title}, {mode}", said),
+        }
         for n, (title, note, (figure, said)) in zip(numbers, drawn)
     ]
 
@@ -110,7 +138,8 @@ def _scalar_rows(found: Validation) -> list[dict[str, Any]]:
                 "what": f"{s.quantity.replace('_', ' ')}{f', leg {s.leg}' if s.leg else ''}: {s.event}",
                 "unit": s.unit,
                 "simulation": number(s.simulation, s.unit),
-                "tests": " / ".join(number(v, s.unit) for v in (s.test_a, s.test_b) if v == v) or "-",
+                "tests": " / ".join(number(v, s.unit) for v in (s.test_a, s.test_b) if v == v)
+                or "-",
                 "ours": number(c.ours, s.unit),
                 "error": percent(c.error) + mark,
                 "grade": _grade(c.error),
@@ -139,8 +168,10 @@ def _work_rows(found: Validation) -> list[dict[str, str]]:
                     "leg": str(leg),
                     "force": f"{w.force_max / 1e3:.2f}",
                     "stroke": f"{w.stroke_max * 1e3:.2f}",
-                    "absorbed": f"{w.absorbed:.1f}" + (f" ({off[0]:.1f} % off the measured)" if off else ""),
-                    "dissipated": f"{w.dissipated:.1f}" + (f" ({off[1]:.1f} % off the measured)" if off else ""),
+                    "absorbed": f"{w.absorbed:.1f}"
+                    + (f" ({off[0]:.1f} % off the measured)" if off else ""),
+                    "dissipated": f"{w.dissipated:.1f}"
+                    + (f" ({off[1]:.1f} % off the measured)" if off else ""),
                     "efficiency": f"{w.efficiency:.3f}",
                 }
             )

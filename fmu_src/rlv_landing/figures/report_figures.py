@@ -1,4 +1,7 @@
-"""The counterparts of the paper's Figs. 7-19, drawn from a validation; printed scalars are marked on the curves."""
+"""The counterparts of the paper's Figs.
+
+7-19, drawn from a validation; printed scalars are marked on the curves.
+"""
 
 from __future__ import annotations
 
@@ -21,13 +24,16 @@ if TYPE_CHECKING:
 
 PAPER, TEST, MEASURED = "#111111", "#b5379a", "#777777"
 ORDINALS = ("first", "second", "third")
-# each mode's figure numbers in the paper: force, stroke, loop, auxiliary force, acceleration, movement
+# each mode's figure numbers in the paper: force, stroke, loop, auxiliary force, acceleration,
+# movement
 NUMBERS = {"2-2": (7, 8, 9, 10, 11, 12), "1-2-1": (13, 14, 15, 16, 17, 18)}
 
 
 @dataclass(frozen=True)
 class Curve:
-    """A quantity over time: the paper's name of it, our column (with the leg's number to be put in), label, factor from SI."""
+    """A quantity over time: the paper's name of it, our column (with the leg's number to be put
+    in), label, factor from SI.
+    """
 
     quantity: str
     column: str
@@ -37,15 +43,24 @@ class Curve:
 
 FORCE = Curve("main_strut_force", "leg[{}].main_strut.force", "main strut force [kN]", 1e-3)
 STROKE = Curve("main_strut_stroke", "leg[{}].main_strut.stroke", "main strut stroke [mm]", 1e3)
-AUXILIARY = Curve("aux_strut_force", "leg[{}].auxiliary_strut.force", "auxiliary strut force [kN]", 1e-3)
-ACCELERATION = Curve("axial_acceleration_top", "body.top_axial_acceleration", "axial acceleration\nat the top [m/s²]", 1.0)
+AUXILIARY = Curve(
+    "aux_strut_force", "leg[{}].auxiliary_strut.force", "auxiliary strut force [kN]", 1e-3
+)
+ACCELERATION = Curve(
+    "axial_acceleration_top",
+    "body.top_axial_acceleration",
+    "axial acceleration\nat the top [m/s²]",
+    1.0,
+)
 PITCH = Curve("pose", "body.pitch", "pitch [deg]", 57.29577951308232)
 
 
 @dataclass(frozen=True)
 class Mark:
-    """A printed number on a curve: the paper's id, what it says, where its simulation and tests lie (time [s], value in the scalar's
-    unit), and the marker: a circle for a value (at the printed time, else at ours), a bar for a time alone (on our curve)."""
+    """A printed number on a curve: the paper's id, what it says, where its simulation and tests lie
+    (time [s], value in the scalar's unit), and the marker: a circle for a value (at the printed
+    time, else at ours), a bar for a time alone (on our curve).
+    """
 
     id: str
     text: str
@@ -59,22 +74,42 @@ def groups(mode: str) -> list[tuple[int, ...]]:
     return [tuple(sorted(leg for leg, _ in g.legs)) for g in MODES[mode]]
 
 
-def marks(curve: Curve, legs: Sequence[int], history: History, comparisons: Sequence[Comparison]) -> Iterator[Mark]:
+def marks(
+    curve: Curve, legs: Sequence[int], history: History, comparisons: Sequence[Comparison]
+) -> Iterator[Mark]:
     """The printed scalars of a curve of `legs` (0 for the body's)."""
-    own = {c.scalar.id: c for c in comparisons if c.scalar.quantity == curve.quantity and (c.scalar.leg in legs or c.scalar.leg == 0)}
+    own = {
+        c.scalar.id: c
+        for c in comparisons
+        if c.scalar.quantity == curve.quantity and (c.scalar.leg in legs or c.scalar.leg == 0)
+    }
     column = history[curve.column.format(legs[0])] * curve.factor
     for name, c in own.items():
         s = c.scalar
-        text = f"{name}: {s.event}: simulation {s.simulation:g} {s.unit}, ours {c.ours:.4g} {s.unit}"
+        text = (
+            f"{name}: {s.event}: simulation {s.simulation:g} {s.unit}, ours {c.ours:.4g} {s.unit}"
+        )
         if s.unit == "s":
             if name.removesuffix("-t") != name and name.removesuffix("-t") in own:
                 continue
-            at = float(np.interp(c.ours if np.isfinite(c.ours) else s.simulation, history.time, column))
-            yield Mark(name, text, (s.simulation, at), tuple((v, at) for v in (s.test_a, s.test_b) if v == v), "|")
+            at = float(
+                np.interp(c.ours if np.isfinite(c.ours) else s.simulation, history.time, column)
+            )
+            yield Mark(
+                name,
+                text,
+                (s.simulation, at),
+                tuple((v, at) for v in (s.test_a, s.test_b) if v == v),
+                "|",
+            )
             continue
         factor = {"N": 1e-3}.get(s.unit, 1.0)
         timed = own.get(f"{name}-t")
-        ours = float(history.time[np.argmin(np.abs(column - c.ours * factor))]) if np.isfinite(c.ours) else 0.0
+        ours = (
+            float(history.time[np.argmin(np.abs(column - c.ours * factor))])
+            if np.isfinite(c.ours)
+            else 0.0
+        )
         if "settled" in s.event:
             ours = float(history.time[-1]) - 0.1
         when = timed.scalar.simulation if timed else ours
@@ -111,7 +146,13 @@ def curve_figure(found: Validation, mode: str, curve: Curve) -> tuple[Figure, di
     figure, axes = _panels(len(groups(mode)))
     history, measured, said = found.histories[mode], found.measured.get(mode), {}
     for i, (ax, legs) in enumerate(zip(axes, groups(mode))):
-        ax.plot(history.time, history[curve.column.format(legs[0])] * curve.factor, color=COLOURS[i], linewidth=1.4, label="this landing")
+        ax.plot(
+            history.time,
+            history[curve.column.format(legs[0])] * curve.factor,
+            color=COLOURS[i],
+            linewidth=1.4,
+            label="this landing",
+        )
         _draw_measured(ax, measured, [curve.column.format(leg) for leg in legs], curve.factor)
         said.update(draw_marks(ax, marks(curve, legs, history, found.comparisons[mode])))
         _dress(ax, _title(i, legs), "time [s]", curve.label if i == 0 else "")
@@ -120,16 +161,27 @@ def curve_figure(found: Validation, mode: str, curve: Curve) -> tuple[Figure, di
 
 
 def loop_figure(found: Validation, mode: str) -> tuple[Figure, dict[str, str]]:
-    """Damper force over damper stroke, as Figs. 9 and 15; compression positive, the shaded area is what the first compression absorbed."""
+    """Damper force over damper stroke, as Figs.
+
+    9 and 15; compression positive, the shaded area is what the first compression absorbed.
+    """
     figure, axes = _panels(len(groups(mode)))
     history, measured = found.sensed[mode], found.measured.get(mode)
     for i, (ax, legs) in enumerate(zip(axes, groups(mode))):
         stroke, force = (history[f"leg[{legs[0]}].main_strut.{w}"] for w in ("stroke", "force"))
-        ax.plot(1e3 * stroke, -1e-3 * force, color=COLOURS[i], linewidth=1.2, label="this landing, through the sensor chain")
+        ax.plot(
+            1e3 * stroke,
+            -1e-3 * force,
+            color=COLOURS[i],
+            linewidth=1.2,
+            label="this landing, through the sensor chain",
+        )
         work = found.work[mode].get(legs[0])
         if work is not None:
             part = (history.time >= work.start) & (history.time <= work.top)
-            ax.fill_between(1e3 * stroke[part], -1e-3 * force[part], color=COLOURS[i], alpha=0.15, linewidth=0)
+            ax.fill_between(
+                1e3 * stroke[part], -1e-3 * force[part], color=COLOURS[i], alpha=0.15, linewidth=0
+            )
             ax.plot(
                 [0, 1e3 * work.stroke_max, 1e3 * work.stroke_max],
                 [1e-3 * work.force_max] * 2 + [0],
@@ -137,11 +189,24 @@ def loop_figure(found: Validation, mode: str) -> tuple[Figure, dict[str, str]]:
                 linewidth=0.8,
                 linestyle=":",
             )
-            ax.text(0.97, 0.03, f"efficiency {work.efficiency:.2f}", transform=ax.transAxes, ha="right", fontsize=9)
+            ax.text(
+                0.97,
+                0.03,
+                f"efficiency {work.efficiency:.2f}",
+                transform=ax.transAxes,
+                ha="right",
+                fontsize=9,
+            )
         for leg in legs:
             names = [f"leg[{leg}].main_strut.{w}" for w in ("stroke", "force")]
             if measured is not None and all(n in measured for n in names):
-                ax.plot(1e3 * measured[names[0]], -1e-3 * measured[names[1]], color=MEASURED, linewidth=0.9, linestyle="--")
+                ax.plot(
+                    1e3 * measured[names[0]],
+                    -1e-3 * measured[names[1]],
+                    color=MEASURED,
+                    linewidth=0.9,
+                    linestyle="--",
+                )
         _dress(ax, _title(i, legs), "stroke [mm]", "compressive force [kN]" if i == 0 else "")
     return figure, {}
 
@@ -150,8 +215,20 @@ def acceleration_figure(found: Validation, mode: str) -> tuple[Figure, dict[str,
     """The axial acceleration at the top, raw and through the sensor chain, as Figs. 11 and 17."""
     figure, (ax,) = _panels(1)
     raw, sensed, measured = found.histories[mode], found.sensed[mode], found.measured.get(mode)
-    ax.plot(raw.time, raw[ACCELERATION.column], color="#9db8c6", linewidth=0.9, label="this landing, raw")
-    ax.plot(sensed.time, sensed[ACCELERATION.column], color=COLOURS[0], linewidth=1.5, label="through the sensor chain (100 Hz)")
+    ax.plot(
+        raw.time,
+        raw[ACCELERATION.column],
+        color="#9db8c6",
+        linewidth=0.9,
+        label="this landing, raw",
+    )
+    ax.plot(
+        sensed.time,
+        sensed[ACCELERATION.column],
+        color=COLOURS[0],
+        linewidth=1.5,
+        label="through the sensor chain (100 Hz)",
+    )
     _draw_measured(ax, measured, [ACCELERATION.column], 1.0)
     said = draw_marks(ax, marks(ACCELERATION, (0,), raw, found.comparisons[mode]))
     _dress(ax, "", "time [s]", ACCELERATION.label)
@@ -170,8 +247,20 @@ def measures_figure(found: Validation) -> Figure:
     work = [w for by_leg in found.work.values() for w in by_leg.values()]
     x = np.arange(len(work))
     ax = figure.add_subplot(grid[0, 0])
-    ax.bar(x - 0.2, [w.absorbed for w in work], 0.38, color=COLOURS[0], label="absorbed until the largest stroke")
-    ax.bar(x + 0.2, [w.dissipated for w in work], 0.38, color=COLOURS[1], label="dissipated by the end of the rebound")
+    ax.bar(
+        x - 0.2,
+        [w.absorbed for w in work],
+        0.38,
+        color=COLOURS[0],
+        label="absorbed until the largest stroke",
+    )
+    ax.bar(
+        x + 0.2,
+        [w.dissipated for w in work],
+        0.38,
+        color=COLOURS[1],
+        label="dissipated by the end of the rebound",
+    )
     _dress_bars(ax, x, labels, "energy [J]")
     ax.legend(frameon=False, fontsize=9)
     ax.margins(y=0.25)
@@ -182,15 +271,30 @@ def measures_figure(found: Validation) -> Figure:
     if found.curves:
         ax = figure.add_subplot(grid[1, :])
         x = np.arange(len(found.curves))
-        ax.bar(x - 0.2, [100 * c.rrms for c in found.curves], 0.38, color=COLOURS[0], label="as it is")
-        ax.bar(x + 0.2, [100 * c.rrms_sensors for c in found.curves], 0.38, color=COLOURS[1], label="through the sensor chain")
-        _dress_bars(ax, x, [f"{c.mode}\n{c.column}".replace("_strut.", "\n") for c in found.curves], "RRMS [%]")
+        ax.bar(
+            x - 0.2, [100 * c.rrms for c in found.curves], 0.38, color=COLOURS[0], label="as it is"
+        )
+        ax.bar(
+            x + 0.2,
+            [100 * c.rrms_sensors for c in found.curves],
+            0.38,
+            color=COLOURS[1],
+            label="through the sensor chain",
+        )
+        _dress_bars(
+            ax,
+            x,
+            [f"{c.mode}\n{c.column}".replace("_strut.", "\n") for c in found.curves],
+            "RRMS [%]",
+        )
         ax.legend(frameon=False, fontsize=9)
     return figure
 
 
 def error_figure(found: Validation) -> Figure:
-    """Every scalar's error: ours against simulation, ours and the paper's own against test, on one scale."""
+    """Every scalar's error: ours against simulation, ours and the paper's own against test, on one
+    scale.
+    """
     from matplotlib.figure import Figure
 
     comparisons = found.all_comparisons
@@ -201,8 +305,22 @@ def error_figure(found: Validation) -> Figure:
         ax.axvspan(-level, level, color=shade, linewidth=0)
     ax.axvline(0.0, color="#999999", linewidth=0.6)
     ax.hlines(y, 0.0, _shown([c.error for c in comparisons]), color=COLOURS[0], linewidth=1.0)
-    ax.plot(_shown([c.error for c in comparisons]), y, "o", color=COLOURS[0], markersize=5, label="ours - simulation")
-    ax.plot(_shown([c.error_test for c in comparisons]), y, "x", color=TEST, markersize=5, label="ours - test")
+    ax.plot(
+        _shown([c.error for c in comparisons]),
+        y,
+        "o",
+        color=COLOURS[0],
+        markersize=5,
+        label="ours - simulation",
+    )
+    ax.plot(
+        _shown([c.error_test for c in comparisons]),
+        y,
+        "x",
+        color=TEST,
+        markersize=5,
+        label="ours - test",
+    )
     ax.plot(
         _shown([c.scalar.paper_error_test for c in comparisons]),
         y,
@@ -215,7 +333,9 @@ def error_figure(found: Validation) -> Figure:
     ax.set_yticks(y, [c.scalar.id for c in comparisons], fontsize=8)
     ax.set_ylim(y[-1] - 0.8, 0.8)
     ax.set_xlim(-105.0, 105.0)
-    ax.set_xlabel("error on the printed simulation's scale [%]; shaded: within 5, 10, 20 %; what is beyond 100 % is at the edge")
+    ax.set_xlabel(
+        "error on the printed simulation's scale [%]; shaded: within 5, 10, 20 %; what is beyond 100 % is at the edge"
+    )
     ax.grid(True, linewidth=0.3)
     ax.spines[["top", "right"]].set_visible(False)
     ax.legend(frameon=True, framealpha=0.9, edgecolor="none", fontsize=9, loc="upper right")
@@ -257,7 +377,14 @@ def _dress_bars(ax: Any, x: NDArray[Any], labels: list[str], y: str) -> None:
 def _draw_measured(ax: Any, measured: History | None, names: Sequence[str], factor: float) -> None:
     for name in names:
         if measured is not None and name in measured:
-            ax.plot(measured.time, measured[name] * factor, color=MEASURED, linewidth=0.9, linestyle="--", zorder=1)
+            ax.plot(
+                measured.time,
+                measured[name] * factor,
+                color=MEASURED,
+                linewidth=0.9,
+                linestyle="--",
+                zorder=1,
+            )
 
 
 def _legend(figure: Figure, ax: Any, measured: bool) -> None:
@@ -266,10 +393,20 @@ def _legend(figure: Figure, ax: Any, measured: bool) -> None:
 
     handles = list(ax.get_legend_handles_labels()[0])
     handles += [
-        Line2D([], [], color=PAPER, marker="o", markerfacecolor="none", linestyle="", label="printed, paper's simulation"),
+        Line2D(
+            [],
+            [],
+            color=PAPER,
+            marker="o",
+            markerfacecolor="none",
+            linestyle="",
+            label="printed, paper's simulation",
+        ),
         Line2D([], [], color=PAPER, marker="|", markersize=10, linestyle="", label="printed time"),
         Line2D([], [], color=TEST, marker="x", linestyle="", label="printed, paper's tests"),
     ]
     if measured:
         handles.append(Line2D([], [], color=MEASURED, linestyle="--", label="measured"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False, fontsize=9)
+    figure.legend(
+        handles=handles, loc="outside lower center", ncols=len(handles), frameon=False, fontsize=9
+    )

@@ -1,4 +1,6 @@
-"""The movement of the vehicle as a sequence of wireframes, light to dark in time, as the paper's Figs. 12 and 18."""
+"""The movement of the vehicle as a sequence of wireframes, light to dark in time, as the paper's
+Figs. 12 and 18.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ FRAMES = 13
 
 
 def movement_figure(found: Validation, mode: str) -> tuple[Figure, dict[str, str]]:
-    """The sequence over the ground, and the pitch over time with the time at which the paper has the vehicle at rest."""
+    """The sequence over the ground, and the pitch over time with the time at which the paper has
+    the vehicle at rest.
+    """
     from matplotlib import colormaps
     from matplotlib.figure import Figure
 
@@ -32,7 +36,9 @@ def movement_figure(found: Validation, mode: str) -> tuple[Figure, dict[str, str
     end = min(float(history.time[-1]), 0.9)
     shades = colormaps["Blues"](np.linspace(0.18, 1.0, FRAMES))
     instants = np.linspace(0.0, end, FRAMES)
-    lines = wireframe(history, parameters, [int(np.argmin(np.abs(history.time - t))) for t in instants])
+    lines = wireframe(
+        history, parameters, [int(np.argmin(np.abs(history.time - t))) for t in instants]
+    )
     for i, (t, shade) in enumerate(zip(instants, shades)):
         _draw(ax, {part: each[i] for part, each in lines.items()}, shade)
         below.axvline(t, ymax=0.04, color=shade, linewidth=3.0, zorder=0)
@@ -40,7 +46,11 @@ def movement_figure(found: Validation, mode: str) -> tuple[Figure, dict[str, str
     ax.set_aspect("equal")
     ax.set_xlabel("x [m]")
     ax.set_ylabel("y [m]")
-    ax.set_title(f"light to dark: t = 0 to {end:g} s, every {1e3 * end / (FRAMES - 1):.0f} ms", loc="left", fontsize=10)
+    ax.set_title(
+        f"light to dark: t = 0 to {end:g} s, every {1e3 * end / (FRAMES - 1):.0f} ms",
+        loc="left",
+        fontsize=10,
+    )
     below.plot(history.time, history["body.pitch"] * PITCH.factor, color=COLOURS[0], linewidth=1.5)
     said = draw_marks(below, marks(PITCH, (0,), history, found.comparisons[mode]))
     below.set_xlabel("time [s]; bars: the instants drawn on the left")
@@ -56,7 +66,9 @@ def _draw(ax: Any, lines: dict[str, Lines], shade: Any) -> None:
     for part, width in (("outline", 1.0), ("main", 1.4), ("auxiliary", 0.9)):
         for line in lines[part]:
             ax.plot(line[:, 0], line[:, 1], color=shade, linewidth=width, solid_capstyle="round")
-    ax.plot(lines["feet"][..., 0].ravel(), lines["feet"][..., 1].ravel(), "o", color=shade, markersize=3)
+    ax.plot(
+        lines["feet"][..., 0].ravel(), lines["feet"][..., 1].ravel(), "o", color=shade, markersize=3
+    )
 
 
 def _ground(ax: Any, parameters: Parameters) -> None:

@@ -1,4 +1,6 @@
-"""Sobol indices as bars: first order and total of every factor, with their intervals, a panel a response."""
+"""Sobol indices as bars: first order and total of every factor, with their intervals, a panel a
+response.
+"""
 
 from __future__ import annotations
 
@@ -21,13 +23,27 @@ def save_bars(found: Sequence[Indices], path: Path, title: str) -> None:
     across = min(PANELS_ACROSS, max(1, len(shown)))
     down = max(1, -(-len(shown) // across))
     factors = found[0].factors
-    figure = Figure(figsize=(WIDTH * across, 1.0 + (1.2 + HEIGHT * len(factors)) * down), layout="constrained")
+    figure = Figure(
+        figsize=(WIDTH * across, 1.0 + (1.2 + HEIGHT * len(factors)) * down), layout="constrained"
+    )
     figure.suptitle(title)
     axes = figure.subplots(down, across, squeeze=False, sharex=True).ravel()
     for axis, indices in zip(axes, shown):
-        for offset, values, label, color in ((-0.2, indices.first, "alone", "tab:blue"), (0.2, indices.total, "in all", "tab:orange")):
+        for offset, values, label, color in (
+            (-0.2, indices.first, "alone", "tab:blue"),
+            (0.2, indices.total, "in all", "tab:orange"),
+        ):
             reach = np.maximum(0.0, [values[:, 0] - values[:, 1], values[:, 2] - values[:, 0]])
-            axis.barh(np.arange(len(factors)) + offset, values[:, 0], 0.38, xerr=reach, label=label, color=color, ecolor="0.3", capsize=2)
+            axis.barh(
+                np.arange(len(factors)) + offset,
+                values[:, 0],
+                0.38,
+                xerr=reach,
+                label=label,
+                color=color,
+                ecolor="0.3",
+                capsize=2,
+            )
         axis.set_yticks(np.arange(len(factors)), factors, fontsize=8)
         axis.invert_yaxis()
         axis.set_title(f"{indices.response}, {indices.mode}", fontsize=9)

@@ -1,4 +1,6 @@
-"""The vehicle as lines in space at every sample of a landing: what pictures, animations and viewers draw."""
+"""The vehicle as lines in space at every sample of a landing: what pictures, animations and viewers
+draw.
+"""
 
 from __future__ import annotations
 
@@ -16,33 +18,58 @@ Lines = NDArray[np.float64]
 RING = 24
 
 
-def wireframe(history: History, parameters: Parameters, rows: Sequence[int] | NDArray[np.intp]) -> dict[str, Lines]:
-    """The vehicle at `rows` of `history`, in the paper's inertial axes (x forward, y up, z right) [m].
+def wireframe(
+    history: History, parameters: Parameters, rows: Sequence[int] | NDArray[np.intp]
+) -> dict[str, Lines]:
+    """The vehicle at `rows` of `history`, in the paper's inertial axes (x forward, y up, z right)
+    [m].
 
-    Part -> array (rows, lines, points, 3): `outline`, the body's rectangle in the symmetric plane; `hull`, its rings and the rectangle
-    across; `main` and `auxiliary`, the struts from joint to footpad by leg; `feet`, the footpads. Footpads are where struts of the logged
-    strokes meet, so that logs, which have no column for them, do as well.
+    Part -> array (rows, lines, points, 3): `outline`, the body's rectangle in the symmetric plane;
+    `hull`, its rings and the rectangle across; `main` and `auxiliary`, the struts from joint to
+    footpad by leg; `feet`, the footpads. Footpads are where struts of the logged strokes meet, so
+    that logs, which have no column for them, do as well.
     """
     m, a = parameters.main_strut, parameters.auxiliary_strut
-    half, bottom, top = min(m.joint_radius, a.joint_radius), -max(m.joint_depth, a.joint_depth), parameters.vehicle.top_height
-    corners = np.array([(-half, bottom), (half, bottom), (half, top), (-half, top), (-half, bottom)])
+    half, bottom, top = (
+        min(m.joint_radius, a.joint_radius),
+        -max(m.joint_depth, a.joint_depth),
+        parameters.vehicle.top_height,
+    )
+    corners = np.array(
+        [(-half, bottom), (half, bottom), (half, top), (-half, top), (-half, bottom)]
+    )
     turn = np.linspace(0.0, 2.0 * np.pi, RING + 1)
-    rings = [np.stack([half * np.cos(turn), np.full_like(turn, h), half * np.sin(turn)], axis=-1) for h in (bottom, top)]
+    rings = [
+        np.stack([half * np.cos(turn), np.full_like(turn, h), half * np.sin(turn)], axis=-1)
+        for h in (bottom, top)
+    ]
     across = np.stack([np.zeros(5), corners[:, 1], corners[:, 0]], axis=-1)
     across = np.concatenate([across, np.repeat(across[-1:], RING - 4, axis=0)])
     outline = np.stack([corners[:, 0], corners[:, 1], np.zeros(5)], axis=-1)
-    azimuths = {leg: (*azimuth(g.azimuth), side) for g in MODES[parameters.drop.mode] for leg, side in g.legs}
+    azimuths = {
+        leg: (*azimuth(g.azimuth), side)
+        for g in MODES[parameters.drop.mode]
+        for leg, side in g.legs
+    }
     main, auxiliary = np.empty((2, len(rows), len(LEGS), 2, 3))
     for i, leg in enumerate(LEGS):
         sine, cosine, side = azimuths[leg]
         out = np.array([cosine, 0.0, side * sine])
         up = np.array([0.0, 1.0, 0.0])
-        lengths = [s.length - history[f"leg[{leg}].{n}.stroke"][rows] for s, n in ((m, "main_strut"), (a, "auxiliary_strut"))]
+        lengths = [
+            s.length - history[f"leg[{leg}].{n}.stroke"][rows]
+            for s, n in ((m, "main_strut"), (a, "auxiliary_strut"))
+        ]
         feet = np.array([footpad_between(parameters, *map(float, pair)) for pair in zip(*lengths)])
         for lines, strut in ((main, m), (auxiliary, a)):
             lines[:, i, 0] = strut.joint_radius * out - strut.joint_depth * up
             lines[:, i, 1] = feet[:, :1] * out + feet[:, 1:] * up
-    parts = {"outline": outline[None, None], "hull": np.stack([*rings, across])[None], "main": main, "auxiliary": auxiliary}
+    parts = {
+        "outline": outline[None, None],
+        "hull": np.stack([*rings, across])[None],
+        "main": main,
+        "auxiliary": auxiliary,
+    }
     parts["feet"] = main[:, :, 1:]
     return {name: _place(history, rows, points) for name, points in parts.items()}
 
@@ -54,8 +81,12 @@ def ground_height(parameters: Parameters, x: NDArray[np.float64]) -> NDArray[np.
 
 
 def _place(history: History, rows: Sequence[int] | NDArray[np.intp], points: Lines) -> Lines:
-    """Points in body axes from the CG, (1 or rows, lines, points, 3), turned by the pitch (clockwise positive) and moved to the CG."""
+    """Points in body axes from the CG, (1 or rows, lines, points, 3), turned by the pitch
+    (clockwise positive) and moved to the CG.
+    """
     x, y, pitch = (history[f"body.{name}"][rows][:, None, None] for name in ("x", "y", "pitch"))
     sine, cosine = np.sin(pitch), np.cos(pitch)
     bx, by, bz = np.moveaxis(points, -1, 0)
-    return np.stack(np.broadcast_arrays(x + bx * cosine + by * sine, y - bx * sine + by * cosine, bz), axis=-1)
+    return np.stack(
+        np.broadcast_arrays(x + bx * cosine + by * sine, y - bx * sine + by * cosine, bz), axis=-1
+    )

@@ -1,4 +1,6 @@
-"""Identification: a global search (CMA-ES), then least squares, on all cores; seeded, resumable, and never losing its best."""
+"""Identification: a global search (CMA-ES), then least squares, on all cores; seeded, resumable,
+and never losing its best.
+"""
 
 from __future__ import annotations
 
@@ -50,10 +52,18 @@ class Best:
 class Search:
     """One identification. `folder` keeps its best and its state, from which `resume` goes on.
 
-    Raises LandingError: the folder holds a search already and `resume` is not asked for, or one of other free numbers or targets.
+    Raises LandingError: the folder holds a search already and `resume` is not asked for, or one of
+        other free numbers or targets.
     """
 
-    def __init__(self, objective: Objective, folder: Path, seed: int = 1, workers: int | None = None, resume: bool = False) -> None:
+    def __init__(
+        self,
+        objective: Objective,
+        folder: Path,
+        seed: int = 1,
+        workers: int | None = None,
+        resume: bool = False,
+    ) -> None:
         self.objective = objective
         self.folder = folder
         self.seed = seed
@@ -66,7 +76,9 @@ class Search:
         self._pool: ProcessPoolExecutor | None = None
         best, state = folder / "best.json", folder / "search.pickle"
         if best.exists() and not resume:
-            raise LandingError(f"{folder} holds an identification; --resume goes on with it, --work names another folder")
+            raise LandingError(
+                f"{folder} holds an identification; --resume goes on with it, --work names another folder"
+            )
         if resume:
             self._take_up(best, state)
         folder.mkdir(parents=True, exist_ok=True)
@@ -77,17 +89,26 @@ class Search:
         except (OSError, ValueError) as e:
             raise LandingError(f"{best} cannot be read ({e}); there is nothing to resume") from None
         if kept.pop("labels") != self.labels or kept.pop("targets") != self.objective.labels:
-            raise LandingError(f"{best} is of other free numbers or targets; resume with the same, or name another folder by --work")
+            raise LandingError(
+                f"{best} is of other free numbers or targets; resume with the same, or name another folder by --work"
+            )
         self.start_loss = kept.pop("start_loss")
         self.best = Best(**kept)
         if state.exists():
             self._strategy = pickle.loads(state.read_bytes())
 
     def __enter__(self) -> Search:
-        self._pool = ProcessPoolExecutor(self.workers, initializer=_adopt, initargs=(self.objective,))
+        self._pool = ProcessPoolExecutor(
+            self.workers, initializer=_adopt, initargs=(self.objective,)
+        )
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         if self._pool is not None:
             self._pool.shutdown(wait=True, cancel_futures=True)
             self._pool = None
@@ -113,13 +134,25 @@ class Search:
 
     def save(self) -> None:
         """Write best point and search state, each to a temporary name first."""
-        told = {**asdict(self.best), "labels": self.labels, "targets": self.objective.labels, "start_loss": self.start_loss}
+        told = {
+            **asdict(self.best),
+            "labels": self.labels,
+            "targets": self.objective.labels,
+            "start_loss": self.start_loss,
+        }
         write_durably(self.folder / "best.json", json.dumps(told, indent=1).encode())
         if self._strategy is not None:
             write_durably(self.folder / "search.pickle", pickle.dumps(self._strategy))
 
-    def explore(self, evaluations: int, progress: Callable[[int, float], object], sigma: float = 0.1, population: int = 32) -> None:
-        """Global search by CMA-ES until `evaluations` landings of both modes have been tried in all, or it has converged.
+    def explore(
+        self,
+        evaluations: int,
+        progress: Callable[[int, float], object],
+        sigma: float = 0.1,
+        population: int = 32,
+    ) -> None:
+        """Global search by CMA-ES until `evaluations` landings of both modes have been tried in
+        all, or it has converged.
 
         `progress` is told the evaluations so far and the best loss.
         """
@@ -132,13 +165,17 @@ class Search:
             self._strategy = cma.CMAEvolutionStrategy(self.best.z, sigma, options)
         while self.best.evaluations < evaluations and not self._strategy.stop():
             points = self._strategy.ask()
-            losses = [self.consider(z, m, "global search") for z, m in zip(points, self.evaluate(points))]
+            losses = [
+                self.consider(z, m, "global search") for z, m in zip(points, self.evaluate(points))
+            ]
             self._strategy.tell(points, losses)
             self.save()
             progress(self.best.evaluations, self.best.loss)
 
     def polish(self, evaluations: int, progress: Callable[[int, float], object]) -> None:
-        """Least squares (scipy, trust region, Cauchy's loss, bounds) from the best point; the Jacobian's columns side by side."""
+        """Least squares (scipy, trust region, Cauchy's loss, bounds) from the best point; the
+        Jacobian's columns side by side.
+        """
         from scipy.optimize import least_squares
 
         def residuals(z: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -149,7 +186,15 @@ class Search:
 
         start = np.clip(folded(self.best.z), 1e-6, 1.0 - 1e-6)
         tries = max(1, evaluations // (len(start) + 1))
-        least_squares(residuals, start, jac=self.jacobian, bounds=(0.0, 1.0), loss="cauchy", max_nfev=tries, x_scale="jac")
+        least_squares(
+            residuals,
+            start,
+            jac=self.jacobian,
+            bounds=(0.0, 1.0),
+            loss="cauchy",
+            max_nfev=tries,
+            x_scale="jac",
+        )
 
     def jacobian(self, z: NDArray[np.float64]) -> NDArray[np.float64]:
         """d misfit/d z (targets, numbers) by central differences, one-sided at the cube's faces."""

@@ -1,4 +1,6 @@
-"""What an identification came to: the fit, numbers at their bounds, and how well each number is determined."""
+"""What an identification came to: the fit, numbers at their bounds, and how well each number is
+determined.
+"""
 
 from __future__ import annotations
 
@@ -13,14 +15,17 @@ from .identify import Search, folded
 from .objective import TOLERANCE, fit_of
 
 AT_BOUND = 0.01
-# the standard deviation of a uniform prior on [0, 1]: a number not known better than that is not identified
+# the standard deviation of a uniform prior on [0, 1]: a number not known better than that is not
+# identified
 UNINFORMED = 12.0**-0.5
 WELL, POORLY = 0.05, 0.15
 
 
 @dataclass(frozen=True)
 class Determination:
-    """How well the misfits determine one number: posterior standard deviation as a part of the prior's width, and what moves with it."""
+    """How well the misfits determine one number: posterior standard deviation as a part of the
+    prior's width, and what moves with it.
+    """
 
     label: str
     value: float
@@ -39,13 +44,21 @@ class Determination:
             return "at its bound"
         if self.deviation > 0.8 * UNINFORMED:
             return "not identifiable"
-        return "well determined" if self.deviation < WELL else "determined" if self.deviation < POORLY else "poorly determined"
+        return (
+            "well determined"
+            if self.deviation < WELL
+            else "determined"
+            if self.deviation < POORLY
+            else "poorly determined"
+        )
 
 
 def determinations(search: Search) -> list[Determination]:
-    """From the Jacobian at the best point: covariance (J'J/s2 + prior)^-1 with Cauchy's weights, on the unit cube.
+    """From the Jacobian at the best point: covariance (J'J/s2 + prior)^-1 with Cauchy's weights, on
+    the unit cube.
 
-    Gaussian approximation, valid near the point only; s2 is 1 or the mean weighted misfit squared, where that is larger.
+    Gaussian approximation, valid near the point only; s2 is 1 or the mean weighted misfit squared,
+    where that is larger.
     """
     z = folded(search.best.z)
     (misfits,) = search.look([z.tolist()])
@@ -60,7 +73,9 @@ def determinations(search: Search) -> list[Determination]:
     labels = search.objective.free.labels
     strongest = np.argmax(np.abs(jacobian) * np.sqrt(weights)[:, None], axis=0)
     found = []
-    for i, ((prior, _), value) in enumerate(zip(search.objective.free.columns, search.objective.free.numbers(z.tolist()))):
+    for i, ((prior, _), value) in enumerate(
+        zip(search.objective.free.columns, search.objective.free.numbers(z.tolist()))
+    ):
         j = int(np.argmax(np.abs(correlation[i])))
         found.append(
             Determination(labels[i], value, prior.lo, prior.hi, float(z[i]), float(deviation[i]), labels[j],
@@ -86,19 +101,37 @@ def write_report(search: Search, parameters: Parameters) -> str:
         f"The loss is the sum of ln(1 + misfit^2), a misfit of one being {100 * TOLERANCE:g} % of a scalar."
     )
     lines = ["# Identification", "", story, ""]
-    lines += [f"The paper's printed simulation scalars within 5 / 10 / 20 %: **{counted(np.array([e for *_, e in fit]))}**.", ""]
-    lines += ["## Fit of every printed scalar", "", "| scalar | paper | ours | error |", "|---|---:|---:|---:|"]
-    lines += [f"| {name} | {wanted:g} | {ours:.4g} | {100 * error:+.1f} % |" for name, wanted, ours, error in fit]
+    lines += [
+        f"The paper's printed simulation scalars within 5 / 10 / 20 %: **{counted(np.array([e for *_, e in fit]))}**.",
+        "",
+    ]
+    lines += [
+        "## Fit of every printed scalar",
+        "",
+        "| scalar | paper | ours | error |",
+        "|---|---:|---:|---:|",
+    ]
+    lines += [
+        f"| {name} | {wanted:g} | {ours:.4g} | {100 * error:+.1f} % |"
+        for name, wanted, ours, error in fit
+    ]
     lines += ["", "## How well each number is determined", ""]
     lines += [
         "Deviation: posterior standard deviation as a part of the bounds' width, by the Jacobian there (0.29: the prior alone).",
         "",
     ]
-    lines += ["| number | value | bounds | deviation | verdict | moves with | most sensitive |", "|---|---:|---|---:|---|---|---|"]
+    lines += [
+        "| number | value | bounds | deviation | verdict | moves with | most sensitive |",
+        "|---|---:|---|---:|---|---|---|",
+    ]
     for d in known:
         moves = f"{d.partner} ({d.correlation:+.2f})"
-        lines.append(f"| {d.label} | {d.value:.4g} | {d.lo:g} ... {d.hi:g} | {d.deviation:.3f} | {d.verdict} | {moves} | {d.scalar} |")
+        lines.append(
+            f"| {d.label} | {d.value:.4g} | {d.lo:g} ... {d.hi:g} | {d.deviation:.3f} | {d.verdict} | {moves} | {d.scalar} |"
+        )
     if search.objective.conditions:
         lines += ["", "## Conditions", "", "| condition | at most | because |", "|---|---|---|"]
-        lines += [f"| {c.name} | {c.limit:g} {c.unit} | {c.reason} |" for c in search.objective.conditions]
+        lines += [
+            f"| {c.name} | {c.limit:g} {c.unit} | {c.reason} |" for c in search.objective.conditions
+        ]
     return "\n".join(lines) + "\n"

@@ -1,7 +1,8 @@
 """What is identified, between which physical bounds, and why: the one place for both.
 
-A prior is uniform between its bounds, in the value or in its logarithm. Names are those of the parameters, except
-`main_strut.rod_area`: the rod's cross section, by which the bore exceeds the annulus, so that a bore below the annulus cannot come up.
+A prior is uniform between its bounds, in the value or in its logarithm. Names are those of the
+parameters, except `main_strut.rod_area`: the rod's cross section, by which the bore exceeds the
+annulus, so that a bore below the annulus cannot come up.
 """
 
 from __future__ import annotations
@@ -21,7 +22,10 @@ BORE, ANNULUS = "main_strut.area_lower", "main_strut.area_upper"
 
 @dataclass(frozen=True)
 class Prior:
-    """Bounds of one free number, with the reason for them. `by_mode`: one number for each landing mode."""
+    """Bounds of one free number, with the reason for them.
+
+    `by_mode`: one number for each landing mode.
+    """
 
     name: str
     lo: float
@@ -97,11 +101,15 @@ class FreeNumbers:
         bounds: other bounds by name, (lo, hi).
 
     Raises:
-        LandingError: a name without a prior or bounds, or bounds that are empty or outside the parameter's own.
+        LandingError: a name without a prior or bounds, or bounds that are empty or outside the
+            parameter's own.
     """
 
     def __init__(
-        self, base: Parameters, names: Sequence[str] | None = None, bounds: Mapping[str, tuple[float, float]] | None = None
+        self,
+        base: Parameters,
+        names: Sequence[str] | None = None,
+        bounds: Mapping[str, tuple[float, float]] | None = None,
     ) -> None:
         self.base = base
         priors = {p.name: p for p in PRIORS}
@@ -112,7 +120,9 @@ class FreeNumbers:
             if name in priors:
                 continue
             if name in PARAMETER_QUANTITIES:
-                raise LandingError(f"{name} has no bounds to be identified between; give them: --bound {name}=LO..HI")
+                raise LandingError(
+                    f"{name} has no bounds to be identified between; give them: --bound {name}=LO..HI"
+                )
             raise unknown("parameter", name, [*priors, *PARAMETER_QUANTITIES])
         self.priors = [priors[name] for name in chosen]
         self.columns: list[tuple[Prior, str | None]] = []
@@ -128,7 +138,10 @@ class FreeNumbers:
         return [p.name if mode is None else f"{mode}: {p.name}" for p, mode in self.columns]
 
     def numbers(self, z: Sequence[float]) -> list[float]:
-        """The free numbers, SI, at `z`. Outside [0, 1] the cube is mirrored, so that a search may step over its faces."""
+        """The free numbers, SI, at `z`.
+
+        Outside [0, 1] the cube is mirrored, so that a search may step over its faces.
+        """
         return [p.value(_fold(float(x))) for (p, _), x in zip(self.columns, z)]
 
     def start(self) -> list[float]:
@@ -136,18 +149,27 @@ class FreeNumbers:
         place = []
         for p, mode in self.columns:
             own = self.base.for_mode(mode) if mode is not None else self.base
-            value = own.main_strut.area_lower - own.main_strut.area_upper if p.name == ROD_AREA else float(own[p.name])
+            value = (
+                own.main_strut.area_lower - own.main_strut.area_upper
+                if p.name == ROD_AREA
+                else float(own[p.name])
+            )
             place.append(p.place(value))
         return place
 
     def parameters(self, z: Sequence[float]) -> Parameters:
-        """The base with the free numbers at `z`; those of one mode come in with `for_mode`. Raises LandingError where they do not fit."""
+        """The base with the free numbers at `z`; those of one mode come in with `for_mode`.
+
+        Raises LandingError where they do not fit.
+        """
         shared: dict[str, Any] = {}
         by_mode: dict[str, dict[str, Any]] = {mode: {} for mode in MODES}
         for (p, mode), value in zip(self.columns, self.numbers(z)):
             (shared if mode is None else by_mode[mode])[p.name] = value
         if ROD_AREA in shared:
-            shared[BORE] = shared.get(ANNULUS, self.base.main_strut.area_upper) + shared.pop(ROD_AREA)
+            shared[BORE] = shared.get(ANNULUS, self.base.main_strut.area_upper) + shared.pop(
+                ROD_AREA
+            )
         return self.base.with_values(shared, "identified").with_mode_values(by_mode, "identified")
 
 
@@ -161,10 +183,16 @@ def _with_bounds(name: str, lo: float, hi: float, prior: Prior | None) -> Prior:
     if q is None and name != ROD_AREA:
         raise unknown("parameter", name, [*PARAMETER_QUANTITIES, ROD_AREA])
     if q is not None and q.choices:
-        raise LandingError(f"{name} is a choice ({', '.join(q.choices)}); only numbers can be identified")
+        raise LandingError(
+            f"{name} is a choice ({', '.join(q.choices)}); only numbers can be identified"
+        )
     if not lo < hi:
         raise LandingError(f"bounds of {name} are empty: {lo:g} is not below {hi:g}")
     if q is not None and not (q.lo <= lo and hi <= q.hi):
-        raise LandingError(f"bounds of {name}, {lo:g} to {hi:g} {q.unit}, are outside [{q.lo:g}, {q.hi:g}] {q.unit}")
+        raise LandingError(
+            f"bounds of {name}, {lo:g} to {hi:g} {q.unit}, are outside [{q.lo:g}, {q.hi:g}] {q.unit}"
+        )
     positive = lo > 0.0 and hi / lo > 3.0
-    return Prior(name, lo, hi, "given by the user", positive, prior.by_mode if prior is not None else False)
+    return Prior(
+        name, lo, hi, "given by the user", positive, prior.by_mode if prior is not None else False
+    )

@@ -26,7 +26,10 @@ def preset_names() -> list[str]:
 
 
 def load_preset(name: str, mode: str | None = None) -> Parameters:
-    """The parameters of a preset, for the landing `mode` (default: the preset's own). Raises LandingError for an unknown name."""
+    """The parameters of a preset, for the landing `mode` (default: the preset's own).
+
+    Raises LandingError for an unknown name.
+    """
     if name not in preset_names():
         raise unknown("preset", name, preset_names())
     parameters = read_toml(FOLDER / f"{name}.toml")
@@ -34,16 +37,20 @@ def load_preset(name: str, mode: str | None = None) -> Parameters:
 
 
 def read_toml(path: str | Path) -> Parameters:
-    """Parameters from a TOML file: tables `vehicle`, `main_strut`, `auxiliary_strut`, `ground`, `drop`; `mode.X.drop` for one mode only.
+    """Parameters from a TOML file: tables `vehicle`, `main_strut`, `auxiliary_strut`, `ground`,
+    `drop`; `mode.X.drop` for one mode only.
 
-    A value is a number in SI units, a text with a unit ("-2 deg"), or `{ value = ..., source = "..." }`. What is not given comes
-    from `preset = "..."` (default yue2022-figures). Raises LandingError: no such file, TOML syntax (with line), unknown names, bad values.
+    A value is a number in SI units, a text with a unit ("-2 deg"), or `{ value = ..., source =
+    "..." }`. What is not given comes from `preset = "..."` (default yue2022-figures). Raises
+    LandingError: no such file, TOML syntax (with line), unknown names, bad values.
     """
     path = Path(path)
     try:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError:
-        raise LandingError(f"there is no parameter file {path}; presets are {', '.join(preset_names())}") from None
+        raise LandingError(
+            f"there is no parameter file {path}; presets are {', '.join(preset_names())}"
+        ) from None
     except (OSError, UnicodeDecodeError) as e:
         raise LandingError(f"parameter file {path} cannot be read: {e}") from None
     return parse_toml(text, str(path))
@@ -78,7 +85,9 @@ def _from_document(document: dict[str, Any]) -> Parameters:
 
 def _table(value: Any, name: str) -> dict[str, Any]:
     if not isinstance(value, dict):
-        raise LandingError(f"{name} = {value!r} must be a table: write [{name}] and its values below")
+        raise LandingError(
+            f"{name} = {value!r} must be a table: write [{name}] and its values below"
+        )
     return value
 
 
@@ -97,7 +106,9 @@ def _flat(tables: Mapping[str, Any]) -> tuple[dict[str, float | str], dict[str, 
                     if key not in ("value", "source"):
                         raise unknown(f"key of {name}", key, ("value", "source"))
                 if "value" not in entry:
-                    raise LandingError(f'{name} has no value: write {{ value = ..., source = "..." }}')
+                    raise LandingError(
+                        f'{name} has no value: write {{ value = ..., source = "..." }}'
+                    )
                 if "source" in entry:
                     sources[name] = str(entry["source"])
                 entry = entry["value"]
@@ -106,7 +117,8 @@ def _flat(tables: Mapping[str, Any]) -> tuple[dict[str, float | str], dict[str, 
 
 
 def parse_value(q: Quantity, value: Any) -> float | str:
-    """`value` of the quantity `q` in SI: a number, or a text with a unit such as "-2 deg" or "36 mm".
+    """`value` of the quantity `q` in SI: a number, or a text with a unit such as "-2 deg" or "36
+    mm".
 
     Raises LandingError: not a number, unknown unit, a unit of another dimension, out of bounds.
     """
@@ -119,8 +131,10 @@ def parse_value(q: Quantity, value: Any) -> float | str:
 
 
 def unit_scale(q: Quantity, unit: str) -> float:
-    """How much of the unit of `q` one `unit` is: value_SI = scale * value. No unit is SI. Raises LandingError: unknown unit, or one of
-    another dimension."""
+    """How much of the unit of `q` one `unit` is: value_SI = scale * value.
+
+    No unit is SI. Raises LandingError: unknown unit, or one of another dimension.
+    """
     if unit in ("", q.unit):
         return 1.0
     return _with_unit(q, f"1 {unit.replace('.', '*')}")
@@ -131,14 +145,18 @@ def _with_unit(q: Quantity, text: str) -> float:
 
     registry = _registry()
     try:
-        return float(registry.Quantity(text).to(q.unit.replace(".", "*") or "dimensionless").magnitude)
+        return float(
+            registry.Quantity(text).to(q.unit.replace(".", "*") or "dimensionless").magnitude
+        )
     except pint.DimensionalityError:
         example = q.display_unit or q.unit or "a plain number"
         raise LandingError(
             f"{q.name} = {text!r} has the wrong unit; give it in {q.unit or 'plain numbers'}, or as text in {example}"
         ) from None
     except Exception:
-        raise LandingError(f"{q.name} = {text!r} is not a number with a unit; write for example {_example(q)}") from None
+        raise LandingError(
+            f"{q.name} = {text!r} is not a number with a unit; write for example {_example(q)}"
+        ) from None
 
 
 def _registry() -> Any:
@@ -164,7 +182,8 @@ def _example(q: Quantity) -> str:
 
 
 def to_toml(parameters: Parameters, comments: bool = True) -> str:
-    """The parameters as a TOML text that `read_toml` takes back to the same digits, with unit, meaning, bounds and source a line.
+    """The parameters as a TOML text that `read_toml` takes back to the same digits, with unit,
+    meaning, bounds and source a line.
 
     Values that belong to one landing mode (of the drop) follow in tables of their own.
     """
@@ -179,9 +198,13 @@ def to_toml(parameters: Parameters, comments: bool = True) -> str:
         written = f'"{value}"' if isinstance(value, str) else repr(value)
         about = " or ".join(q.choices) if q.choices else f"[{q.lo:g}, {q.hi:g}] {q.unit}".rstrip()
         comment = f"  # {q.meaning}; {about}; {parameters.source(name)}" if comments else ""
-        lines.append(f'{what} = {{ value = {written}, source = "{parameters.source(name)}" }}{comment}')
+        lines.append(
+            f'{what} = {{ value = {written}, source = "{parameters.source(name)}" }}{comment}'
+        )
     for mode, own in parameters.by_mode.items():
         lines += ["", f"[mode.{mode}.drop]"] if own else []
         for name, value in own.items():
-            lines.append(f'{name.split(".")[1]} = {{ value = {value!r}, source = "{parameters.source(name)}" }}')
+            lines.append(
+                f'{name.split(".")[1]} = {{ value = {value!r}, source = "{parameters.source(name)}" }}'
+            )
     return "\n".join(lines) + "\n"

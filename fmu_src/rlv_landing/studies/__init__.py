@@ -1,1 +1,3 @@
-"""Studies of the model: what it is worth beside the paper (`validate`), and what it conserves (`audit`)."""
+"""Studies of the model: what it is worth beside the paper (`validate`), and what it conserves
+(`audit`).
+"""

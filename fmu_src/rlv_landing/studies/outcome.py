@@ -1,4 +1,6 @@
-"""What a landing came to, as studies count it: one name, when and where, how much was left, and which limit was passed first."""
+"""What a landing came to, as studies count it: one name, when and where, how much was left, and
+which limit was passed first.
+"""
 
 from __future__ import annotations
 
@@ -21,28 +23,78 @@ Name = Literal["toppled", "bottomed out", "slid", "moving", "settled"]
 # the outcomes, the severest first
 SEVERITY: tuple[Name, ...] = get_args(Name)
 SETTLED, TOPPLED = 2.0, 3.0
-# the paper does not print its footpads' diameter; a leg's spreading alone moves a footpad by some centimetres
+# the paper does not print its footpads' diameter; a leg's spreading alone moves a footpad by some
+# centimetres
 DEFAULT_SLIDE = 0.3
 
 # what may be limited, by output name: the largest value is compared; of a load its magnitude
 LIMITS: dict[str, Quantity] = {
     q.name: q
     for q in (
-        Quantity("N", "main strut's axial force, either sign", 0.0, 1e12, name="main_strut.force", display_unit="kN"),
-        Quantity("N", "auxiliary strut's axial force, either sign", 0.0, 1e12, name="auxiliary_strut.force", display_unit="kN"),
-        Quantity("m", "damper's stroke in compression", 0.0, 100.0, name="main_strut.stroke", display_unit="mm"),
-        Quantity("Pa", "absolute pressure in the upper chamber", 0.0, 1e12, name="main_strut.pressure_upper", display_unit="MPa"),
-        Quantity("Pa", "absolute pressure in the lower chamber", 0.0, 1e12, name="main_strut.pressure_lower", display_unit="MPa"),
-        Quantity("N", "force between ground and footpad, all directions together", 0.0, 1e12, name="contact.force", display_unit="kN"),
-        Quantity("m/s2", "axial acceleration of the top, upward", 0.0, 1e6, name="body.top_axial_acceleration"),
+        Quantity(
+            "N",
+            "main strut's axial force, either sign",
+            0.0,
+            1e12,
+            name="main_strut.force",
+            display_unit="kN",
+        ),
+        Quantity(
+            "N",
+            "auxiliary strut's axial force, either sign",
+            0.0,
+            1e12,
+            name="auxiliary_strut.force",
+            display_unit="kN",
+        ),
+        Quantity(
+            "m",
+            "damper's stroke in compression",
+            0.0,
+            100.0,
+            name="main_strut.stroke",
+            display_unit="mm",
+        ),
+        Quantity(
+            "Pa",
+            "absolute pressure in the upper chamber",
+            0.0,
+            1e12,
+            name="main_strut.pressure_upper",
+            display_unit="MPa",
+        ),
+        Quantity(
+            "Pa",
+            "absolute pressure in the lower chamber",
+            0.0,
+            1e12,
+            name="main_strut.pressure_lower",
+            display_unit="MPa",
+        ),
+        Quantity(
+            "N",
+            "force between ground and footpad, all directions together",
+            0.0,
+            1e12,
+            name="contact.force",
+            display_unit="kN",
+        ),
+        Quantity(
+            "m/s2",
+            "axial acceleration of the top, upward",
+            0.0,
+            1e6,
+            name="body.top_axial_acceleration",
+        ),
     )
 }
 
 
 @dataclass(frozen=True)
 class Passed:
-    """A limit that a landing passed: its name in LIMITS, the `leg` (None for the body), the time [s] of the first sample beyond it, and
-    the limit itself [SI]."""
+    """A limit that a landing passed: its name in LIMITS, the `leg` (None for the body), the time
+    [s] of the first sample beyond it, and the limit itself [SI].
+    """
 
     name: str
     leg: int | None
@@ -56,20 +108,25 @@ class Outcome:
 
     `name` is the severest that holds, in this order:
 
-    - toppled: at the end the vehicle's CG is beyond the outermost footpad or the body has turned over (`status.phase` 3). A vehicle that
-      was beyond its feet for a moment and came back has not toppled. `time` is when it went for good;
-    - bottomed out: a damper's stroke has passed `main_strut.stroke_max`, where it meets its stop. `time` when the first did;
-    - slid: a footpad is further than the threshold from where it first touched. `time` when it first was;
+    - toppled: at the end the vehicle's CG is beyond the outermost footpad or the body has turned
+      over (`status.phase` 3). A vehicle that was beyond its feet for a moment and came back has not
+      toppled. `time` is when it went for good;
+    - bottomed out: a damper's stroke has passed `main_strut.stroke_max`, where it meets its stop.
+      `time` when the first did;
+    - slid: a footpad is further than the threshold from where it first touched. `time` when it
+      first was;
     - moving: neither at rest nor lost at the end, which is `time`: run it longer;
     - settled: at rest since `time`.
 
-    `leg` is the first that bottomed out, whatever the name, else None; of legs that are mirror images the lower number stands for both.
-    What comes after toppling is meaningless and counts in the stability margins only.
+    `leg` is the first that bottomed out, whatever the name, else None; of legs that are mirror
+    images the lower number stands for both. What comes after toppling is meaningless and counts in
+    the stability margins only.
 
-    `margins` [m]: `stability_min` and `stability_end`, the smallest and the last `status.stability_margin`; `stroke_left` to the stop;
-    `slid`, the farthest that a footpad lies at the end from where it first touched (inertial axes; the legs' spreading is in it);
-    `joint_clearance`, the least height above the ground at rest of the body's lowest leg joints, the lowest of the body that the model
-    knows. Peaks between samples are not seen.
+    `margins` [m]: `stability_min` and `stability_end`, the smallest and the last
+    `status.stability_margin`; `stroke_left` to the stop; `slid`, the farthest that a footpad lies
+    at the end from where it first touched (inertial axes; the legs' spreading is in it);
+    `joint_clearance`, the least height above the ground at rest of the body's lowest leg joints,
+    the lowest of the body that the model knows. Peaks between samples are not seen.
     """
 
     name: Name
@@ -79,14 +136,19 @@ class Outcome:
     first_limit: Passed | None
 
 
-def outcome(history: History, limits: Mapping[str, float] | None = None, slide: float = DEFAULT_SLIDE) -> Outcome:
-    """What the landing `history` came to; `limits` by name in LIMITS [SI]; `slide` [m] is what a footpad may move and has not slid.
+def outcome(
+    history: History, limits: Mapping[str, float] | None = None, slide: float = DEFAULT_SLIDE
+) -> Outcome:
+    """What the landing `history` came to; `limits` by name in LIMITS [SI]; `slide` [m] is what a
+    footpad may move and has not slid.
 
-    Raises LandingError where the history does not know its parameters, for an unknown limit, and for a limit or a `slide` that is
-    negative or NaN.
+    Raises LandingError where the history does not know its parameters, for an unknown limit, and
+    for a limit or a `slide` that is negative or NaN.
     """
     if history.parameters is None:
-        raise LandingError("this history does not know its parameters; give one that Landing.run returned")
+        raise LandingError(
+            "this history does not know its parameters; give one that Landing.run returned"
+        )
     if not slide >= 0.0:
         raise LandingError(f"slide = {slide:g} m must be 0 m or more")
     p = history.parameters
@@ -109,20 +171,30 @@ def outcome(history: History, limits: Mapping[str, float] | None = None, slide: 
         "joint_clearance": _joint_clearance(history, joints),
     }
     name: Name
-    met = [(int(np.argmax(s > stop)), leg) for s, leg, most in zip(strokes, legs, deepest) if most > stop]
+    met = [
+        (int(np.argmax(s > stop)), leg)
+        for s, leg, most in zip(strokes, legs, deepest)
+        if most > stop
+    ]
     if toppled:
         name, when = "toppled", float(time[-1])
     elif met:
         name, when = "bottomed out", float(time[min(met)[0]])
     elif any(len(s) and s.max() > slide for s in slips):
         name = "slid"
-        when = min(float(time[len(time) - len(s) + int(np.argmax(s > slide))]) for s in slips if len(s) and s.max() > slide)
+        when = min(
+            float(time[len(time) - len(s) + int(np.argmax(s > slide))])
+            for s in slips
+            if len(s) and s.max() > slide
+        )
     elif phase[-1] == SETTLED:
         name, when = "settled", float(time[_lasting(phase, SETTLED)])
     else:
         name, when = "moving", float(time[-1])
     leg = min(met)[1] if met else None
-    return Outcome(name, when, leg, margins, _first_limit(history, legs, limits) if limits else None)
+    return Outcome(
+        name, when, leg, margins, _first_limit(history, legs, limits) if limits else None
+    )
 
 
 @lru_cache
@@ -133,7 +205,9 @@ def _legs(mode: str) -> tuple[tuple[int, ...], tuple[float, ...]]:
 
 
 def _slip(history: History, leg: int) -> Array:
-    """Distance [m] of the footpad from where it first touched, from then to the end; empty for one that never touches."""
+    """Distance [m] of the footpad from where it first touched, from then to the end; empty for one
+    that never touches.
+    """
     touching = history[f"leg[{leg}].contact.active"]
     start = int(np.argmax(touching > 0.0))
     if not touching[start] > 0.0:
@@ -144,12 +218,20 @@ def _slip(history: History, leg: int) -> Array:
 
 
 def _joint_clearance(history: History, cosines: tuple[float, ...]) -> float:
-    """Least height [m] above the ground at rest, along its normal, of the auxiliary struts' body joints."""
+    """Least height [m] above the ground at rest, along its normal, of the auxiliary struts' body
+    joints.
+    """
     p = history.parameters
     assert p is not None
-    radius, depth, slope = p.auxiliary_strut.joint_radius, p.auxiliary_strut.joint_depth, p.ground.slope
+    radius, depth, slope = (
+        p.auxiliary_strut.joint_radius,
+        p.auxiliary_strut.joint_depth,
+        p.ground.slope,
+    )
     turned = history["body.pitch"] - slope
-    height = history["body.x"] * sin(slope) + history["body.y"] * cos(slope) - depth * np.cos(turned)
+    height = (
+        history["body.x"] * sin(slope) + history["body.y"] * cos(slope) - depth * np.cos(turned)
+    )
     sine = np.sin(turned)
     return min(float((height - radius * c * sine).min()) for c in cosines)
 
@@ -185,15 +267,23 @@ READERS: dict[str, Callable[[History, int], Array]] = {
 
 
 def check_limits(limits: Mapping[str, float]) -> dict[str, float]:
-    """`limits` by name [SI]. Raises LandingError for a name that is not in LIMITS, and a value that is negative, NaN or no number."""
+    """`limits` by name [SI].
+
+    Raises LandingError for a name that is not in LIMITS, and a value that is negative, NaN or no
+    number.
+    """
     for name in limits:
         if name not in LIMITS:
             raise unknown("limit", name, LIMITS)
     return {name: float(check_value(LIMITS[name], value)) for name, value in limits.items()}
 
 
-def _first_limit(history: History, legs: tuple[int, ...], limits: Mapping[str, float]) -> Passed | None:
-    """The limit that is passed at the earliest sample; of several there, the one that is passed by the largest part of itself."""
+def _first_limit(
+    history: History, legs: tuple[int, ...], limits: Mapping[str, float]
+) -> Passed | None:
+    """The limit that is passed at the earliest sample; of several there, the one that is passed by
+    the largest part of itself.
+    """
     found: list[tuple[int, float, Passed]] = []
     for name, limit in check_limits(limits).items():
         whose = legs if name in READERS else (None,)

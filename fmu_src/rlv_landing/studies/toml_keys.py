@@ -1,4 +1,6 @@
-"""Keys of a study's TOML file, each checked as it is read: LandingError names key, value, unit, limit and remedy."""
+"""Keys of a study's TOML file, each checked as it is read: LandingError names key, value, unit,
+limit and remedy.
+"""
 
 from __future__ import annotations
 
@@ -66,7 +68,9 @@ def flat(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
     return found
 
 
-def values(nested: Mapping[str, Any], known: Mapping[str, Quantity], what: str) -> dict[str, float | str]:
+def values(
+    nested: Mapping[str, Any], known: Mapping[str, Quantity], what: str
+) -> dict[str, float | str]:
     """Values in SI by name, each a number in SI or a text with a unit."""
     told = flat(nested)
     only(told, known, what)

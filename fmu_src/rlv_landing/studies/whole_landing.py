@@ -12,10 +12,12 @@ SLICE = 0.25
 
 
 def whole_landing(landing: Landing, until: float, every: float = 1e-3) -> History:
-    """Land from now until the vehicle is at rest, has toppled, or `until` [s]; outputs every `every` [s].
+    """Land from now until the vehicle is at rest, has toppled, or `until` [s]; outputs every
+    `every` [s].
 
-    It is looked at every 0.25 s: at rest where `status.phase` is settled then; toppled where it was toppled at every sample of the last
-    0.25 s, for one that is beyond its feet for a moment may still come back. Raises LandingError as `Landing.run`.
+    It is looked at every 0.25 s: at rest where `status.phase` is settled then; toppled where it was
+    toppled at every sample of the last 0.25 s, for one that is beyond its feet for a moment may
+    still come back. Raises LandingError as `Landing.run`.
     """
     per_slice = max(1, round(SLICE / every))
     start, slices = landing.time, 0

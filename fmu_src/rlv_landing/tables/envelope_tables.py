@@ -10,11 +10,23 @@ from .landing import new_table, render
 
 
 def envelope_tables(found: Envelope) -> str:
-    """Every family with its landings' outcomes, the critical conditions along the boundaries, and what it took."""
+    """Every family with its landings' outcomes, the critical conditions along the boundaries, and
+    what it took.
+    """
     study = found.study
-    table = new_table(f"lost: {study.criterion}; {study.x.name} and {study.y.name}", ("family",), ("landings", *NAMES), ("",))
+    table = new_table(
+        f"lost: {study.criterion}; {study.x.name} and {study.y.name}",
+        ("family",),
+        ("landings", *NAMES),
+        ("",),
+    )
     for f in found.families:
-        table.add_row(_family(f), str(len(f.landings)), *(str(f.count(name) or "-") for name in NAMES), verdict(f, study.criterion))
+        table.add_row(
+            _family(f),
+            str(len(f.landings)),
+            *(str(f.count(name) or "-") for name in NAMES),
+            verdict(f, study.criterion),
+        )
     (unit_x, sx), (unit_y, sy) = shown(study.x.quantity), shown(study.y.quantity)
     critical = new_table(
         f"critical condition along each boundary, as (x [{unit_x or 1}], y [{unit_y or 1}])",
@@ -24,12 +36,19 @@ def envelope_tables(found: Envelope) -> str:
     for f in found.families:
         for line in f.lines:
             for run in runs(line):
-                ends = [f"({c.x / sx:.4g}, {c.y / sy:.4g})" for c in (run.points[0], run.points[-1])]
+                ends = [
+                    f"({c.x / sx:.4g}, {c.y / sy:.4g})" for c in (run.points[0], run.points[-1])
+                ]
                 critical.add_row(_family(f), *ends, run.condition, str(len(run.points)))
     open_ended = sum(f.count("moving") for f in found.families)
-    parts = [render(table, 170), render(critical, 170) if any(f.lines for f in found.families) else ""]
+    parts = [
+        render(table, 170),
+        render(critical, 170) if any(f.lines for f in found.families) else "",
+    ]
     if open_ended:
-        parts.append(f"{open_ended} landings were neither at rest nor toppled at {study.until:g} s and count as not toppled\n")
+        parts.append(
+            f"{open_ended} landings were neither at rest nor toppled at {study.until:g} s and count as not toppled\n"
+        )
     parts.append(
         f"{found.landings} landings; a uniform grid of the same resolution takes {found.uniform}, "
         f"{found.uniform / found.landings:.0f} times as many\n"
@@ -39,4 +58,7 @@ def envelope_tables(found: Envelope) -> str:
 
 
 def _family(f: Family) -> str:
-    return ", ".join(f"{name} = {value_text(name, value)}" for name, value in f.values.items()) or "all"
+    return (
+        ", ".join(f"{name} = {value_text(name, value)}" for name, value in f.values.items())
+        or "all"
+    )

@@ -25,7 +25,9 @@ def render(table: Table, width: int = 140) -> str:
     return out.getvalue()
 
 
-def new_table(title: str, left: Iterable[str], right: Iterable[str], more: Iterable[str] = ()) -> Table:
+def new_table(
+    title: str, left: Iterable[str], right: Iterable[str], more: Iterable[str] = ()
+) -> Table:
     """An empty table: columns set left, set right (numbers), and left again."""
     table = Table(title=escape(title), title_justify="left", title_style="bold")
     for name in left:
@@ -38,14 +40,18 @@ def new_table(title: str, left: Iterable[str], right: Iterable[str], more: Itera
 
 
 def number(value: float | None, unit: str) -> str:
-    """A number as it is read in its unit: N without decimals, s with three, else two; a dash for none."""
+    """A number as it is read in its unit: N without decimals, s with three, else two; a dash for
+    none.
+    """
     if value is None or math.isnan(value):
         return "-"
     return f"{value:.0f}" if unit == "N" else f"{value:.3f}" if unit == "s" else f"{value:.2f}"
 
 
 def comparison_table(history: History, mode: str) -> str:
-    """Our numbers beside the paper's simulation and tests, a line a printed scalar, and the counts within 5, 10 and 20 %."""
+    """Our numbers beside the paper's simulation and tests, a line a printed scalar, and the counts
+    within 5, 10 and 20 %.
+    """
     comparisons: list[Comparison] = compare(history, mode)
     table = new_table(
         f"{mode} drop test: this landing beside Yue, Lin, Zheng, Du (2022), section 5",
@@ -54,7 +60,9 @@ def comparison_table(history: History, mode: str) -> str:
     )
     for c in comparisons:
         s = c.scalar
-        tests = " / ".join(number(v, s.unit) for v in (s.test_a, s.test_b) if not math.isnan(v)) or "-"
+        tests = (
+            " / ".join(number(v, s.unit) for v in (s.test_a, s.test_b) if not math.isnan(v)) or "-"
+        )
         table.add_row(
             s.quantity.replace("_", " "),
             str(s.leg or ""),
@@ -83,11 +91,15 @@ def counts_line(n: dict[str, int]) -> str:
 
 
 def near_zero_note(comparisons: Iterable[Comparison]) -> str:
-    """What the asterisk behind an error means, with the scales; nothing where no scalar is near zero."""
+    """What the asterisk behind an error means, with the scales; nothing where no scalar is near
+    zero.
+    """
     marked = [c.scalar for c in comparisons if c.scalar.near_zero]
     if not marked:
         return ""
-    scales = ", ".join(f"{number(s.simulation, s.unit)} on {number(s.scale, s.unit)} {s.unit}" for s in marked)
+    scales = ", ".join(
+        f"{number(s.simulation, s.unit)} on {number(s.scale, s.unit)} {s.unit}" for s in marked
+    )
     return f"* near zero, so judged on the scale of its curve, the largest that the paper prints of it: {scales}\n"
 
 
@@ -97,7 +109,14 @@ def summary_table(history: History, title: str) -> str:
     table = new_table(
         title,
         ("leg",),
-        ("contact at [s]", "main strut force [kN]", "at [s]", "stroke [mm]", "at [s]", "auxiliary strut force [kN]"),
+        (
+            "contact at [s]",
+            "main strut force [kN]",
+            "at [s]",
+            "stroke [mm]",
+            "at [s]",
+            "auxiliary strut force [kN]",
+        ),
     )
     for leg in s["legs"]:
         table.add_row(
@@ -117,17 +136,28 @@ def summary_table(history: History, title: str) -> str:
             f"stability margin at least {s['stability_margin_min']:.3f} m; energy balance within {s['energy_balance_worst']:.1e} J"
         )
     if s.get("bottomed_out"):
-        lines.append(f"BOTTOMED OUT: the damper of leg {', '.join(map(str, s['bottomed_out']))} met its compression stop")
+        lines.append(
+            f"BOTTOMED OUT: the damper of leg {', '.join(map(str, s['bottomed_out']))} met its compression stop"
+        )
     return render(table) + "\n".join(lines) + "\n"
 
 
 def parameter_table(parameters: Parameters) -> str:
     """Every parameter with value, unit, bounds, source and meaning."""
-    table = new_table("parameters", ("name",), ("value",), ("unit", "bounds or choices", "source", "meaning"))
+    table = new_table(
+        "parameters", ("name",), ("value",), ("unit", "bounds or choices", "source", "meaning")
+    )
     for name, value in parameters.items():
         q = PARAMETER_QUANTITIES[name]
         bounds = " | ".join(q.choices) if q.choices else f"[{q.lo:g}, {q.hi:g}]"
-        table.add_row(name, value if isinstance(value, str) else f"{value:.6g}", q.unit, bounds, parameters.source(name), q.meaning)
+        table.add_row(
+            name,
+            value if isinstance(value, str) else f"{value:.6g}",
+            q.unit,
+            bounds,
+            parameters.source(name),
+            q.meaning,
+        )
     return render(table, 200)
 
 

@@ -14,7 +14,11 @@ from .landing import counts_line, near_zero_note, new_table, number, percent, re
 
 def validation_tables(found: Validation) -> str:
     """Every printed scalar, the dampers' measures, RRMS where the user gave curves, and the counts."""
-    parts = [_scalar_table(found.all_comparisons), near_zero_note(found.all_comparisons), measure_table(found)]
+    parts = [
+        _scalar_table(found.all_comparisons),
+        near_zero_note(found.all_comparisons),
+        measure_table(found),
+    ]
     if found.curves:
         parts.append(_curve_table(found))
     parts.append(
@@ -29,7 +33,15 @@ def _scalar_table(comparisons: Iterable[Comparison]) -> str:
     table = new_table(
         "every scalar that Yue, Lin, Zheng, Du (2022) print in section 5; errors on the printed simulation's scale",
         ("id", "event"),
-        ("simulation", "test", "ours", "unit", "ours - simulation", "ours - test", "simulation - test"),
+        (
+            "simulation",
+            "test",
+            "ours",
+            "unit",
+            "ours - simulation",
+            "ours - test",
+            "simulation - test",
+        ),
     )
     for c in comparisons:
         s = c.scalar
@@ -53,7 +65,15 @@ def measure_table(found: Validation) -> str:
     table = new_table(
         "first compression and rebound of every damper",
         ("mode", "leg"),
-        ("Fmax [kN]", "Smax [mm]", "absorbed [J]", "dissipated [J]", "efficiency", "of measured: absorbed", "dissipated"),
+        (
+            "Fmax [kN]",
+            "Smax [mm]",
+            "absorbed [J]",
+            "dissipated [J]",
+            "efficiency",
+            "of measured: absorbed",
+            "dissipated",
+        ),
     )
     for mode, work in found.work.items():
         for leg, w in work.items():
@@ -73,28 +93,49 @@ def measure_table(found: Validation) -> str:
 
 def _curve_table(found: Validation) -> str:
     table = new_table(
-        "beside the measured curves: rms(landing - test)/rms(test)", ("mode", "curve"), ("RRMS", "RRMS through the sensor chain")
+        "beside the measured curves: rms(landing - test)/rms(test)",
+        ("mode", "curve"),
+        ("RRMS", "RRMS through the sensor chain"),
     )
     for c in found.curves:
-        table.add_row(c.mode, c.column.replace("[", r"\["), f"{100.0 * c.rrms:.1f} %", f"{100.0 * c.rrms_sensors:.1f} %")
+        table.add_row(
+            c.mode,
+            c.column.replace("[", r"\["),
+            f"{100.0 * c.rrms:.1f} %",
+            f"{100.0 * c.rrms_sensors:.1f} %",
+        )
     return render(table)
 
 
 def audit_tables(audits: Iterable[Audit]) -> str:
     """Energies by term, convergence, and every check with its bound and reason, mode by mode."""
-    return "".join(_energy_table(a) + _convergence_table(a) + _check_table(a) + _rest_line(a) for a in audits)
+    return "".join(
+        _energy_table(a) + _convergence_table(a) + _check_table(a) + _rest_line(a) for a in audits
+    )
 
 
 def _energy_table(found: Audit) -> str:
-    table = new_table(f"{found.mode}: energies [J], rtol 1e-8", ("term",), ("start", "end", "change"))
+    table = new_table(
+        f"{found.mode}: energies [J], rtol 1e-8", ("term",), ("start", "end", "change")
+    )
     sums = [0.0, 0.0]
     for term, (start, end) in found.energy.items():
         sign = -1.0 if term.startswith("work") else 1.0
         sums = [sums[0] + sign * start, sums[1] + sign * end]
         name = term.replace("_", " ")
-        table.add_row(f"less: {name}" if sign < 0.0 else name, f"{start:.6f}", f"{end:.6f}", f"{end - start:+.6f}")
+        table.add_row(
+            f"less: {name}" if sign < 0.0 else name,
+            f"{start:.6f}",
+            f"{end:.6f}",
+            f"{end - start:+.6f}",
+        )
     table.add_section()
-    table.add_row("sum, which must not change", f"{sums[0]:.6f}", f"{sums[1]:.6f}", f"{sums[1] - sums[0]:+.1e}")
+    table.add_row(
+        "sum, which must not change",
+        f"{sums[0]:.6f}",
+        f"{sums[1]:.6f}",
+        f"{sums[1] - sums[0]:+.1e}",
+    )
     return render(table)
 
 
@@ -119,10 +160,18 @@ def _convergence_table(found: Audit) -> str:
 
 
 def _check_table(found: Audit) -> str:
-    table = new_table(f"{found.mode}: audit", ("check",), ("value", "bound"), ("", "why this bound"))
+    table = new_table(
+        f"{found.mode}: audit", ("check",), ("value", "bound"), ("", "why this bound")
+    )
     for check in found.checks:
         b = BOUNDS[check.id]
-        table.add_row(b.what, f"{check.value:.2g} {b.unit}".rstrip(), f"{b.side} {b.limit:g} {b.unit}".rstrip(), _verdict(check), b.reason)
+        table.add_row(
+            b.what,
+            f"{check.value:.2g} {b.unit}".rstrip(),
+            f"{b.side} {b.limit:g} {b.unit}".rstrip(),
+            _verdict(check),
+            b.reason,
+        )
     return render(table, 200)
 
 
@@ -132,7 +181,11 @@ def _verdict(check: Check) -> str:
 
 def _rest_line(found: Audit) -> str:
     r = found.rest
-    settled = f"settled from {r['settled_since']:.2f} s on" if r["settled_since"] == r["settled_since"] else "not settled"
+    settled = (
+        f"settled from {r['settled_since']:.2f} s on"
+        if r["settled_since"] == r["settled_since"]
+        else "not settled"
+    )
     strokes = ", ".join(f"{1e3 * r[f'stroke_{leg}']:.2f}" for leg in (1, 2, 3, 4))
     return (
         f"{found.mode} at rest: {settled}; pitch {r['pitch'] * 57.29577951308232:+.3f} deg, strokes {strokes} mm, "

@@ -1,4 +1,6 @@
-"""What a landing must conserve, where it must end, and how exact it is: each measured, and held against a bound with its reason."""
+"""What a landing must conserve, where it must end, and how exact it is: each measured, and held
+against a bound with its reason.
+"""
 
 from __future__ import annotations
 
@@ -23,13 +25,17 @@ FLIGHT = 0.3
 SAMPLE_STEP, FINE_STEP, FINE_BEFORE, FINE_AFTER = 5e-5, 1e-6, 5e-5, 5e-4
 
 HELD = ("kinetic", "potential", "liquid", "auxiliary", "contact", "stop")
-DISSIPATED = tuple(f"dissipated_{w}" for w in ("orifice", "seal", "stop", "auxiliary", "contact", "friction"))
+DISSIPATED = tuple(
+    f"dissipated_{w}" for w in ("orifice", "seal", "stop", "auxiliary", "contact", "friction")
+)
 SUPPLIED = ("work_external", "work_ground", "work_transverse")
 
 
 @dataclass(frozen=True)
 class Check:
-    """One value held against its bound; `applies` is False where the bound does not hold for these parameters."""
+    """One value held against its bound; `applies` is False where the bound does not hold for these
+    parameters.
+    """
 
     id: str
     value: float
@@ -38,12 +44,16 @@ class Check:
     @property
     def passed(self) -> bool:
         bound = BOUNDS[self.id]
-        return not self.applies or (self.value <= bound.limit if bound.side == "at most" else self.value >= bound.limit)
+        return not self.applies or (
+            self.value <= bound.limit if bound.side == "at most" else self.value >= bound.limit
+        )
 
 
 @dataclass(frozen=True)
 class Audit:
-    """The audit of one mode: every check, energies [J] at start and end by term, convergence, and the rest state."""
+    """The audit of one mode: every check, energies [J] at start and end by term, convergence, and
+    the rest state.
+    """
 
     mode: str
     checks: tuple[Check, ...]
@@ -63,9 +73,18 @@ class Audit:
             "mode": self.mode,
             "passed": not self.missed,
             "checks": [
-                {"id": c.id, "value": _finite(c.value), "applies": c.applies, "passed": c.passed, **_bound(c.id)} for c in self.checks
+                {
+                    "id": c.id,
+                    "value": _finite(c.value),
+                    "applies": c.applies,
+                    "passed": c.passed,
+                    **_bound(c.id),
+                }
+                for c in self.checks
             ],
-            "energy": {term: {"start": start, "end": end} for term, (start, end) in self.energy.items()},
+            "energy": {
+                term: {"start": start, "end": end} for term, (start, end) in self.energy.items()
+            },
             "convergence": {
                 "reference_rtol": c.reference,
                 "smooth_arc": [c.start, c.end],
@@ -79,7 +98,10 @@ class Audit:
 
 
 def audit(parameters: Parameters, modes: Iterable[str] = tuple(MODES)) -> list[Audit]:
-    """Audit the landing of `parameters` in every mode. Raises LandingError for a landing that cannot be run."""
+    """Audit the landing of `parameters` in every mode.
+
+    Raises LandingError for a landing that cannot be run.
+    """
     return [_audit(parameters.for_mode(mode)) for mode in modes]
 
 
@@ -99,35 +121,62 @@ def _audit(parameters: Parameters) -> Audit:
     return Audit(parameters.drop.mode, tuple(checks), energy, found, rest)
 
 
-def _energy(parameters: Parameters, until: float) -> tuple[dict[str, tuple[float, float]], list[Check]]:
+def _energy(
+    parameters: Parameters, until: float
+) -> tuple[dict[str, tuple[float, float]], list[Check]]:
     """The balance summed here term by term, and the dampers' liquid mass."""
 
     def balance(rtol: float) -> tuple[History, float]:
         history = Landing(parameters, rtol=rtol).run(until)
         held = np.sum([history[f"energy.{t}"] for t in HELD + DISSIPATED], axis=0)
         left = held - np.sum([history[f"energy.{t}"] for t in SUPPLIED], axis=0)
-        turned_over = history["energy.dissipated"][-1] + sum(abs(history[f"energy.{t}"][-1]) for t in SUPPLIED)
-        return history, float(np.abs(left - left[0]).max() / turned_over) if turned_over > 0.0 else np.inf
+        turned_over = history["energy.dissipated"][-1] + sum(
+            abs(history[f"energy.{t}"][-1]) for t in SUPPLIED
+        )
+        return history, float(
+            np.abs(left - left[0]).max() / turned_over
+        ) if turned_over > 0.0 else np.inf
 
     history, tight = balance(TIGHT_RTOL)
-    mass = max(float(np.abs(m / m[0] - 1.0).max()) for m in (history[f"leg[{leg}].main_strut.liquid_mass"] for leg in LEGS))
-    terms = {t: (float(history[f"energy.{t}"][0]), float(history[f"energy.{t}"][-1])) for t in HELD + DISSIPATED + SUPPLIED}
-    return terms, [Check("energy", tight), Check("energy_default", balance(DEFAULT_RTOL)[1]), Check("liquid_mass", mass)]
+    mass = max(
+        float(np.abs(m / m[0] - 1.0).max())
+        for m in (history[f"leg[{leg}].main_strut.liquid_mass"] for leg in LEGS)
+    )
+    terms = {
+        t: (float(history[f"energy.{t}"][0]), float(history[f"energy.{t}"][-1]))
+        for t in HELD + DISSIPATED + SUPPLIED
+    }
+    return terms, [
+        Check("energy", tight),
+        Check("energy_default", balance(DEFAULT_RTOL)[1]),
+        Check("liquid_mass", mass),
+    ]
 
 
 def _flight(parameters: Parameters) -> list[Check]:
-    """0.3 s of turning free flight that ends in this landing's touchdown, faster by what the weight gives in that time."""
+    """0.3 s of turning free flight that ends in this landing's touchdown, faster by what the weight
+    gives in that time.
+    """
     drop, g = parameters.drop, parameters.ground.gravity
     rate = drop.pitch_rate if abs(drop.pitch_rate) > 0.1 else 0.2
     speed = max(drop.vertical_velocity - g * FLIGHT, -50.0)
-    flying = replace(parameters, drop=replace(drop, contact_time=FLIGHT, vertical_velocity=speed, pitch_rate=rate), by_mode={})
+    flying = replace(
+        parameters,
+        drop=replace(drop, contact_time=FLIGHT, vertical_velocity=speed, pitch_rate=rate),
+        by_mode={},
+    )
     history = Landing(flying, rtol=TIGHT_RTOL).run(0.95 * FLIGHT)
     found, given = momentum(history, flying), impulse(history, flying)
     size = _mass(parameters) * max(g, 1.0) * FLIGHT
-    linear = max(np.abs(a - a[0] - b).max() for a, b in ((found.x, given.x), (found.y, given.y))) / size
+    linear = (
+        max(np.abs(a - a[0] - b).max() for a, b in ((found.x, given.x), (found.y, given.y))) / size
+    )
     angular = np.ptp(found.about_cg) / np.abs(found.about_cg).max()
     consistent = parameters.vehicle.transverse_load_at == "footpad"
-    return [Check("flight_momentum", float(linear)), Check("flight_angular", float(angular), consistent)]
+    return [
+        Check("flight_momentum", float(linear)),
+        Check("flight_angular", float(angular), consistent),
+    ]
 
 
 def _contact(parameters: Parameters, until: float) -> list[Check]:
@@ -137,7 +186,9 @@ def _contact(parameters: Parameters, until: float) -> list[Check]:
     history = _sample(landing, coarse)
     active = np.array([history[f"leg[{leg}].contact.active"] for leg in LEGS])
     changes = np.flatnonzero(np.any(np.diff(active, axis=1) != 0.0, axis=0))
-    fine = [np.arange(coarse[i] - FINE_BEFORE, coarse[i + 1] + FINE_AFTER, FINE_STEP) for i in changes]
+    fine = [
+        np.arange(coarse[i] - FINE_BEFORE, coarse[i + 1] + FINE_AFTER, FINE_STEP) for i in changes
+    ]
     times = np.unique(np.round(np.concatenate([coarse, *fine]), 9))
     landing.reset()
     history = _sample(landing, times[(times >= 0.0) & (times <= until)])
@@ -149,7 +200,11 @@ def _contact(parameters: Parameters, until: float) -> list[Check]:
     return [
         Check("momentum_x", left(found.x, given.x)),
         Check("momentum_y", left(found.y, given.y)),
-        Check("angular", left(found.about_origin, given.about_origin), parameters.vehicle.transverse_load_at == "footpad"),
+        Check(
+            "angular",
+            left(found.about_origin, given.about_origin),
+            parameters.vehicle.transverse_load_at == "footpad",
+        ),
     ]
 
 
@@ -158,29 +213,47 @@ def _sample(landing: Landing, times: Any) -> History:
         landing.advance_to(time)
         return landing.values()
 
-    return History(times, OUTPUT_NAMES, np.array([values(t) for t in times.tolist()]), landing.parameters)
+    return History(
+        times, OUTPUT_NAMES, np.array([values(t) for t in times.tolist()]), landing.parameters
+    )
 
 
 def _rest(parameters: Parameters) -> tuple[dict[str, float], list[Check]]:
-    """The state 10 s after first contact, and since when the vehicle has been settled (NaN: it is not, or has toppled)."""
-    history = Landing(parameters, rtol=TIGHT_RTOL).run(parameters.drop.contact_time + REST_AFTER, 5e-3)
+    """The state 10 s after first contact, and since when the vehicle has been settled (NaN: it is
+    not, or has toppled).
+    """
+    history = Landing(parameters, rtol=TIGHT_RTOL).run(
+        parameters.drop.contact_time + REST_AFTER, 5e-3
+    )
     phase = history["status.phase"]
     settled = phase == 2.0
     stands = bool(settled[-1]) and not np.any(phase == 3.0)
     moving = np.flatnonzero(~settled)
-    since = float(history.time[min(int(moving[-1]) + 1, len(history) - 1)]) if stands else float("nan")
+    since = (
+        float(history.time[min(int(moving[-1]) + 1, len(history) - 1)]) if stands else float("nan")
+    )
     weight = _mass(parameters) * parameters.ground.gravity
     carried = sum(float(history[f"leg[{leg}].contact.force_y"][-1]) for leg in LEGS)
-    rates = ["body.vx", "body.vy", *(f"leg[{leg}].{s}_strut.stroke_rate" for leg in LEGS for s in ("main", "auxiliary"))]
+    rates = [
+        "body.vx",
+        "body.vy",
+        *(f"leg[{leg}].{s}_strut.stroke_rate" for leg in LEGS for s in ("main", "auxiliary")),
+    ]
     speed = max(abs(float(history[name][-1])) for name in rates)
     state = {
         "settled_since": since,
         "pitch": float(history["body.pitch"][-1]),
         "stability_margin": float(history["status.stability_margin"][-1]),
     }
-    state.update({f"stroke_{leg}": float(history[f"leg[{leg}].main_strut.stroke"][-1]) for leg in LEGS})
+    state.update(
+        {f"stroke_{leg}": float(history[f"leg[{leg}].main_strut.stroke"][-1]) for leg in LEGS}
+    )
     off = abs(carried - weight) / weight if weight > 0.0 else float("nan")
-    return state, [Check("rest_weight", off), Check("rest_speed", speed), Check("rest_phase", float(stands))]
+    return state, [
+        Check("rest_weight", off),
+        Check("rest_speed", speed),
+        Check("rest_phase", float(stands)),
+    ]
 
 
 def _mass(parameters: Parameters) -> float:

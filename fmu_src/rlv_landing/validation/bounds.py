@@ -6,7 +6,9 @@ from typing import Literal, NamedTuple
 
 
 class Bound(NamedTuple):
-    """What a measured value is, its unit, its limit, on which side of it the value must be, and why the limit is what it is."""
+    """What a measured value is, its unit, its limit, on which side of it the value must be, and why
+    the limit is what it is.
+    """
 
     what: str
     unit: str

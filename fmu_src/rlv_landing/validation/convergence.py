@@ -1,4 +1,6 @@
-"""How the integrator's error follows its tolerance: on a smooth arc of a landing, and across all of its contacts."""
+"""How the integrator's error follows its tolerance: on a smooth arc of a landing, and across all of
+its contacts.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ AFTER_EVENT, BEFORE_EVENT = 2e-3, 1e-3
 
 @dataclass(frozen=True)
 class Errors:
-    """Largest errors of a run at `rtol` against one at 1e-12, as parts of the landing's largest main strut force and stroke; its steps."""
+    """Largest errors of a run at `rtol` against one at 1e-12, as parts of the landing's largest
+    main strut force and stroke; its steps.
+    """
 
     rtol: float
     steps: int
@@ -37,8 +41,10 @@ class Errors:
 
 @dataclass(frozen=True)
 class Convergence:
-    """Errors against a run at `reference`: on the arc from `start` to `end` [s], begun from one and the same state, and over the whole
-    landing; `*_slope` is how many decades the worst error falls with a decade of tolerance (1: in proportion)."""
+    """Errors against a run at `reference`: on the arc from `start` to `end` [s], begun from one and
+    the same state, and over the whole landing; `*_slope` is how many decades the worst error falls
+    with a decade of tolerance (1: in proportion).
+    """
 
     reference: float
     start: float
@@ -52,8 +58,9 @@ class Convergence:
 def convergence(parameters: Parameters, until: float) -> Convergence:
     """Measure both, for the landing of `parameters` in their own mode until `until` [s].
 
-    The reference runs by the other method, Dormand-Prince, at rtol 1e-12, or at 1e-11 or 1e-10 where round-off at a corner of the
-    friction stops it. Raises LandingError where none of them gets through.
+    The reference runs by the other method, Dormand-Prince, at rtol 1e-12, or at 1e-11 or 1e-10
+    where round-off at a corner of the friction stops it. Raises LandingError where none of them
+    gets through.
     """
     rtol_used, reference, whole = _reference(parameters, until)
     reference.reset()
@@ -69,7 +76,9 @@ def convergence(parameters: Parameters, until: float) -> Convergence:
         landing.restore(state)
         before = landing.statistics["steps"]
         smooth.append(_errors(landing, landing.run(end, SAMPLE_STEP), arc, whole, rtol, before))
-    return Convergence(rtol_used, start, end, tuple(smooth), tuple(contacts), _slope(smooth), _slope(contacts))
+    return Convergence(
+        rtol_used, start, end, tuple(smooth), tuple(contacts), _slope(smooth), _slope(contacts)
+    )
 
 
 def _reference(parameters: Parameters, until: float) -> tuple[float, Landing, History]:
@@ -82,16 +91,24 @@ def _reference(parameters: Parameters, until: float) -> tuple[float, Landing, Hi
 
 
 def smooth_arc(history: History) -> tuple[float, float]:
-    """Start and end [s] of the longest time in contact without an event, with 2 ms after and 1 ms before one left out.
+    """Start and end [s] of the longest time in contact without an event, with 2 ms after and 1 ms
+    before one left out.
 
-    An event is where the equations have a corner: a footpad touches or leaves, its friction turns, a chamber's pressure passes the
-    other's (the orifice changes area), a strut meets or leaves its stop at full extension.
+    An event is where the equations have a corner: a footpad touches or leaves, its friction turns,
+    a chamber's pressure passes the other's (the orifice changes area), a strut meets or leaves its
+    stop at full extension.
     """
     signs = []
     for leg in LEGS:
         strut = f"leg[{leg}].main_strut"
-        signs += [history[f"leg[{leg}].contact.active"], np.sign(history[f"leg[{leg}].contact.force_x"])]
-        signs += [np.sign(history[f"{strut}.pressure_lower"] - history[f"{strut}.pressure_upper"]), np.sign(history[f"{strut}.stroke"])]
+        signs += [
+            history[f"leg[{leg}].contact.active"],
+            np.sign(history[f"leg[{leg}].contact.force_x"]),
+        ]
+        signs += [
+            np.sign(history[f"{strut}.pressure_lower"] - history[f"{strut}.pressure_upper"]),
+            np.sign(history[f"{strut}.stroke"]),
+        ]
     changes = np.any(np.diff(np.array(signs), axis=1) != 0.0, axis=0)
     touching = np.any([history[f"leg[{leg}].contact.active"] > 0.0 for leg in LEGS], axis=0)
     events = np.flatnonzero(changes | ~touching[1:])
@@ -102,11 +119,17 @@ def smooth_arc(history: History) -> tuple[float, float]:
     return start + short * AFTER_EVENT, end - short * BEFORE_EVENT
 
 
-def _errors(landing: Landing, found: History, reference: History, whole: History, rtol: float, before: int) -> Errors:
+def _errors(
+    landing: Landing, found: History, reference: History, whole: History, rtol: float, before: int
+) -> Errors:
     def worst(what: str) -> float:
         names = [f"leg[{leg}].main_strut.{what}" for leg in LEGS]
         size = max(float(np.abs(whole[name]).max()) for name in names)
-        return max(float(np.abs(found[name] - reference[name]).max()) for name in names) / size if size > 0.0 else 0.0
+        return (
+            max(float(np.abs(found[name] - reference[name]).max()) for name in names) / size
+            if size > 0.0
+            else 0.0
+        )
 
     return Errors(rtol, landing.statistics["steps"] - before, worst("force"), worst("stroke"))
 

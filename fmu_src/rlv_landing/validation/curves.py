@@ -1,4 +1,6 @@
-"""Measured curves from a CSV file: first column `time` [s], then columns named as our outputs, in SI units."""
+"""Measured curves from a CSV file: first column `time` [s], then columns named as our outputs, in
+SI units.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +18,9 @@ from ..quantities import OUTPUT_NAMES
 def read_curves(path: str | Path) -> History:
     """The curves of a CSV file as a history.
 
-    Raises LandingError, with line and column: no such file, no `time` in front, a name that is no output or comes twice, a value that is
-    not a finite number, rows of another length, times that do not rise, fewer than two rows.
+    Raises LandingError, with line and column: no such file, no `time` in front, a name that is no
+    output or comes twice, a value that is not a finite number, rows of another length, times that
+    do not rise, fewer than two rows.
     """
     path = Path(path)
     try:
@@ -29,7 +32,9 @@ def read_curves(path: str | Path) -> History:
         raise LandingError(f"measured curves {path} cannot be read: {e}") from None
     names = _names(path, rows[0] if rows else [])
     if len(rows) < 3:
-        raise LandingError(f"{path} has {max(len(rows) - 1, 0)} rows of numbers below its names; measured curves need at least two")
+        raise LandingError(
+            f"{path} has {max(len(rows) - 1, 0)} rows of numbers below its names; measured curves need at least two"
+        )
     values = np.array([_numbers(path, row, names, line) for line, row in enumerate(rows[1:], 2)])
     back = np.flatnonzero(np.diff(values[:, 0]) <= 0.0)
     if len(back):
@@ -43,20 +48,30 @@ def read_curves(path: str | Path) -> History:
 def _names(path: Path, header: list[str]) -> list[str]:
     names = [name.strip() for name in header]
     if not names or names[0] not in ("time", "time [s]"):
-        raise LandingError(f"{path} starts with column {names[0] if names else ''!r}; its first column must be time, in seconds")
+        raise LandingError(
+            f"{path} starts with column {names[0] if names else ''!r}; its first column must be time, in seconds"
+        )
     if len(names) < 2:
-        raise LandingError(f"{path} has no column beside time; name one as an output, for example leg[1].main_strut.force")
+        raise LandingError(
+            f"{path} has no column beside time; name one as an output, for example leg[1].main_strut.force"
+        )
     for name in names[1:]:
         if name not in OUTPUT_NAMES:
-            raise LandingError(f"{path}: {unknown('column', name, OUTPUT_NAMES)}; `rlv-landing parameters --outputs` lists the names")
+            raise LandingError(
+                f"{path}: {unknown('column', name, OUTPUT_NAMES)}; `rlv-landing parameters --outputs` lists the names"
+            )
         if names.count(name) > 1:
-            raise LandingError(f"{path}: column {name!r} is there {names.count(name)} times; leave one")
+            raise LandingError(
+                f"{path}: column {name!r} is there {names.count(name)} times; leave one"
+            )
     return names
 
 
 def _numbers(path: Path, row: list[str], names: list[str], line: int) -> list[float]:
     if len(row) != len(names):
-        raise LandingError(f"{path}, row {line}: {len(row)} values for {len(names)} columns; give every column a value in every row")
+        raise LandingError(
+            f"{path}, row {line}: {len(row)} values for {len(names)} columns; give every column a value in every row"
+        )
     numbers = []
     for name, text in zip(names, row):
         try:
@@ -64,6 +79,8 @@ def _numbers(path: Path, row: list[str], names: list[str], line: int) -> list[fl
         except ValueError:
             value = float("nan")
         if not isfinite(value):
-            raise LandingError(f"{path}, row {line}: {name} = {text!r} is not a finite number; leave rows with gaps out")
+            raise LandingError(
+                f"{path}, row {line}: {name} = {text!r} is not a finite number; leave rows with gaps out"
+            )
         numbers.append(value)
     return numbers

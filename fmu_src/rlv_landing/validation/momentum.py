@@ -1,4 +1,6 @@
-"""Linear and angular momentum of the whole vehicle, from a history's outputs alone: an account that shares no kernel with the core."""
+"""Linear and angular momentum of the whole vehicle, from a history's outputs alone: an account that
+shares no kernel with the core.
+"""
 
 from __future__ import annotations
 
@@ -17,8 +19,9 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Momentum:
-    """Momentum of body and footpads: `x`, `y` [N s] inertial; `about_origin`, `about_cg` [N m s] of the inertial origin and the whole
-    vehicle's CG, clockwise positive as the pitch."""
+    """Momentum of body and footpads: `x`, `y` [N s] inertial; `about_origin`, `about_cg` [N m s] of
+    the inertial origin and the whole vehicle's CG, clockwise positive as the pitch.
+    """
 
     x: Array
     y: Array
@@ -26,10 +29,16 @@ class Momentum:
     about_cg: Array
 
 
-def _mass_points(history: History, parameters: Parameters) -> list[tuple[float, Array, Array, Array, Array]]:
-    """(mass, x, y, vx, vy) of the body and every footpad; footpads' velocities are solved from both struts' stroke rates."""
+def _mass_points(
+    history: History, parameters: Parameters
+) -> list[tuple[float, Array, Array, Array, Array]]:
+    """(mass, x, y, vx, vy) of the body and every footpad; footpads' velocities are solved from both
+    struts' stroke rates.
+    """
     v, m, a = parameters.vehicle, parameters.main_strut, parameters.auxiliary_strut
-    x, y, pitch, vx, vy, rate = (history[f"body.{n}"] for n in ("x", "y", "pitch", "vx", "vy", "pitch_rate"))
+    x, y, pitch, vx, vy, rate = (
+        history[f"body.{n}"] for n in ("x", "y", "pitch", "vx", "vy", "pitch_rate")
+    )
     sine, cosine = np.sin(pitch), np.cos(pitch)
     points = [(v.mass, x, y, vx, vy)]
     turns = {leg: azimuth(g.azimuth) for g in MODES[parameters.drop.mode] for leg, _ in g.legs}
@@ -46,12 +55,22 @@ def _mass_points(history: History, parameters: Parameters) -> list[tuple[float, 
         vr = (main_rate * aux_h - aux_rate * main_h) / determinant
         vh = (main_r * aux_rate - aux_r * main_rate) / determinant
         along, up = vr * cos_g + rate * h, vh - rate * body_x
-        points.append((v.footpad_mass, x + dx, y + dy, vx + along * cosine + up * sine, vy - along * sine + up * cosine))
+        points.append(
+            (
+                v.footpad_mass,
+                x + dx,
+                y + dy,
+                vx + along * cosine + up * sine,
+                vy - along * sine + up * cosine,
+            )
+        )
     return points
 
 
 def momentum(history: History, parameters: Parameters) -> Momentum:
-    """The momentum at every sample; the history needs the landing's own columns, stroke rates included."""
+    """The momentum at every sample; the history needs the landing's own columns, stroke rates
+    included.
+    """
     points = _mass_points(history, parameters)
     total = sum(p[0] for p in points)
     px: Array = np.sum([m * vx for m, _, _, vx, _ in points], axis=0)
@@ -64,16 +83,25 @@ def momentum(history: History, parameters: Parameters) -> Momentum:
 
 
 def impulse(history: History, parameters: Parameters) -> Momentum:
-    """What contact forces and weight have given since the first sample, by Simpson's rule over the samples; `about_cg` is left 0."""
+    """What contact forces and weight have given since the first sample, by Simpson's rule over the
+    samples; `about_cg` is left 0.
+    """
     g, v = parameters.ground.gravity, parameters.vehicle
     t = history.time
     force_x: Array = np.zeros(len(t))
     force_y: Array = np.full(len(t), -g * v.mass)
     moment: Array = g * v.mass * history["body.x"]
     for leg in LEGS:
-        fx, fy = history[f"leg[{leg}].contact.force_x"], history[f"leg[{leg}].contact.force_y"] - g * v.footpad_mass
+        fx, fy = (
+            history[f"leg[{leg}].contact.force_x"],
+            history[f"leg[{leg}].contact.force_y"] - g * v.footpad_mass,
+        )
         force_x = force_x + fx
         force_y = force_y + fy
-        moment = moment + history[f"leg[{leg}].footpad.y"] * fx - history[f"leg[{leg}].footpad.x"] * fy
-    x, y, turn = (np.asarray(cumulative_simpson(f, x=t, initial=0.0)) for f in (force_x, force_y, moment))
+        moment = (
+            moment + history[f"leg[{leg}].footpad.y"] * fx - history[f"leg[{leg}].footpad.x"] * fy
+        )
+    x, y, turn = (
+        np.asarray(cumulative_simpson(f, x=t, initial=0.0)) for f in (force_x, force_y, moment)
+    )
     return Momentum(x, y, turn, np.zeros(len(t)))

@@ -1,8 +1,9 @@
-"""The numbers that Yue, Lin, Zheng and Du (2022) print in their section 5, and how each is read off a landing and judged.
+"""The numbers that Yue, Lin, Zheng and Du (2022) print in their section 5, and how each is read off
+a landing and judged.
 
-What a printed scalar is taken to mean is written once, in `reading.py`, and the scale on which a difference from it is judged here: the
-printed simulation value itself, or its curve's largest where the value is near zero. Times are from the start of the landing, as the
-paper's axes.
+What a printed scalar is taken to mean is written once, in `reading.py`, and the scale on which a
+difference from it is judged here: the printed simulation value itself, or its curve's largest where
+the value is near zero. Times are from the start of the landing, as the paper's axes.
 """
 
 from __future__ import annotations
@@ -39,7 +40,9 @@ NAN = float("nan")
 
 @dataclass(frozen=True)
 class Scalar:
-    """One printed number: `simulation` and up to two tests, in `unit` (s, N, mm, m/s2); NaN where none is printed."""
+    """One printed number: `simulation` and up to two tests, in `unit` (s, N, mm, m/s2); NaN where
+    none is printed.
+    """
 
     id: str
     mode: str
@@ -59,13 +62,21 @@ class Scalar:
 
     @property
     def near_zero(self) -> bool:
-        """Whether the printed simulation is below 10 % of the largest printed of the same quantity, unit and mode."""
+        """Whether the printed simulation is below 10 % of the largest printed of the same quantity,
+        unit and mode.
+        """
         return abs(self.simulation) < NEAR_ZERO * _curve_scale(self.quantity, self.unit, self.mode)
 
     @property
     def scale(self) -> float:
-        """What a difference from this scalar is divided by: |simulation|, or its curve's largest printed value where it is near zero."""
-        return _curve_scale(self.quantity, self.unit, self.mode) if self.near_zero else abs(self.simulation)
+        """What a difference from this scalar is divided by: |simulation|, or its curve's largest
+        printed value where it is near zero.
+        """
+        return (
+            _curve_scale(self.quantity, self.unit, self.mode)
+            if self.near_zero
+            else abs(self.simulation)
+        )
 
     @property
     def paper_error_test(self) -> float:
@@ -75,7 +86,10 @@ class Scalar:
 
 @dataclass(frozen=True)
 class Comparison:
-    """One printed number beside ours. Errors are fractions on the scalar's `scale`, one scale for simulation and test alike."""
+    """One printed number beside ours.
+
+    Errors are fractions on the scalar's `scale`, one scale for simulation and test alike.
+    """
 
     scalar: Scalar
     ours: float
@@ -109,10 +123,15 @@ def printed_scalars() -> tuple[Scalar, ...]:
 
 @cache
 def _curve_scale(quantity: str, unit: str, mode: str) -> float:
-    return max(abs(s.simulation) for s in printed_scalars() if (s.quantity, s.unit, s.mode) == (quantity, unit, mode))
+    return max(
+        abs(s.simulation)
+        for s in printed_scalars()
+        if (s.quantity, s.unit, s.mode) == (quantity, unit, mode)
+    )
 
 
-# what each printed scalar is: the id's end, and the leg whose contact it follows where the paper's row names none
+# what each printed scalar is: the id's end, and the leg whose contact it follows where the paper's
+# row names none
 MEANINGS: dict[str, tuple[Callable[[Reading, int], float], int]] = {
     "22-fm1-td": (Reading.contact_force, 1),
     "22-fm1-max": (Reading.maximum_stroke_force, 1),
@@ -166,7 +185,10 @@ MEANINGS: dict[str, tuple[Callable[[Reading, int], float], int]] = {
 
 
 def compare(history: History, mode: str) -> list[Comparison]:
-    """Every scalar that the paper prints for `mode`, beside ours. Raises LandingError where the history is too short."""
+    """Every scalar that the paper prints for `mode`, beside ours.
+
+    Raises LandingError where the history is too short.
+    """
     reading = Reading(history)
     found = []
     for scalar in printed_scalars():
@@ -176,10 +198,14 @@ def compare(history: History, mode: str) -> list[Comparison]:
     return found
 
 
-def counts(comparisons: Iterable[Comparison], against: Literal["simulation", "test"] = "simulation") -> dict[str, int]:
-    """How many scalars are within 5, 10 and 20 % of the paper's simulation or of its test, and of how many.
+def counts(
+    comparisons: Iterable[Comparison], against: Literal["simulation", "test"] = "simulation"
+) -> dict[str, int]:
+    """How many scalars are within 5, 10 and 20 % of the paper's simulation or of its test, and of
+    how many.
 
-    Scalars that the landing does not have (NaN) count as missed; those without a printed test are left out against tests.
+    Scalars that the landing does not have (NaN) count as missed; those without a printed test are
+    left out against tests.
     """
     if against == "test":
         return _counts(c.error_test for c in comparisons if not np.isnan(c.scalar.test))
@@ -187,8 +213,14 @@ def counts(comparisons: Iterable[Comparison], against: Literal["simulation", "te
 
 
 def paper_counts_against_test(mode: str | None = None) -> dict[str, int]:
-    """The paper's own simulation against its tests, counted by the same rule; of one mode, or of both."""
-    return _counts(s.paper_error_test for s in printed_scalars() if mode in (None, s.mode) and not np.isnan(s.test))
+    """The paper's own simulation against its tests, counted by the same rule; of one mode, or of
+    both.
+    """
+    return _counts(
+        s.paper_error_test
+        for s in printed_scalars()
+        if mode in (None, s.mode) and not np.isnan(s.test)
+    )
 
 
 def _counts(errors: Iterable[float]) -> dict[str, int]:

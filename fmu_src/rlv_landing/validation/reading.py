@@ -1,4 +1,6 @@
-"""How the scalars that the paper prints are read off a landing's history: each method says what the paper's words are taken to mean."""
+"""How the scalars that the paper prints are read off a landing's history: each method says what the
+paper's words are taken to mean.
+"""
 
 from __future__ import annotations
 
@@ -17,10 +19,11 @@ NAN = float("nan")
 
 
 class Reading:
-    """Reads the printed scalars off one landing's history (at least 0.8 s after the first contact, sampled at 1 kHz or finer).
+    """Reads the printed scalars off one landing's history (at least 0.8 s after the first contact,
+    sampled at 1 kHz or finer).
 
-    What a landing does not have, as the peaks of a leg that never touches the ground, is NaN. Raises LandingError where no footpad touches
-    or the history is too short.
+    What a landing does not have, as the peaks of a leg that never touches the ground, is NaN.
+    Raises LandingError where no footpad touches or the history is too short.
     """
 
     def __init__(self, history: History) -> None:
@@ -32,7 +35,9 @@ class Reading:
             raise LandingError("no footpad touches the ground in this history; run it longer")
         self.end = first + RUN_AFTER_CONTACT
         if self.t[-1] < self.end - 1e-3:
-            raise LandingError(f"the history ends at {self.t[-1]:g} s; the paper's scalars need it until {self.end:g} s")
+            raise LandingError(
+                f"the history ends at {self.t[-1]:g} s; the paper's scalars need it until {self.end:g} s"
+            )
 
     def _contact_time(self, leg: int) -> float:
         depth = f"leg[{leg}].contact.penetration"
@@ -48,8 +53,12 @@ class Reading:
     def _between(self, start: float, end: float) -> NDArray[np.intp]:
         return np.flatnonzero((self.t >= start) & (self.t <= end))
 
-    def _peak(self, sign: float, values: NDArray[np.float64], start: float, end: float) -> int | None:
-        """Where `values` are largest (sign 1) or smallest (-1) from `start` to `end` [s]; None where there is no sample."""
+    def _peak(
+        self, sign: float, values: NDArray[np.float64], start: float, end: float
+    ) -> int | None:
+        """Where `values` are largest (sign 1) or smallest (-1) from `start` to `end` [s]; None
+        where there is no sample.
+        """
         window = self._between(start, end)
         return int(window[np.argmax(sign * values[window])]) if len(window) else None
 
@@ -63,7 +72,9 @@ class Reading:
     def contact_force(self, leg: int) -> float:
         """The most negative strut force within 12 ms after that leg's contact."""
         t = self._contact[leg]
-        return self._at(self._force(leg), self._peak(-1.0, self._force(leg), t, t + FIRST_PEAK_WINDOW))
+        return self._at(
+            self._force(leg), self._peak(-1.0, self._force(leg), t, t + FIRST_PEAK_WINDOW)
+        )
 
     def _force(self, leg: int) -> NDArray[np.float64]:
         return self.h[f"leg[{leg}].main_strut.force"]
@@ -119,10 +130,17 @@ class Reading:
         return float(1e3 * self._stroke(leg)[self._between(self.end - 0.15, self.end)].mean())
 
     def _first_valley(self, leg: int) -> int | None:
-        return self._peak(-1.0, self._force(leg), self._contact[leg] + FIRST_PEAK_WINDOW, self.maximum_stroke_time(leg) - 0.02)
+        return self._peak(
+            -1.0,
+            self._force(leg),
+            self._contact[leg] + FIRST_PEAK_WINDOW,
+            self.maximum_stroke_time(leg) - 0.02,
+        )
 
     def first_valley_force(self, leg: int) -> float:
-        """Most negative strut force from 12 ms after contact to 20 ms before the maximum stroke [N]."""
+        """Most negative strut force from 12 ms after contact to 20 ms before the maximum stroke
+        [N].
+        """
         return self._at(self._force(leg), self._first_valley(leg))
 
     def first_valley_time(self, leg: int) -> float:

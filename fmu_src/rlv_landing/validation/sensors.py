@@ -1,10 +1,14 @@
-"""The drop tests' sensor chain, on the history of a landing or of a log. Yue et al. (2022), section 4.
+"""The drop tests' sensor chain, on the history of a landing or of a log.
 
-What the paper states: sampling at 5 kHz; damper strokes smoothed by Savitzky and Golay (order 2, window 31); the acceleration along the
-body's axis low-passed at 100 Hz; forces neither smoothed nor filtered. It names neither the low-pass nor its phase: a Butterworth filter
-of order 4 here [closure]. `phase="zero"` (default) runs it forward and backward: peaks keep their times, as they do in the centred
-Savitzky-Golay smoothing, so that all channels share one time axis; a sine at 100 Hz is damped by 6 dB, and by 3 dB at 90 Hz.
-`phase="forward"` runs it once, as a filter in the instrument would: 3 dB at 100 Hz, and slow signals come 4.2 ms late.
+Yue et al. (2022), section 4.
+
+What the paper states: sampling at 5 kHz; damper strokes smoothed by Savitzky and Golay (order 2,
+window 31); the acceleration along the body's axis low-passed at 100 Hz; forces neither smoothed nor
+filtered. It names neither the low-pass nor its phase: a Butterworth filter of order 4 here
+[closure]. `phase="zero"` (default) runs it forward and backward: peaks keep their times, as they do
+in the centred Savitzky-Golay smoothing, so that all channels share one time axis; a sine at 100 Hz
+is damped by 6 dB, and by 3 dB at 90 Hz. `phase="forward"` runs it once, as a filter in the
+instrument would: 3 dB at 100 Hz, and slow signals come 4.2 ms late.
 """
 
 from __future__ import annotations
@@ -38,14 +42,16 @@ COUNTED = frozenset(q.name for q in OUTPUT_QUANTITIES if q.kind != "real")
 
 
 def through_sensors(history: History, phase: Phase = "zero") -> History:
-    """What the tests' sensors would have recorded of `history`: all its columns at 5 kHz, strokes smoothed, acceleration low-passed.
+    """What the tests' sensors would have recorded of `history`: all its columns at 5 kHz, strokes
+    smoothed, acceleration low-passed.
 
-    Samples finer than 0.2 ms are decimated behind a zero-phase anti-aliasing filter; coarser ones, down to 1 kHz (a log's), are
-    interpolated by monotone cubics, which adds no peaks of its own but cannot bring back what lies above half their rate.
+    Samples finer than 0.2 ms are decimated behind a zero-phase anti-aliasing filter; coarser ones,
+    down to 1 kHz (a log's), are interpolated by monotone cubics, which adds no peaks of its own but
+    cannot bring back what lies above half their rate.
 
     Raises:
-        LandingError: a value is not finite, samples are missing, uneven, coarser than 1 ms or fewer than 31 at 5 kHz; or the phase is
-            unknown.
+        LandingError: a value is not finite, samples are missing, uneven, coarser than 1 ms or fewer
+            than 31 at 5 kHz; or the phase is unknown.
     """
     if phase not in ("zero", "forward"):
         raise unknown("phase", phase, ("zero", "forward"))
@@ -64,21 +70,31 @@ def through_sensors(history: History, phase: Phase = "zero") -> History:
 
 
 def smooth_stroke(stroke: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Savitzky-Golay smoothing (order 2, window 31) of samples at 5 kHz; the ends follow the last window's parabola. [paper]"""
+    """Savitzky-Golay smoothing (order 2, window 31) of samples at 5 kHz; the ends follow the last
+    window's parabola. [paper]
+    """
     return np.asarray(signal.savgol_filter(stroke, STROKE_WINDOW, STROKE_ORDER, mode="interp"))
 
 
 def low_pass(acceleration: NDArray[np.float64], phase: Phase = "zero") -> NDArray[np.float64]:
-    """Low-pass at 100 Hz of samples at 5 kHz: Butterworth, order 4, from rest at the first sample. [paper: cut-off; closure: filter]"""
+    """Low-pass at 100 Hz of samples at 5 kHz: Butterworth, order 4, from rest at the first sample.
+
+    [paper: cut-off; closure: filter]
+    """
     sections = signal.butter(FILTER_ORDER, CUTOFF, fs=SAMPLING, output="sos")
     if phase == "zero":
-        return np.asarray(signal.sosfiltfilt(sections, acceleration, padlen=min(len(acceleration) - 1, 250)))
+        return np.asarray(
+            signal.sosfiltfilt(sections, acceleration, padlen=min(len(acceleration) - 1, 250))
+        )
     start = signal.sosfilt_zi(sections) * acceleration[0]
     return np.asarray(signal.sosfilt(sections, acceleration, zi=start)[0])
 
 
 def resample(history: History, rate: float = SAMPLING) -> History:
-    """`history` at `rate` [Hz], from its first to its last time. Raises LandingError as `through_sensors` does."""
+    """`history` at `rate` [Hz], from its first to its last time.
+
+    Raises LandingError as `through_sensors` does.
+    """
     step = even_step(history)
     if step > COARSEST_STEP * (1.0 + STEP_TOLERANCE):
         raise LandingError(
@@ -86,7 +102,9 @@ def resample(history: History, rate: float = SAMPLING) -> History:
         )
     ratio = step * rate
     start = history.time[0]
-    time = start + np.arange(int((history.time[-1] - start) * rate * (1.0 + 1e-12) + 1e-6) + 1) / rate
+    time = (
+        start + np.arange(int((history.time[-1] - start) * rate * (1.0 + 1e-12) + 1e-6) + 1) / rate
+    )
     if abs(ratio - 1.0) <= STEP_TOLERANCE:
         return History(history.time, history.names, history.data, history.parameters)
     counted = np.array([name in COUNTED for name in history.names], dtype=bool)
@@ -99,7 +117,9 @@ def resample(history: History, rate: float = SAMPLING) -> History:
                 f"the history's samples are {step:.9g} s apart, which no ratio of small numbers brings to {rate:g} Hz; "
                 "run it with --every 2e-5"
             )
-        data = signal.resample_poly(history.data, share.numerator, share.denominator, axis=0, padtype="line")[: len(time)]
+        data = signal.resample_poly(
+            history.data, share.numerator, share.denominator, axis=0, padtype="line"
+        )[: len(time)]
     nearest = np.clip(np.rint((time - start) / step).astype(int), 0, len(history) - 1)
     data[:, counted] = history.data[nearest][:, counted]
     return History(time, history.names, data, history.parameters)
@@ -108,21 +128,32 @@ def resample(history: History, rate: float = SAMPLING) -> History:
 def even_step(history: History) -> float:
     """The time between samples [s], even to 0.1 % (times that were rounded).
 
-    Raises LandingError, with time and value, where a value is not finite, or times are uneven, go back or have a gap.
+    Raises LandingError, with time and value, where a value is not finite, or times are uneven, go
+    back or have a gap.
     """
     time = history.time
     if len(time) < 2:
-        raise LandingError(f"the history has {len(time)} samples; the sensor chain needs at least two")
+        raise LandingError(
+            f"the history has {len(time)} samples; the sensor chain needs at least two"
+        )
     wrong = np.argwhere(~np.isfinite(time))
     if len(wrong):
-        raise LandingError(f"time of sample {wrong[0][0]} = {time[wrong[0][0]]:g} s is not finite; remove that sample's row and resample")
+        raise LandingError(
+            f"time of sample {wrong[0][0]} = {time[wrong[0][0]]:g} s is not finite; remove that sample's row and resample"
+        )
     steps = np.diff(time)
     step = float(np.median(steps))
     allowed = JITTER * step if 0.0 < step < inf else -1.0
     uneven = np.flatnonzero(~(np.abs(steps - step) <= allowed))
     if len(uneven):
         i = int(uneven[0])
-        what = "goes back by" if steps[i] < 0.0 else "stands still for" if steps[i] == 0.0 else "goes on by"
+        what = (
+            "goes back by"
+            if steps[i] < 0.0
+            else "stands still for"
+            if steps[i] == 0.0
+            else "goes on by"
+        )
         raise LandingError(
             f"time {what} {abs(steps[i]):g} s at t = {time[i]:g} s where samples are {step:g} s apart; the sensor chain needs even "
             "sampling without gaps: cut the history there, or resample it"

@@ -1,4 +1,6 @@
-"""Section 5 of the paper anew: every printed scalar and the summary measures, beside simulation, tests, and the user's curves."""
+"""Section 5 of the paper anew: every printed scalar and the summary measures, beside simulation,
+tests, and the user's curves.
+"""
 
 from __future__ import annotations
 
@@ -19,13 +21,16 @@ from .sensors import SAMPLING, Phase, even_step, through_sensors
 
 Bounds = tuple[int, int, int]
 
-# What `yue2022-figures` is stated to reach: scalars within 5, 10, 20 % of the paper's simulation, by mode.
+# What `yue2022-figures` is stated to reach: scalars within 5, 10, 20 % of the paper's simulation,
+# by mode.
 STATED: dict[str, Bounds] = {"2-2": (18, 18, 20), "1-2-1": (20, 24, 28)}
 
 
 @dataclass(frozen=True)
 class CurveMeasure:
-    """How far a landing's curve is from a measured one: RRMS as it is, and with the landing through the sensor chain (fractions)."""
+    """How far a landing's curve is from a measured one: RRMS as it is, and with the landing through
+    the sensor chain (fractions).
+    """
 
     mode: str
     column: str
@@ -35,7 +40,9 @@ class CurveMeasure:
 
 @dataclass(frozen=True)
 class Validation:
-    """What a validation found, by mode: histories at 5 kHz and through the sensor chain, comparisons, dampers' work; measured likewise."""
+    """What a validation found, by mode: histories at 5 kHz and through the sensor chain,
+    comparisons, dampers' work; measured likewise.
+    """
 
     histories: Mapping[str, History]
     sensed: Mapping[str, History]
@@ -71,14 +78,21 @@ class Validation:
         return paper_counts_against_test(self.modes[0] if len(self.modes) == 1 else None)
 
     def discrepancies(self, mode: str, leg: int) -> tuple[float, float] | None:
-        """Discrepancy [%] of the energies absorbed and dissipated from the measured ones, where the user gave force and stroke."""
+        """Discrepancy [%] of the energies absorbed and dissipated from the measured ones, where the
+        user gave force and stroke.
+        """
         ours, measured = self.work[mode].get(leg), self.measured_work.get(mode, {}).get(leg)
         if ours is None or measured is None:
             return None
-        return energy_discrepancy(ours.absorbed, measured.absorbed), energy_discrepancy(ours.dissipated, measured.dissipated)
+        return energy_discrepancy(ours.absorbed, measured.absorbed), energy_discrepancy(
+            ours.dissipated, measured.dissipated
+        )
 
     def record(self) -> dict[str, Any]:
-        """All of it for JSON; what is not there is null. Errors and RRMS are fractions, discrepancies per cent."""
+        """All of it for JSON; what is not there is null.
+
+        Errors and RRMS are fractions, discrepancies per cent.
+        """
         return {
             "scalars": [
                 {
@@ -93,8 +107,14 @@ class Validation:
             "counts": self.counts,
             "counts_against_test": self.counts_against_test,
             "paper_counts_against_test": self.paper_counts_against_test,
-            "measures": {mode: [self._leg_record(mode, leg) for leg in work] for mode, work in self.work.items()},
-            "rrms": [{"mode": c.mode, "column": c.column, "rrms": c.rrms, "rrms_sensors": c.rrms_sensors} for c in self.curves],
+            "measures": {
+                mode: [self._leg_record(mode, leg) for leg in work]
+                for mode, work in self.work.items()
+            },
+            "rrms": [
+                {"mode": c.mode, "column": c.column, "rrms": c.rrms, "rrms_sensors": c.rrms_sensors}
+                for c in self.curves
+            ],
         }
 
     def _leg_record(self, mode: str, leg: int) -> dict[str, Any]:
@@ -113,9 +133,11 @@ def validate(
     phase: Phase = "zero",
     rtol: float = DEFAULT_RTOL,
 ) -> Validation:
-    """Land `parameters` in every mode and set the landing beside the paper, and beside the user's `measured` curves by mode.
+    """Land `parameters` in every mode and set the landing beside the paper, and beside the user's
+    `measured` curves by mode.
 
-    Raises LandingError: no contact, a landing that cannot be run, measured curves that are uneven or do not overlap the landing.
+    Raises LandingError: no contact, a landing that cannot be run, measured curves that are uneven
+        or do not overlap the landing.
     """
     measured = measured or {}
     histories: dict[str, History] = {}
@@ -133,7 +155,11 @@ def validate(
         {mode: leg_work(history) for mode, history in histories.items()},
         measured,
         {mode: _measured_work(curves) for mode, curves in measured.items()},
-        tuple(c for mode, curves in measured.items() for c in _curve_measures(mode, curves, histories[mode], sensed[mode])),
+        tuple(
+            c
+            for mode, curves in measured.items()
+            for c in _curve_measures(mode, curves, histories[mode], sensed[mode])
+        ),
     )
 
 
@@ -142,15 +168,21 @@ def _measured_work(curves: History) -> dict[int, DamperWork]:
     for leg in LEGS:
         force, stroke = f"leg[{leg}].main_strut.force", f"leg[{leg}].main_strut.stroke"
         if force in curves and stroke in curves:
-            found[leg] = damper_work(curves.time, curves[force], curves[stroke], onset(curves.time, curves[stroke]))
+            found[leg] = damper_work(
+                curves.time, curves[force], curves[stroke], onset(curves.time, curves[stroke])
+            )
     return found
 
 
-def _curve_measures(mode: str, curves: History, raw: History, sensed: History) -> list[CurveMeasure]:
+def _curve_measures(
+    mode: str, curves: History, raw: History, sensed: History
+) -> list[CurveMeasure]:
     found = []
     for name in curves.names:
         try:
-            plain, filtered = (rrms(h.time, h[name], curves.time, curves[name]) for h in (raw, sensed))
+            plain, filtered = (
+                rrms(h.time, h[name], curves.time, curves[name]) for h in (raw, sensed)
+            )
         except LandingError as e:
             raise LandingError(f"{name}, mode {mode}: {e}") from None
         found.append(CurveMeasure(mode, name, plain, filtered))
@@ -158,13 +190,20 @@ def _curve_measures(mode: str, curves: History, raw: History, sensed: History) -
 
 
 def parse_bounds(text: str) -> Bounds:
-    """`42/46/48` as the least counts within 5, 10 and 20 %. Raises LandingError for anything else, and where they fall."""
+    """`42/46/48` as the least counts within 5, 10 and 20 %.
+
+    Raises LandingError for anything else, and where they fall.
+    """
     match = re.fullmatch(r"\s*(\d+)\s*/\s*(\d+)\s*/\s*(\d+)\s*", text)
     if match is None:
-        raise LandingError(f"--require {text!r} is not three counts; write the least within 5, 10 and 20 %: 36/41/45, or none")
+        raise LandingError(
+            f"--require {text!r} is not three counts; write the least within 5, 10 and 20 %: 36/41/45, or none"
+        )
     a, b, c = (int(n) for n in match.groups())
     if not a <= b <= c:
-        raise LandingError(f"--require {text!r} falls: what is within 5 % is within 10 % too; write them rising, for example 36/41/45")
+        raise LandingError(
+            f"--require {text!r} falls: what is within 5 % is within 10 % too; write them rising, for example 36/41/45"
+        )
     return a, b, c
 
 
@@ -175,9 +214,14 @@ def stated_bounds(modes: Iterable[str]) -> Bounds:
 
 
 def missed_bounds(found: Mapping[str, int], bounds: Bounds) -> list[str]:
-    """A line for every count below its bound. Raises LandingError where a bound asks for more scalars than there are."""
+    """A line for every count below its bound.
+
+    Raises LandingError where a bound asks for more scalars than there are.
+    """
     if bounds[-1] > found["of"]:
-        raise LandingError(f"--require asks for {bounds[-1]} scalars within 20 %, there are {found['of']}; ask for at most that")
+        raise LandingError(
+            f"--require asks for {bounds[-1]} scalars within 20 %, there are {found['of']}; ask for at most that"
+        )
     return [
         f"within {level} % of the paper's simulation: {found[f'within_{level}']} of {found['of']}, at least {bound} are required"
         for level, bound in zip(LEVELS, bounds)

@@ -1,4 +1,6 @@
-"""The commands `rlv-landing log`: what recorded logs hold, whether they can be repeated, rescue, export. They need no ROS 2."""
+"""The commands `rlv-landing log`: what recorded logs hold, whether they can be repeated, rescue,
+export. They need no ROS 2.
+"""
 
 from __future__ import annotations
 
@@ -31,9 +33,16 @@ def log() -> None:
 
 @log.command(context_settings=WIDE)
 @LOG
-@click.option("--json", "as_json", is_flag=True, help="As JSON: times in s, forces in N, strokes in m, accelerations in m/s2.")
+@click.option(
+    "--json",
+    "as_json",
+    is_flag=True,
+    help="As JSON: times in s, forces in N, strokes in m, accelerations in m/s2.",
+)
 def info(log: Path, as_json: bool) -> None:
-    """What a log holds: topics, parameters, outcome and peaks of the landing. LOG may be cut, or damaged.
+    """What a log holds: topics, parameters, outcome and peaks of the landing.
+
+    LOG may be cut, or damaged.
 
     \b
     Examples:
@@ -53,13 +62,19 @@ def info(log: Path, as_json: bool) -> None:
 
 @log.command(context_settings=WIDE)
 @LOG
-@click.option("--fmu", type=click.Path(path_type=Path), metavar="FILE", help="Repeat with this FMU instead of the Python model.")
+@click.option(
+    "--fmu",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Repeat with this FMU instead of the Python model.",
+)
 @click.option("--json", "as_json", is_flag=True, help="As JSON.")
 def verify(log: Path, fmu: Path | None, as_json: bool) -> None:
     """Repeat the run from the log's own parameters and compare every field of every sample.
 
-    Bit for bit where model and machine are those that the log was computed by; else within 1 % of each field's largest value, for
-    the smallest difference grows with every contact. What is said tells which applies, and why.
+    Bit for bit where model and machine are those that the log was computed by; else within 1 % of
+    each field's largest value, for the smallest difference grows with every contact. What is said
+    tells which applies, and why.
 
     \b
     Examples:
@@ -81,17 +96,24 @@ def verify(log: Path, fmu: Path | None, as_json: bool) -> None:
 
 @log.command(context_settings=WIDE)
 @LOG
-@click.option("--output", type=click.Path(path_type=Path), metavar="FOLDER", help="Default: beside the log, its name with -recovered.")
+@click.option(
+    "--output",
+    type=click.Path(path_type=Path),
+    metavar="FOLDER",
+    help="Default: beside the log, its name with -recovered.",
+)
 @click.option("--json", "as_json", is_flag=True, help="As JSON.")
 def recover(log: Path, output: Path | None, as_json: bool) -> None:
-    """Restore a log whose writer was killed, or that was cut or damaged: all that is whole, into a new log that every reader opens.
+    """Restore a log whose writer was killed, or that was cut or damaged: all that is whole, into a
+    new log that every reader opens.
 
     \b
     Examples:
       rlv-landing log recover logs/20260131T120000Z-2-2
       rlv-landing log recover run1_0.mcap.part --output rescued
 
-    Exit codes: 0 recovered, or nothing to recover; 2 nothing whole in it, or the new log cannot be written.
+    Exit codes: 0 recovered, or nothing to recover; 2 nothing whole in it, or the new log cannot be
+        written.
     """
     from ..logs.recover import recover as restore
 
@@ -107,19 +129,36 @@ def recover(log: Path, output: Path | None, as_json: bool) -> None:
 @log.command(context_settings=WIDE)
 @LOG
 @click.argument("output", type=click.Path(path_type=Path), required=False)
-@click.option("--topics", multiple=True, metavar="NAME[,NAME...]", help="Columns of these topics only, full or relative names. Repeatable.")
+@click.option(
+    "--topics",
+    multiple=True,
+    metavar="NAME[,NAME...]",
+    help="Columns of these topics only, full or relative names. Repeatable.",
+)
 @click.option("--start", type=float, metavar="SECONDS", help="From this simulation time on.")
 @click.option("--end", type=float, metavar="SECONDS", help="Up to this simulation time.")
-@click.option("--every", type=float, metavar="SECONDS", help="Only the first instant in each of these. Default: all.")
-@click.option("--plot", type=click.Path(path_type=Path), metavar="FILE.png", help="Draw forces, strokes and acceleration.")
+@click.option(
+    "--every",
+    type=float,
+    metavar="SECONDS",
+    help="Only the first instant in each of these. Default: all.",
+)
+@click.option(
+    "--plot",
+    type=click.Path(path_type=Path),
+    metavar="FILE.png",
+    help="Draw forces, strokes and acceleration.",
+)
 @click.option("--force", is_flag=True, help="Overwrite files that exist.")
 def export(
     log: Path, output: Path | None, topics: tuple[str, ...], start: float | None, end: float | None, every: float | None,
     plot: Path | None, force: bool,
 ) -> None:  # fmt: skip
-    """Write a landing to OUTPUT, .csv or .parquet: a row an instant, columns named as the FMU's variables, SI, the model's axes.
+    """Write a landing to OUTPUT, .csv or .parquet: a row an instant, columns named as the FMU's
+    variables, SI, the model's axes.
 
-    LOG may also be a rosbag2 recording of the same topics, MCAP or sqlite3; other topics in it are left aside.
+    LOG may also be a rosbag2 recording of the same topics, MCAP or sqlite3; other topics in it are
+    left aside.
 
     \b
     Examples:
@@ -134,7 +173,9 @@ def export(
     from ..logs.history import read_history
 
     if output is None and plot is None:
-        raise LandingError("nothing to write; name a file OUTPUT.csv or OUTPUT.parquet, or --plot FILE.png")
+        raise LandingError(
+            "nothing to write; name a file OUTPUT.csv or OUTPUT.parquet, or --plot FILE.png"
+        )
     if output is not None and output.suffix not in ENDINGS:
         raise LandingError(f"{output} must end in {' or '.join(ENDINGS)}")
     check_writable(output, output.suffix if output is not None else "", force)
@@ -142,11 +183,15 @@ def export(
     if plot is not None and topics:
         raise LandingError("--plot needs every topic; leave --topics out")
     reader = open_log(log)
-    history, notes = read_history(reader, [name.strip() for given in topics for name in given.split(",") if name.strip()])
+    history, notes = read_history(
+        reader, [name.strip() for given in topics for name in given.split(",") if name.strip()]
+    )
     history = part(history, start, end, every)
     if output is not None:
         write_history(history, output)
-        click.echo(f"{output}: {len(history)} instants from {history.time[0]:g} s to {history.time[-1]:g} s, {len(history.names)} columns")
+        click.echo(
+            f"{output}: {len(history)} instants from {history.time[0]:g} s to {history.time[-1]:g} s, {len(history.names)} columns"
+        )
     if plot is not None:
         from rlv_landing.figures.plots import save_overview
 
@@ -164,7 +209,13 @@ def export(
 def tell_cut(log: Path, damage: list[str] | None = None) -> None:
     """Warns that not all of the log is there, and ends the command."""
     if damage:
-        click.echo(f"warning: {log} is damaged ({damage[0]}); what is whole was read, `rlv-landing log recover` saves it", err=True)
+        click.echo(
+            f"warning: {log} is damaged ({damage[0]}); what is whole was read, `rlv-landing log recover` saves it",
+            err=True,
+        )
     else:
-        click.echo(f"warning: {log} is cut: its writer did not finish it; all up to there was read", err=True)
+        click.echo(
+            f"warning: {log} is cut: its writer did not finish it; all up to there was read",
+            err=True,
+        )
     sys.exit(EXIT_CUT)

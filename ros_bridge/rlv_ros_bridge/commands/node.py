@@ -18,22 +18,73 @@ EXIT_RECORDING_FAILED = 1
 
 
 @click.command(context_settings=PASS_ON)
-@click.option("--mode", metavar="2-2|1-2-1", help="Landing mode. Default: the parameters' own (2-2).")
+@click.option(
+    "--mode", metavar="2-2|1-2-1", help="Landing mode. Default: the parameters' own (2-2)."
+)
 @click.option("--preset", metavar="NAME", help="Preset of parameters. Default: yue2022-figures.")
-@click.option("--parameters", "parameters_file", metavar="FILE.toml", help="Parameters from a TOML file, instead of a preset.")
-@click.option("--set", "changes", metavar="NAME=VALUE", multiple=True, help='Change a parameter (SI, or as "-2 deg"). Repeatable.')
+@click.option(
+    "--parameters",
+    "parameters_file",
+    metavar="FILE.toml",
+    help="Parameters from a TOML file, instead of a preset.",
+)
+@click.option(
+    "--set",
+    "changes",
+    metavar="NAME=VALUE",
+    multiple=True,
+    help='Change a parameter (SI, or as "-2 deg"). Repeatable.',
+)
 @click.option("--fmu", metavar="FILE", help="The FMU to step. Default: build/RlvLanding.fmu.")
-@click.option("--realtime-factor", type=float, metavar="X", help="1: real time (default); 0: as fast as possible.")
-@click.option("--step", "step_size", type=float, metavar="SECONDS", help="Communication step and publishing period. Default: 0.001.")
+@click.option(
+    "--realtime-factor",
+    type=float,
+    metavar="X",
+    help="1: real time (default); 0: as fast as possible.",
+)
+@click.option(
+    "--step",
+    "step_size",
+    type=float,
+    metavar="SECONDS",
+    help="Communication step and publishing period. Default: 0.001.",
+)
 @click.option("--stop-time", type=float, metavar="SECONDS", help="End of the landing. Default: 1.")
 @click.option("--record", metavar="FOLDER", help="Record to this folder, which must not exist yet.")
-@click.option("--log-root", metavar="FOLDER", default="logs", show_default=True, help="Record below this folder, as UTC time and mode.")
+@click.option(
+    "--log-root",
+    metavar="FOLDER",
+    default="logs",
+    show_default=True,
+    help="Record below this folder, as UTC time and mode.",
+)
 @click.option("--no-record", is_flag=True, help="Do not record.")
-@click.option("--namespace", metavar="NAME", default="landing", show_default=True, help="Namespace of node and topics.")
-@click.option("--wait-for-subscribers", type=int, metavar="N", help="Start when N subscriptions on `struts` are matched. Default: 0.")
-@click.option("--wait-timeout", type=float, metavar="SECONDS", help="Longest wait for them. Default: 30.")
-@click.option("--managed", is_flag=True, help="Wait for lifecycle transitions by others, and stay, instead of landing at once.")
-@click.option("--report", is_flag=True, help="Afterwards print our peaks beside the paper's, and write landing.png beside the log.")
+@click.option(
+    "--namespace",
+    metavar="NAME",
+    default="landing",
+    show_default=True,
+    help="Namespace of node and topics.",
+)
+@click.option(
+    "--wait-for-subscribers",
+    type=int,
+    metavar="N",
+    help="Start when N subscriptions on `struts` are matched. Default: 0.",
+)
+@click.option(
+    "--wait-timeout", type=float, metavar="SECONDS", help="Longest wait for them. Default: 30."
+)
+@click.option(
+    "--managed",
+    is_flag=True,
+    help="Wait for lifecycle transitions by others, and stay, instead of landing at once.",
+)
+@click.option(
+    "--report",
+    is_flag=True,
+    help="Afterwards print our peaks beside the paper's, and write landing.png beside the log.",
+)
 @click.argument("ros_args", nargs=-1, type=click.UNPROCESSED)
 def node(
     changes: tuple[str, ...],
@@ -48,8 +99,9 @@ def node(
 ) -> None:
     """Land once as a ROS 2 node: step the FMU, publish every sample, record to MCAP.
 
-    Topics below the namespace: struts, pose, rpy, twist, odom, accel, top/accel, leg_1..4/contact, markers; and /clock, /diagnostics.
-    SI units; x forward, y left, z up; stamps are simulation time.
+    Topics below the namespace: struts, pose, rpy, twist, odom, accel, top/accel, leg_1..4/contact,
+    markers; and /clock, /diagnostics. SI units; x forward, y left, z up; stamps are simulation
+    time.
 
     \b
     Examples:
@@ -59,14 +111,17 @@ def node(
       rlv-landing node --no-record --ros-args --log-level warn
       rlv-landing node --managed --ros-args --params-file landing.yaml
 
-    Exit codes: 0 landed, 1 recording failed on the way, 2 bad input, 130 or 143 after SIGINT or SIGTERM (the log is complete all the same).
+    Exit codes: 0 landed, 1 recording failed on the way, 2 bad input, 130 or 143 after SIGINT or
+        SIGTERM (the log is complete all the same).
     """
     from ..ros.setup import StopFlag, require_ros
 
     with StopFlag() as stop:
         passed_on = split_ros_args(ros_args)
         if no_record and (record or report):
-            raise LandingError(f"--no-record and {'--record' if record else '--report'} contradict each other; leave one out")
+            raise LandingError(
+                f"--no-record and {'--record' if record else '--report'} contradict each other; leave one out"
+            )
         where = {} if no_record else {"record": record} if record else {"log_root": log_root}
         chosen = {name: value for name, value in given.items() if value is not None}
         changed = parse_pairs(changes, PARAMETER_QUANTITIES, "parameter")
@@ -94,15 +149,24 @@ def _tell_landing(summary: Any) -> None:
         f"{summary.p99_lateness * 1e6:.0f} us in 99 % of samples, {summary.largest_lateness * 1e3:.2f} ms at most"
     )
     if summary.lost:
-        click.echo(f"warning: {summary.lost:.2f} s of wall time were lost to stalls and not made good", err=True)
+        click.echo(
+            f"warning: {summary.lost:.2f} s of wall time were lost to stalls and not made good",
+            err=True,
+        )
     if summary.dropped:
-        click.echo(f"warning: {summary.dropped} messages were not published in time, and dropped; the log has them", err=True)
+        click.echo(
+            f"warning: {summary.dropped} messages were not published in time, and dropped; the log has them",
+            err=True,
+        )
     if not summary.acknowledged:
         click.echo("warning: not every reliable subscriber has acknowledged all samples", err=True)
     if summary.folder is not None:
         click.echo(f"log: {summary.folder}")
     if summary.recording_error:
-        click.echo(f"error: {summary.recording_error}; what was written can be read with `rlv-landing log info {summary.folder}`", err=True)
+        click.echo(
+            f"error: {summary.recording_error}; what was written can be read with `rlv-landing log info {summary.folder}`",
+            err=True,
+        )
 
 
 def _report(folder: Path) -> None:

@@ -15,21 +15,80 @@ from .log import tell_cut
 
 @click.command(context_settings=PASS_ON)
 @click.argument("log", type=click.Path(path_type=Path))
-@click.option("--rate", type=float, default=1.0, show_default=True, metavar="X", help="Seconds of the log per second.")
-@click.option("--loop", is_flag=True, help="Begin again at the end; stamps and /clock go on, they never run backwards.")
-@click.option("--start", type=float, default=0.0, show_default=True, metavar="SECONDS", help="Begin this far into the log.")
-@click.option("--duration", type=float, default=math.inf, metavar="SECONDS", help="Play this much of the log. Default: to its end.")
-@click.option("--topics", multiple=True, metavar="NAME[,NAME...]", help="Play only these, full or relative to the namespace. Repeatable.")
-@click.option("--remap", multiple=True, metavar="OLD:=NEW", help="Play OLD as NEW, full or relative to the namespace. Repeatable.")
-@click.option("--start-paused", is_flag=True, help="Wait for the space key, or the service ~/resume.")
-@click.option("--clock", type=float, is_flag=False, flag_value=100.0, default=0.0, metavar="[HZ]", help="Publish /clock, at 100 Hz or HZ.")
-@click.option("--wait-for-subscribers", type=int, default=0, show_default=True, metavar="N", help="Start when N are matched on `struts`.")
-@click.option("--wait-timeout", type=float, default=30.0, show_default=True, metavar="SECONDS", help="Longest wait for them.")
+@click.option(
+    "--rate",
+    type=float,
+    default=1.0,
+    show_default=True,
+    metavar="X",
+    help="Seconds of the log per second.",
+)
+@click.option(
+    "--loop",
+    is_flag=True,
+    help="Begin again at the end; stamps and /clock go on, they never run backwards.",
+)
+@click.option(
+    "--start",
+    type=float,
+    default=0.0,
+    show_default=True,
+    metavar="SECONDS",
+    help="Begin this far into the log.",
+)
+@click.option(
+    "--duration",
+    type=float,
+    default=math.inf,
+    metavar="SECONDS",
+    help="Play this much of the log. Default: to its end.",
+)
+@click.option(
+    "--topics",
+    multiple=True,
+    metavar="NAME[,NAME...]",
+    help="Play only these, full or relative to the namespace. Repeatable.",
+)
+@click.option(
+    "--remap",
+    multiple=True,
+    metavar="OLD:=NEW",
+    help="Play OLD as NEW, full or relative to the namespace. Repeatable.",
+)
+@click.option(
+    "--start-paused", is_flag=True, help="Wait for the space key, or the service ~/resume."
+)
+@click.option(
+    "--clock",
+    type=float,
+    is_flag=False,
+    flag_value=100.0,
+    default=0.0,
+    metavar="[HZ]",
+    help="Publish /clock, at 100 Hz or HZ.",
+)
+@click.option(
+    "--wait-for-subscribers",
+    type=int,
+    default=0,
+    show_default=True,
+    metavar="N",
+    help="Start when N are matched on `struts`.",
+)
+@click.option(
+    "--wait-timeout",
+    type=float,
+    default=30.0,
+    show_default=True,
+    metavar="SECONDS",
+    help="Longest wait for them.",
+)
 @click.argument("ros_args", nargs=-1, type=click.UNPROCESSED)
 def replay(log: Path, topics: tuple[str, ...], ros_args: tuple[str, ...], **options: Any) -> None:
     """Play a log back with its original timing: LOG is a log's folder or an .mcap file.
 
-    The very bytes that were recorded go out, in the log's order, with the recorded quality of service.
+    The very bytes that were recorded go out, in the log's order, with the recorded quality of
+    service.
 
     \b
     Keys, on a terminal:
@@ -44,7 +103,8 @@ def replay(log: Path, topics: tuple[str, ...], ros_args: tuple[str, ...], **opti
       rlv-landing replay run1_0.mcap --start 0.08 --duration 0.2 --loop
       rlv-landing replay run1 --topics applied/ground --remap applied/ground:=ground    # steer another landing
 
-    Exit codes: 0 played, or ended by q, 2 bad input, 3 played but the log is cut, 130 or 143 after SIGINT or SIGTERM.
+    Exit codes: 0 played, or ended by q, 2 bad input, 3 played but the log is cut, 130 or 143 after
+        SIGINT or SIGTERM.
     """
     from ..ros.setup import StopFlag, require_ros
 
@@ -54,7 +114,9 @@ def replay(log: Path, topics: tuple[str, ...], ros_args: tuple[str, ...], **opti
         from ..replay.selection import ReplayOptions
 
         names = tuple(name.strip() for given in topics for name in given.split(",") if name.strip())
-        summary = play(ReplayOptions(path=log, topics=names, **options), split_ros_args(ros_args), stop)
+        summary = play(
+            ReplayOptions(path=log, topics=names, **options), split_ros_args(ros_args), stop
+        )
     click.echo(
         f"played {summary.messages} messages; lateness {summary.median_lateness * 1e6:.0f} us in the median, "
         f"{summary.p99_lateness * 1e6:.0f} us in 99 % of messages, {summary.largest_lateness * 1e3:.2f} ms at most"

@@ -1,4 +1,7 @@
-"""The command `rlv-landing view`: a log, or the landing that runs at present, in a browser. What it needs is imported when it runs."""
+"""The command `rlv-landing view`: a log, or the landing that runs at present, in a browser.
+
+What it needs is imported when it runs.
+"""
 
 from __future__ import annotations
 
@@ -26,22 +29,44 @@ LOOK_ROUND_SECONDS = 0.1
 @click.command(context_settings=WIDE)
 @click.argument("log", required=False, type=click.Path(path_type=Path))
 @parameter_options
-@click.option("--namespace", metavar="NAME", default="landing", show_default=True, help="Without LOG: where the landing publishes.")
-@click.option("--port", type=int, metavar="N", default=PORT, show_default=True, help="Serve the page at N and its data at N + 1.")
+@click.option(
+    "--namespace",
+    metavar="NAME",
+    default="landing",
+    show_default=True,
+    help="Without LOG: where the landing publishes.",
+)
+@click.option(
+    "--port",
+    type=int,
+    metavar="N",
+    default=PORT,
+    show_default=True,
+    help="Serve the page at N and its data at N + 1.",
+)
 @click.option("--no-browser", is_flag=True, help="Only print the address.")
-@click.option("--save", type=click.Path(path_type=Path), metavar="FILE.rrd", help="Write a recording for the Rerun viewer, serve nothing.")
+@click.option(
+    "--save",
+    type=click.Path(path_type=Path),
+    metavar="FILE.rrd",
+    help="Write a recording for the Rerun viewer, serve nothing.",
+)
 @click.option("--force", is_flag=True, help="Overwrite a file that exists.")
 def view(
     log: Path | None, preset: str | None, file: str | None, mode: str | None, pairs: tuple[str, ...],
     namespace: str, port: int, no_browser: bool, save: Path | None, force: bool,
 ) -> None:  # fmt: skip
-    """Show a landing in a browser: the vehicle in space beside force, stroke, pitch and speed. Ctrl-C ends it.
+    """Show a landing in a browser: the vehicle in space beside force, stroke, pitch and speed.
 
-    LOG is a log's folder or file, or a rosbag2 recording of the same topics; it is played five times slower, in a loop: space pauses,
-    the arrow keys step, the time line moves, curves zoom. Without LOG the live topics are shown, of a node or of a replay; that needs
-    ROS 2. Options that name a vehicle are for recordings that do not carry their parameters.
+    Ctrl-C ends it.
 
-    The viewer is Rerun's, from the extra `view`. It listens on this machine only, and neither it nor the page tells anybody anything.
+    LOG is a log's folder or file, or a rosbag2 recording of the same topics; it is played five
+    times slower, in a loop: space pauses, the arrow keys step, the time line moves, curves zoom.
+    Without LOG the live topics are shown, of a node or of a replay; that needs ROS 2. Options that
+    name a vehicle are for recordings that do not carry their parameters.
+
+    The viewer is Rerun's, from the extra `view`. It listens on this machine only, and neither it
+    nor the page tells anybody anything.
 
     \b
     Examples:
@@ -52,16 +77,21 @@ def view(
 
     A live recording ends with a signal, or when the landing is reset, and is complete then.
 
-    Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged, 130 or 143 ended by SIGINT or SIGTERM.
+    Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged, 130 or 143 ended by
+        SIGINT or SIGTERM.
     """
     given = (preset, file, mode, pairs)
     check_writable(save, ".rrd", force)
     if log is None and any(given):
-        raise LandingError("live topics need no vehicle named; leave --preset, --parameters, --mode and --set out")
+        raise LandingError(
+            "live topics need no vehicle named; leave --preset, --parameters, --mode and --set out"
+        )
     require_viewer()
     with ends_tidily():
         if log is None:
-            ended = _record(namespace, save) if save is not None else _show(namespace, port, no_browser)
+            ended = (
+                _record(namespace, save) if save is not None else _show(namespace, port, no_browser)
+            )
         else:
             ended = _show_log(log, given, save, port, no_browser)
     sys.exit(ended)
@@ -73,10 +103,14 @@ def require_viewer() -> None:
         import rerun  # noqa: F401
         import rerun_cli  # noqa: F401
     except ImportError as e:
-        raise LandingError(f'the viewer is missing ({e}); install it with pip install "rlv-landing[view]"') from None
+        raise LandingError(
+            f'the viewer is missing ({e}); install it with pip install "rlv-landing[view]"'
+        ) from None
 
 
-def _show_log(log: Path, given: tuple[Any, ...], save: Path | None, port: int, no_browser: bool) -> int:
+def _show_log(
+    log: Path, given: tuple[Any, ...], save: Path | None, port: int, no_browser: bool
+) -> int:
     from ..viewer.rerun_log import scene_of
     from ..viewer.rerun_scene import SavedScene
 
@@ -132,10 +166,14 @@ def _record(namespace: str, save: Path) -> int:
             if landings == 1:
                 saved.begin(scene, live=False)
 
-        click.echo(f"waiting for a landing below /{namespace.strip('/')}; Ctrl-C ends the recording")
+        click.echo(
+            f"waiting for a landing below /{namespace.strip('/')}; Ctrl-C ends the recording"
+        )
         samples = watch(namespace, begin, lambda: landings < 2, stop)
         if not landings:
-            raise LandingError(f"nothing was heard below /{namespace.strip('/')}; check --namespace and ROS_DOMAIN_ID")
+            raise LandingError(
+                f"nothing was heard below /{namespace.strip('/')}; check --namespace and ROS_DOMAIN_ID"
+            )
         saved.finish()
     click.echo(f"{save}: {samples} instants; open it by: rerun {save}")
     return 128 + stop.number if stop else 0

@@ -14,7 +14,10 @@ LOCK = "lock"
 
 
 class FmuFolder:
-    """A new folder below the system's temporary one, locked as long as this process lives. Removes stale ones on the way."""
+    """A new folder below the system's temporary one, locked as long as this process lives.
+
+    Removes stale ones on the way.
+    """
 
     def __init__(self) -> None:
         remove_stale()
@@ -32,7 +35,10 @@ class FmuFolder:
 
 
 def remove_stale() -> None:
-    """Removes the folders of dead processes: those whose lock can be had. What belongs to others or cannot be removed stays."""
+    """Removes the folders of dead processes: those whose lock can be had.
+
+    What belongs to others or cannot be removed stays.
+    """
     for lock in Path(tempfile.gettempdir()).glob(f"{PREFIX}*/{LOCK}"):
         with suppress(OSError):
             file = os.open(lock, os.O_RDWR | os.O_CLOEXEC)

@@ -1,4 +1,6 @@
-"""Steps the landing's FMU through FMPy: parameters in, all outputs out, cleaned up whatever happens."""
+"""Steps the landing's FMU through FMPy: parameters in, all outputs out, cleaned up whatever
+happens.
+"""
 
 from __future__ import annotations
 
@@ -12,13 +14,19 @@ from typing import Any, NoReturn
 
 from rlv_landing.errors import LandingError, unknown
 from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.quantities import INPUT_NAMES, OUTPUT_NAMES, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES
+from rlv_landing.quantities import (
+    INPUT_NAMES,
+    OUTPUT_NAMES,
+    OUTPUT_QUANTITIES,
+    STATISTIC_QUANTITIES,
+)
 
 from .folder import FmuFolder
 
 MODEL_NAME = "RlvLanding"
 WARNING, FATAL = 1, 4
-# Arguments of the functions that are called at every step: component, then as FMI has them; arrays by their address.
+# Arguments of the functions that are called at every step: component, then as FMI has them; arrays
+# by their address.
 DO_STEP = (ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int)
 GET = (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
 
@@ -31,7 +39,8 @@ class FmuRunner:
         values: parameters by name, SI; those not given keep the FMU's defaults.
 
     Raises:
-        LandingError: no such file, not an FMU, not this model's, an unknown parameter, or one that the FMU refuses (with its reason).
+        LandingError: no such file, not an FMU, not this model's, an unknown parameter, or one that
+            the FMU refuses (with its reason).
     """
 
     def __init__(self, fmu_path: str | Path, values: Mapping[str, float | str]) -> None:
@@ -39,7 +48,8 @@ class FmuRunner:
         self._messages: list[tuple[int, str]] = []
         self._slave: Any = None
         self._component: int | None = None
-        # Of each type of output: the getter's name, the getter, and its arguments, among them addresses of value references and of values.
+        # Of each type of output: the getter's name, the getter, and its arguments, among them
+        # addresses of value references and of values.
         self._reads: list[tuple[str, Any, tuple[Any, ...]]] = []
         self._asked: list[Any] = []
         self._reals: Any = None
@@ -51,10 +61,17 @@ class FmuRunner:
         self.version: str = description.version or ""
         self.made_by: str = description.generationTool or ""
         references = {v.name: v.valueReference for v in description.modelVariables}
-        needed = (*OUTPUT_NAMES, *INPUT_NAMES, *PARAMETER_QUANTITIES, *(q.name for q in STATISTIC_QUANTITIES))
+        needed = (
+            *OUTPUT_NAMES,
+            *INPUT_NAMES,
+            *PARAMETER_QUANTITIES,
+            *(q.name for q in STATISTIC_QUANTITIES),
+        )
         missing = [n for n in needed if n not in references]
         if missing:
-            raise LandingError(f"{self.path} (version {self.version}) has no variable {missing[0]!r}; build it again with ./build_fmu.sh")
+            raise LandingError(
+                f"{self.path} (version {self.version}) has no variable {missing[0]!r}; build it again with ./build_fmu.sh"
+            )
         for name in values:
             if name not in PARAMETER_QUANTITIES:
                 raise unknown("parameter", name, PARAMETER_QUANTITIES)
@@ -108,7 +125,12 @@ class FmuRunner:
             where = [i for i, q in enumerate(OUTPUT_QUANTITIES) if q.kind == kind]
             asked = (ctypes.c_uint * len(where))(*(references[OUTPUT_NAMES[i]] for i in where))
             got = (c_type * len(where))()
-            arguments = (self._component, ctypes.addressof(asked), len(where), ctypes.addressof(got))
+            arguments = (
+                self._component,
+                ctypes.addressof(asked),
+                len(where),
+                ctypes.addressof(got),
+            )
             self._reads.append((getter, self._function(getter, GET), arguments))
             self._asked.append(asked)
             if kind == "real":
@@ -121,7 +143,9 @@ class FmuRunner:
         from fmpy import calloc, fmi2, free
         from fmpy.logging import addLoggerProxy
 
-        def logger(_environment: Any, _instance: bytes, status: int, _category: bytes, message: bytes) -> None:
+        def logger(
+            _environment: Any, _instance: bytes, status: int, _category: bytes, message: bytes
+        ) -> None:
             self._messages.append((status, (message or b"").decode("utf-8", "replace").strip()))
 
         callbacks = fmi2.fmi2CallbackFunctions()
@@ -145,7 +169,9 @@ class FmuRunner:
         if status == FATAL:
             # After Fatal the instance must not be touched again, not even to be freed.
             self._let_go()
-        raise LandingError(f"{self.path}: {function} failed: {self._reason(text or f'status {status}')}") from None
+        raise LandingError(
+            f"{self.path}: {function} failed: {self._reason(text or f'status {status}')}"
+        ) from None
 
     def _let_go(self) -> Any:
         slave, self._slave = self._slave, None
@@ -157,7 +183,10 @@ class FmuRunner:
         return " ".join("; ".join(texts or [otherwise]).split())
 
     def step(self, k: int, h: float) -> None:
-        """Go from k*h to (k+1)*h [s]. The difference of the two, not h, is asked for, so that the time reached is (k+1)*h to the bit.
+        """Go from k*h to (k+1)*h [s].
+
+        The difference of the two, not h, is asked for, so that the time reached is (k+1)*h to the
+        bit.
 
         Raises LandingError, with the FMU's reason, where the step is refused.
         """
@@ -168,7 +197,10 @@ class FmuRunner:
             self._fail("doStep", status)
 
     def values(self) -> list[float]:
-        """All outputs at the present time, in the order of `OUTPUT_NAMES`. Raises LandingError where the FMU refuses."""
+        """All outputs at the present time, in the order of `OUTPUT_NAMES`.
+
+        Raises LandingError where the FMU refuses.
+        """
         for name, get, arguments in self._reads:
             status = get(*arguments)
             if status > WARNING:
@@ -185,14 +217,20 @@ class FmuRunner:
         return dict(zip(names, self._slave.getInteger([self._references[name] for name in names])))
 
     def set_inputs(self, inputs: Mapping[str, float]) -> None:
-        """Inputs by name, SI, from now on; others go on as they were. Raises LandingError for an unknown name."""
+        """Inputs by name, SI, from now on; others go on as they were.
+
+        Raises LandingError for an unknown name.
+        """
         for name in inputs:
             if name not in INPUT_NAMES:
                 raise unknown("input", name, INPUT_NAMES)
         self._call("setReal", [self._references[name] for name in inputs], list(inputs.values()))
 
     def close(self) -> None:
-        """Terminate and free the instance, and remove the folder that it was unpacked to. May be called again."""
+        """Terminate and free the instance, and remove the folder that it was unpacked to.
+
+        May be called again.
+        """
         slave = self._let_go()
         folder, self._folder = self._folder, None
         try:
@@ -208,26 +246,46 @@ class FmuRunner:
     def __enter__(self) -> FmuRunner:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         self.close()
 
 
 def read_description(path: Path) -> Any:
-    """FMPy's description of the FMU at `path`. Raises LandingError: no such file, not an FMU, not this model's, FMPy missing."""
+    """FMPy's description of the FMU at `path`.
+
+    Raises LandingError: no such file, not an FMU, not this model's, FMPy missing.
+    """
     if not path.is_file():
-        raise LandingError(f"there is no FMU {path}; build it with ./build_fmu.sh or name one by --fmu")
+        raise LandingError(
+            f"there is no FMU {path}; build it with ./build_fmu.sh or name one by --fmu"
+        )
     try:
         from fmpy import read_model_description
     except ImportError:
-        raise LandingError('FMPy is missing; install it with pip install "rlv-landing[ros]"') from None
+        raise LandingError(
+            'FMPy is missing; install it with pip install "rlv-landing[ros]"'
+        ) from None
     try:
         description = read_model_description(str(path))
     except (zipfile.BadZipFile, KeyError):
-        raise LandingError(f"{path} is not an FMU: it is no zip archive with a modelDescription.xml in it") from None
+        raise LandingError(
+            f"{path} is not an FMU: it is no zip archive with a modelDescription.xml in it"
+        ) from None
     except Exception as e:
-        raise LandingError(f"{path} is not an FMU that can be read: {' '.join(str(e).split())}") from None
+        raise LandingError(
+            f"{path} is not an FMU that can be read: {' '.join(str(e).split())}"
+        ) from None
     if description.modelName != MODEL_NAME:
-        raise LandingError(f"{path} holds the model {description.modelName!r}, not {MODEL_NAME!r}; build ours with ./build_fmu.sh")
+        raise LandingError(
+            f"{path} holds the model {description.modelName!r}, not {MODEL_NAME!r}; build ours with ./build_fmu.sh"
+        )
     if description.fmiVersion != "2.0" or description.coSimulation is None:
-        raise LandingError(f"{path} is not an FMU for FMI 2.0 co-simulation; build ours with ./build_fmu.sh")
+        raise LandingError(
+            f"{path} is not an FMU for FMI 2.0 co-simulation; build ours with ./build_fmu.sh"
+        )
     return description

@@ -1,4 +1,6 @@
-"""A log folder in rosbag2's layout, written so that it is either finished or can be told to be unfinished."""
+"""A log folder in rosbag2's layout, written so that it is either finished or can be told to be
+unfinished.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ CHUNK_BYTES = 60 * 1024
 
 @dataclass
 class BagTopic:
-    """What `metadata.yaml` tells of a topic; `qos` as rosbag2 writes the profiles that its publishers offered."""
+    """What `metadata.yaml` tells of a topic; `qos` as rosbag2 writes the profiles that its
+    publishers offered.
+    """
 
     name: str
     type_name: str
@@ -89,10 +93,11 @@ class Bag:
 
 
 class BagWriter:
-    """The folder `folder`, made here, and in it `<name>_0.mcap.part`, which `finish` turns into `<name>_0.mcap` and `metadata.yaml`.
+    """The folder `folder`, made here, and in it `<name>_0.mcap.part`, which `finish` turns into
+    `<name>_0.mcap` and `metadata.yaml`.
 
-    `mcap` is MCAP's own writer of that file. All raise OSError where the disk does; `__init__` raises LandingError where the folder exists
-    or cannot be made.
+    `mcap` is MCAP's own writer of that file. All raise OSError where the disk does; `__init__`
+    raises LandingError where the folder exists or cannot be made.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -108,7 +113,12 @@ class BagWriter:
         try:
             self._file = self.part.open("xb")
             # With the data's own checksum, any byte that is changed later is noticed.
-            self.mcap: Any = Writer(self._file, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD, enable_data_crcs=True)
+            self.mcap: Any = Writer(
+                self._file,
+                chunk_size=CHUNK_BYTES,
+                compression=CompressionType.ZSTD,
+                enable_data_crcs=True,
+            )
             self.mcap.start(profile="ros2", library=f"{LIBRARY} {__version__}")
             self.mcap.add_metadata("rosbag2", {"ROS_DISTRO": distro()})
         except BaseException:
@@ -121,7 +131,9 @@ class BagWriter:
         return self._file is not None
 
     def is_there(self) -> bool:
-        """Whether the file still has its name; a file whose folder was removed takes bytes all the same, and loses them."""
+        """Whether the file still has its name; a file whose folder was removed takes bytes all the
+        same, and loses them.
+        """
         if self._file is None:
             return False
         try:
@@ -131,10 +143,14 @@ class BagWriter:
         return (found.st_dev, found.st_ino) == (mine.st_dev, mine.st_ino)
 
     def finish(self) -> None:
-        """Writes the end of the file, makes sure that all is on the disk, gives the file its name, and writes `metadata.yaml`."""
+        """Writes the end of the file, makes sure that all is on the disk, gives the file its name,
+        and writes `metadata.yaml`.
+        """
         file = self._file
         assert file is not None
-        self.mcap.add_metadata("rosbag2", {"ROS_DISTRO": distro(), "serialized_metadata": dump(self.bag.record())})
+        self.mcap.add_metadata(
+            "rosbag2", {"ROS_DISTRO": distro(), "serialized_metadata": dump(self.bag.record())}
+        )
         self.mcap.finish()
         file.flush()
         os.fsync(file.fileno())
@@ -143,7 +159,10 @@ class BagWriter:
         file.close()
         self._file = None
         self.part.rename(self.path)
-        write_durably(self.folder / "metadata.yaml", dump({"rosbag2_bagfile_information": self.bag.record()}).encode("utf-8"))
+        write_durably(
+            self.folder / "metadata.yaml",
+            dump({"rosbag2_bagfile_information": self.bag.record()}).encode("utf-8"),
+        )
 
     def give_up(self) -> None:
         """Closes the file as it is: unfinished, under its temporary name."""
@@ -169,7 +188,10 @@ class BagWriter:
 
 
 def make_folder(folder: Path) -> list[Path]:
-    """Make `folder` and its missing parents; those made, innermost first. Raises LandingError: it exists, or cannot be made."""
+    """Make `folder` and its missing parents; those made, innermost first.
+
+    Raises LandingError: it exists, or cannot be made.
+    """
     made: list[Path] = []
     try:
         if folder.exists() or folder.is_symlink():
@@ -182,11 +204,15 @@ def make_folder(folder: Path) -> list[Path]:
             made.insert(0, path)
         return made
     except FileExistsError:
-        raise LandingError(f"log folder {folder} exists; logs are never overwritten: name another") from None
+        raise LandingError(
+            f"log folder {folder} exists; logs are never overwritten: name another"
+        ) from None
     except OSError as e:
         for path in made:
             path.rmdir()
-        raise LandingError(f"log folder {folder} cannot be made: {e.strerror or e}; name one that can be written") from None
+        raise LandingError(
+            f"log folder {folder} cannot be made: {e.strerror or e}; name one that can be written"
+        ) from None
 
 
 def media_type(name: str) -> str:

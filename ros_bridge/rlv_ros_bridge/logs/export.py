@@ -19,8 +19,14 @@ UNITS = {"time": "s", **{name: q.unit for name, q in zip(OUTPUT_NAMES, OUTPUT_QU
 EDGE = 1e-9
 
 
-def part(history: History, start: float | None = None, end: float | None = None, every: float | None = None) -> History:
-    """The rows of `history` from `start` to `end` [s], both included; of these the first in each `every` [s]. None is made up between.
+def part(
+    history: History,
+    start: float | None = None,
+    end: float | None = None,
+    every: float | None = None,
+) -> History:
+    """The rows of `history` from `start` to `end` [s], both included; of these the first in each
+    `every` [s]. None is made up between.
 
     Raises LandingError: nothing lies there, or a bound that cannot be.
     """
@@ -34,7 +40,9 @@ def part(history: History, start: float | None = None, end: float | None = None,
     last = t[-1] if end is None else end
     rows = np.flatnonzero((t >= first - EDGE) & (t <= last + EDGE))
     if not len(rows):
-        raise LandingError(f"no instant lies from {first:g} s to {last:g} s; the log goes from {t[0]:g} s to {t[-1]:g} s")
+        raise LandingError(
+            f"no instant lies from {first:g} s to {last:g} s; the log goes from {t[0]:g} s to {t[-1]:g} s"
+        )
     if every is not None:
         turns = np.floor((t[rows] - t[rows[0]] + EDGE) / every)
         rows = rows[np.flatnonzero(np.diff(turns, prepend=-1.0) > 0.0)]
@@ -42,15 +50,19 @@ def part(history: History, start: float | None = None, end: float | None = None,
 
 
 def write_history(history: History, path: Path) -> None:
-    """Writes `history` to `path`, CSV or Parquet by its ending, whole or not at all. Full precision; Parquet columns carry their units,
-    and the file the parameters as TOML, where they are known. Raises LandingError: another ending, pyarrow missing, the disk refuses.
+    """Writes `history` to `path`, CSV or Parquet by its ending, whole or not at all.
+
+    Full precision; Parquet columns carry their units, and the file the parameters as TOML, where
+    they are known. Raises LandingError: another ending, pyarrow missing, the disk refuses.
     """
     if path.suffix not in ENDINGS:
         raise LandingError(f"{path} must end in {' or '.join(ENDINGS)}")
     try:
         write_durably(path, _parquet(history) if path.suffix == ".parquet" else _csv(history))
     except OSError as e:
-        raise LandingError(f"{path} cannot be written: {e.strerror or e}; make room, or name another file") from None
+        raise LandingError(
+            f"{path} cannot be written: {e.strerror or e}; make room, or name another file"
+        ) from None
 
 
 def _csv(history: History) -> bytes:
@@ -64,10 +76,19 @@ def _parquet(history: History) -> bytes:
         import pyarrow
         from pyarrow import parquet
     except ImportError as e:
-        raise LandingError(f'Parquet needs pyarrow ({e}); install it with pip install "rlv-landing[mcap]", or export to .csv') from None
-    fields = [pyarrow.field(name, pyarrow.float64(), metadata={"unit": UNITS.get(name, "")}) for name in history]
-    about = {"parameters.toml": to_toml(history.parameters)} if history.parameters is not None else {}
-    table = pyarrow.table([history[name] for name in history], schema=pyarrow.schema(fields, metadata=about))
+        raise LandingError(
+            f'Parquet needs pyarrow ({e}); install it with pip install "rlv-landing[mcap]", or export to .csv'
+        ) from None
+    fields = [
+        pyarrow.field(name, pyarrow.float64(), metadata={"unit": UNITS.get(name, "")})
+        for name in history
+    ]
+    about = (
+        {"parameters.toml": to_toml(history.parameters)} if history.parameters is not None else {}
+    )
+    table = pyarrow.table(
+        [history[name] for name in history], schema=pyarrow.schema(fields, metadata=about)
+    )
     out = io.BytesIO()
     parquet.write_table(table, out)
     return out.getvalue()

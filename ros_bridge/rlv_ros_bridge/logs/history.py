@@ -21,11 +21,13 @@ NANOSECONDS = 1_000_000_000
 
 
 def log_history(path: str | Path, topics: Sequence[str] = ()) -> History:
-    """The landing in the log at `path`, or in a rosbag2 recording of the same topics: a row an instant, digit for digit as published.
+    """The landing in the log at `path`, or in a rosbag2 recording of the same topics: a row an
+    instant, digit for digit as published.
 
-    Instants are told by the messages' own stamps. Those that lack one of the topics (the last of a cut log) are left out. `topics` (in
-    full or relative to the namespace) chooses columns by topic; by default all are needed, so that every plot and measure takes them.
-    Raises LandingError: no such log, no landing in it, unknown topics, messages that are not what they should be.
+    Instants are told by the messages' own stamps. Those that lack one of the topics (the last of a
+    cut log) are left out. `topics` (in full or relative to the namespace) chooses columns by topic;
+    by default all are needed, so that every plot and measure takes them. Raises LandingError: no
+    such log, no landing in it, unknown topics, messages that are not what they should be.
     """
     return read_history(open_log(path), topics)[0]
 
@@ -39,7 +41,12 @@ def read_history(reader: LogReader, topics: Sequence[str] = ()) -> tuple[History
     """As `log_history`, with notes on what was left out."""
     reader.read_through()
     chosen = _choose(reader, topics)
-    names = [name for relative in READINGS if relative in chosen.values() for name in READINGS[relative][0]]
+    names = [
+        name
+        for relative in READINGS
+        if relative in chosen.values()
+        for name in READINGS[relative][0]
+    ]
     rows: dict[int, dict[str, Any]] = {}
     decode = Decoder(reader)
     for message in reader.messages(chosen):
@@ -48,28 +55,42 @@ def read_history(reader: LogReader, topics: Sequence[str] = ()) -> tuple[History
         rows.setdefault(_stamp(decoded), {}).update(zip(columns, reading(decoded)))
     complete = [(t, row) for t, row in sorted(rows.items()) if len(row) == len(names)]
     if not complete:
-        raise LandingError(f"{reader.path} holds no landing: no instant has all of {', '.join(chosen.values())}")
+        raise LandingError(
+            f"{reader.path} holds no landing: no instant has all of {', '.join(chosen.values())}"
+        )
     times = np.array([_seconds(reader, t) for t, _ in complete])
     data = np.array([[float(row[name]) for name in names] for _, row in complete])
-    return History(times, names, data, reader.parameters()), _notes(reader, chosen, len(rows) - len(complete))
+    return History(times, names, data, reader.parameters()), _notes(
+        reader, chosen, len(rows) - len(complete)
+    )
 
 
 def _choose(reader: LogReader, topics: Sequence[str]) -> dict[str, str]:
     """The topics to read: full name -> name relative to the landing's namespace."""
     full = {resolve(reader.namespace, relative): relative for relative in READINGS}
     readable = {
-        name: relative for name, relative in full.items() if name in reader.channels and reader.channels[name].type_name == TYPES[relative]
+        name: relative
+        for name, relative in full.items()
+        if name in reader.channels and reader.channels[name].type_name == TYPES[relative]
     }
     if not topics:
         missing = [name for name in full if name not in readable]
         if missing:
-            hint = f"; export what is there by --topics {','.join(readable.values())}" if readable else ""
-            raise LandingError(f"{reader.path} holds no landing: it lacks {', '.join(missing)}{hint}")
+            hint = (
+                f"; export what is there by --topics {','.join(readable.values())}"
+                if readable
+                else ""
+            )
+            raise LandingError(
+                f"{reader.path} holds no landing: it lacks {', '.join(missing)}{hint}"
+            )
         return readable
     chosen = reader.select(topics)
     for name in chosen:
         if name not in readable:
-            raise LandingError(f"topic {name!r} has no columns; those that have are {', '.join(readable.values()) or 'not in this log'}")
+            raise LandingError(
+                f"topic {name!r} has no columns; those that have are {', '.join(readable.values()) or 'not in this log'}"
+            )
     return {name: relative for name, relative in readable.items() if name in chosen}
 
 

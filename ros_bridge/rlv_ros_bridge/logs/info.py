@@ -32,10 +32,13 @@ class TopicInfo:
 
 @dataclass
 class LogInfo:
-    """A log's contents. Times in s, size in bytes, forces in N (negative: compression), strokes in m.
+    """A log's contents.
 
-    `landing` is what `rlv_landing.summary` makes of it, with `acceleration_peak` [m/s2], the largest at the top within 12 ms after each
-    leg's contact, where the log is long enough to tell; empty where the log holds no landing, for the reason `no_landing`.
+    Times in s, size in bytes, forces in N (negative: compression), strokes in m.
+
+    `landing` is what `rlv_landing.summary` makes of it, with `acceleration_peak` [m/s2], the
+    largest at the top within 12 ms after each leg's contact, where the log is long enough to tell;
+    empty where the log holds no landing, for the reason `no_landing`.
     """
 
     path: str
@@ -58,7 +61,13 @@ class LogInfo:
     def text(self) -> str:
         """As lines for people."""
         m = self.metadata
-        state = "complete" if self.complete else "damaged" if self.damage else "cut: its writer did not finish it"
+        state = (
+            "complete"
+            if self.complete
+            else "damaged"
+            if self.damage
+            else "cut: its writer did not finish it"
+        )
         lines = [
             f"log        {self.path}",
             f"state      {state}",
@@ -72,19 +81,28 @@ class LogInfo:
             "preset": m.get("preset"),
             "step": f"{m['step_size']} s" if "step_size" in m else None,
             "recorded": m.get("recorded"),
-            "versions": ", ".join(f"{k.removeprefix('version_')} {v}" for k, v in m.items() if k.startswith("version_")),
+            "versions": ", ".join(
+                f"{k.removeprefix('version_')} {v}"
+                for k, v in m.items()
+                if k.startswith("version_")
+            ),
             "fmu": m.get("fmu_guid"),
             "recovered": f"from {m['recovered_from']}" if "recovered_from" in m else None,
             "outcome": self.landing.get("outcome"),
         }
         lines += [f"{key:<10} {value}" for key, value in known.items() if value]
-        lines += [f"{'carries' if i == 0 else '':<10} {n} ({size} bytes)" for i, (n, size) in enumerate(self.attachments.items())]
+        lines += [
+            f"{'carries' if i == 0 else '':<10} {n} ({size} bytes)"
+            for i, (n, size) in enumerate(self.attachments.items())
+        ]
         lines += [f"landing    {self.no_landing}"] if self.no_landing else []
         lines += [f"{'damage' if i == 0 else '':<10} {text}" for i, text in enumerate(self.damage)]
         if self.topics:
             width = max(len(t.name) for t in self.topics)
             lines += ["", f"{'topic':<{width}}  {'messages':>8}  {'Hz':>7}  type"]
-            lines += [f"{t.name:<{width}}  {t.messages:>8}  {t.rate:>7.1f}  {t.type}" for t in self.topics]
+            lines += [
+                f"{t.name:<{width}}  {t.messages:>8}  {t.rate:>7.1f}  {t.type}" for t in self.topics
+            ]
         return "\n".join([*lines, *(self._peaks() if self.landing else [])])
 
     def _peaks(self) -> list[str]:
@@ -123,14 +141,22 @@ def log_info(reader: LogReader) -> LogInfo:
         counts[message.topic] = counts.get(message.topic, 0) + 1
         first = message.log_time if first is None else min(first, message.log_time)
         last = max(last, message.log_time)
-        if message.topic == DIAGNOSTICS.name and reader.channels[message.topic].type_name == DIAGNOSTICS.type_name:
+        if (
+            message.topic == DIAGNOSTICS.name
+            and reader.channels[message.topic].type_name == DIAGNOSTICS.type_name
+        ):
             # Somebody else's may come without a definition.
             with suppress(LandingError):
                 phase = _phase(decode(message)) or phase
     start = first or 0
     duration = (last - start) / 1e9
     topics = [
-        TopicInfo(c.topic, c.type_name, counts.get(c.topic, 0), max(0, counts.get(c.topic, 0) - 1) / duration if duration > 0.0 else 0.0)
+        TopicInfo(
+            c.topic,
+            c.type_name,
+            counts.get(c.topic, 0),
+            max(0, counts.get(c.topic, 0) - 1) / duration if duration > 0.0 else 0.0,
+        )
         for c in reader.channels.values()
     ]
     found = LogInfo(
@@ -167,6 +193,13 @@ def _landing(history: History, phase: str) -> dict[str, Any]:
 
 
 def _phase(message: Any) -> str:
-    """The landing's phase among what a message of `/diagnostics` tells; nothing where it comes from somebody else."""
-    values = [pair for status in message.status if status.hardware_id.startswith("rlv-landing") for pair in status.values]
+    """The landing's phase among what a message of `/diagnostics` tells; nothing where it comes from
+    somebody else.
+    """
+    values = [
+        pair
+        for status in message.status
+        if status.hardware_id.startswith("rlv-landing")
+        for pair in status.values
+    ]
     return next((str(pair.value) for pair in values if pair.key == "phase"), "")

@@ -12,4 +12,6 @@ def require_log_readers() -> None:
         import mcap_ros2  # noqa: F401
         import rosbags  # noqa: F401
     except ImportError as e:
-        raise LandingError(f'reading logs needs mcap and rosbags ({e}); install them with pip install "rlv-landing[mcap]"') from None
+        raise LandingError(
+            f'reading logs needs mcap and rosbags ({e}); install them with pip install "rlv-landing[mcap]"'
+        ) from None

@@ -1,4 +1,6 @@
-"""Reads logs: complete ones, and those whose writer was killed or ran out of disk, or that were damaged since. Needs no ROS 2."""
+"""Reads logs: complete ones, and those whose writer was killed or ran out of disk, or that were
+damaged since. Needs no ROS 2.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ UNFINISHED = ".mcap.part"
 
 @dataclass(frozen=True)
 class Channel:
-    """A topic of a log: its name, its type `pkg/msg/Type`, and the QoS that its publisher offered, as YAML."""
+    """A topic of a log: its name, its type `pkg/msg/Type`, and the QoS that its publisher offered,
+    as YAML.
+    """
 
     topic: str
     type_name: str
@@ -29,7 +33,9 @@ class Channel:
 
 @dataclass(frozen=True)
 class LogMessage:
-    """A message of a log: its topic, its time [ns], and the serialised bytes (CDR) that were published."""
+    """A message of a log: its topic, its time [ns], and the serialised bytes (CDR) that were
+    published.
+    """
 
     topic: str
     log_time: int
@@ -39,11 +45,13 @@ class LogMessage:
 class LogReader:
     """A log: a folder in rosbag2's layout, or one `.mcap` or `.mcap.part` file.
 
-    Once the messages have been read, `cut` tells that not all of the log is there and `damage` what is wrong besides a missing end.
-    `metadata` and `attachments` are known as soon as they have been passed; in a log of ours they stand at its start.
+    Once the messages have been read, `cut` tells that not all of the log is there and `damage` what
+    is wrong besides a missing end. `metadata` and `attachments` are known as soon as they have been
+    passed; in a log of ours they stand at its start.
 
     Raises:
-        LandingError: there is no such log, it is not MCAP, or not even its first record can be read.
+        LandingError: there is no such log, it is not MCAP, or not even its first record can be
+            read.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -64,7 +72,9 @@ class LogReader:
         return sum(f.stat().st_size for f in self.files)
 
     def messages(self, topics: Iterable[str] | None = None) -> Iterator[LogMessage]:
-        """The messages in the log's order, of all topics or of `topics`, up to the end or to where the log is cut."""
+        """The messages in the log's order, of all topics or of `topics`, up to the end or to where
+        the log is cut.
+        """
         from mcap.records import Attachment, Message, Metadata
 
         wanted = None if topics is None else set(topics)
@@ -90,7 +100,9 @@ class LogReader:
             self.damage += [f"{file.name}, {text}" for text in stream.damage]
 
     def read_through(self) -> None:
-        """Reads the log to its end, so that channels, metadata, attachments, `cut` and `damage` are known."""
+        """Reads the log to its end, so that channels, metadata, attachments, `cut` and `damage` are
+        known.
+        """
         for _ in self.messages(()):
             pass
 
@@ -98,41 +110,59 @@ class LogReader:
         if record.topic not in self.channels:
             self._schemas[record.topic] = schema
             name = schema.name if schema is not None else ""
-            self.channels[record.topic] = Channel(record.topic, name, record.metadata.get("offered_qos_profiles", ""))
+            self.channels[record.topic] = Channel(
+                record.topic, name, record.metadata.get("offered_qos_profiles", "")
+            )
 
     @property
     def namespace(self) -> str:
         """The namespace under which the landing was published."""
         if "namespace" in self.metadata:
             return self.metadata["namespace"].rstrip("/")
-        struts = [c.topic for c in self.channels.values() if f"/{c.topic}".endswith(f"/{STRUTS.name}") and c.type_name == STRUTS.type_name]
+        struts = [
+            c.topic
+            for c in self.channels.values()
+            if f"/{c.topic}".endswith(f"/{STRUTS.name}") and c.type_name == STRUTS.type_name
+        ]
         return struts[0].removesuffix(STRUTS.name).rstrip("/") if struts else ""
 
     def select(self, names: Sequence[str]) -> list[str]:
-        """The full names of topics that are given in full or relative to the landing's namespace; all where none is given.
+        """The full names of topics that are given in full or relative to the landing's namespace;
+        all where none is given.
 
-        Raises LandingError, with the nearest name, for one that the log does not hold. The log must have been read.
+        Raises LandingError, with the nearest name, for one that the log does not hold. The log must
+        have been read.
         """
         known = list(self.channels)
         chosen = []
         for name in names:
             full = name if name in self.channels else f"{self.namespace}/{name}"
             if full not in self.channels:
-                raise unknown("topic", name, [*known, *(t.removeprefix(self.namespace + "/") for t in known)])
+                raise unknown(
+                    "topic", name, [*known, *(t.removeprefix(self.namespace + "/") for t in known)]
+                )
             chosen.append(full)
         return chosen or known
 
     def decoder(self, topic: str) -> Any:
-        """What makes messages of `topic` from bytes, by the definition that the log carries. Raises LandingError where it has none."""
+        """What makes messages of `topic` from bytes, by the definition that the log carries.
+
+        Raises LandingError where it has none.
+        """
         from mcap_ros2.decoder import DecoderFactory
 
         try:
-            # A factory of its own for each: it tells schemas apart by number alone, and another file numbers them anew.
+            # A factory of its own for each: it tells schemas apart by number alone, and another
+            # file numbers them anew.
             decode = DecoderFactory().decoder_for("cdr", self._schemas.get(topic))
         except Exception as e:
-            raise LandingError(f"{self.path}: the definition of {topic} cannot be read: {' '.join(str(e).split())}") from None
+            raise LandingError(
+                f"{self.path}: the definition of {topic} cannot be read: {' '.join(str(e).split())}"
+            ) from None
         if decode is None:
-            raise LandingError(f"{self.path}: {topic} has no definition in the log, it cannot be decoded")
+            raise LandingError(
+                f"{self.path}: {topic} has no definition in the log, it cannot be decoded"
+            )
         return decode
 
     def parameters(self) -> Parameters | None:
@@ -140,11 +170,17 @@ class LogReader:
         from rlv_landing.presets import parse_toml
 
         data = self.attachments.get("parameters.toml")
-        return None if data is None else parse_toml(data.decode("utf-8", "replace"), f"{self.path}: parameters.toml")
+        return (
+            None
+            if data is None
+            else parse_toml(data.decode("utf-8", "replace"), f"{self.path}: parameters.toml")
+        )
 
 
 class Definitions:
-    """The schemas and channels of one file, the first of each number; those lost with a damaged chunk are looked up in its summary."""
+    """The schemas and channels of one file, the first of each number; those lost with a damaged
+    chunk are looked up in its summary.
+    """
 
     def __init__(self, file: Path) -> None:
         self._file = file
@@ -180,7 +216,10 @@ class Definitions:
 
 
 class Decoder:
-    """Decodes the messages of a log by the definitions that it carries. Raises LandingError for what cannot be decoded."""
+    """Decodes the messages of a log by the definitions that it carries.
+
+    Raises LandingError for what cannot be decoded.
+    """
 
     def __init__(self, reader: LogReader) -> None:
         self._reader = reader
@@ -192,18 +231,28 @@ class Decoder:
         try:
             return self._decoders[message.topic](message.data)
         except Exception:
-            at = f"{self._reader.path}: a message of {message.topic} at {message.log_time / 1e9:g} s"
-            raise LandingError(f"{at} is not what its definition says; it cannot be decoded") from None
+            at = (
+                f"{self._reader.path}: a message of {message.topic} at {message.log_time / 1e9:g} s"
+            )
+            raise LandingError(
+                f"{at} is not what its definition says; it cannot be decoded"
+            ) from None
 
 
 def find_files(path: Path) -> list[Path]:
-    """The MCAP files of the log at `path`, in their order, unfinished ones too. Raises LandingError where there are none."""
+    """The MCAP files of the log at `path`, in their order, unfinished ones too.
+
+    Raises LandingError where there are none.
+    """
     if path.is_file():
         return [path]
     if not path.is_dir():
         raise LandingError(f"there is no log {path}; name a log's folder or its .mcap file")
     try:
-        files = sorted((f for f in path.iterdir() if f.name.endswith((FINISHED, UNFINISHED)) and f.is_file()), key=_number)
+        files = sorted(
+            (f for f in path.iterdir() if f.name.endswith((FINISHED, UNFINISHED)) and f.is_file()),
+            key=_number,
+        )
     except OSError as e:
         raise LandingError(f"{path} cannot be read: {e.strerror or e}") from None
     if not files:
@@ -235,6 +284,8 @@ def check_file(file: Path) -> None:
     if not start:
         raise LandingError(f"{file} is empty; nothing was recorded")
     if not MAGIC.startswith(start[: len(MAGIC)]):
-        raise LandingError(f"{file} is not MCAP: it does not start as one; name a log's folder or its .mcap file")
+        raise LandingError(
+            f"{file} is not MCAP: it does not start as one; name a log's folder or its .mcap file"
+        )
     if len(start) < len(MAGIC) + 9 or start[len(MAGIC)] != HEADER or not whole:
         raise LandingError(f"{file} is cut within its first record; nothing in it can be read")

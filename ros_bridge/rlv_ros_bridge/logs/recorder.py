@@ -1,4 +1,6 @@
-"""Records the published bytes to MCAP in rosbag2's layout, so that what was written survives the writer's death."""
+"""Records the published bytes to MCAP in rosbag2's layout, so that what was written survives the
+writer's death.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,8 @@ class RecordedTopic:
 
 
 class Recorder:
-    """One log being written: `<folder>/<folder's name>_0.mcap.part`; once it is closed, that without `.part`, and `metadata.yaml`.
+    """One log being written: `<folder>/<folder's name>_0.mcap.part`; once it is closed, that
+    without `.part`, and `metadata.yaml`.
 
     Args:
         folder: made here, with its parents; it must not exist.
@@ -38,10 +41,11 @@ class Recorder:
         attachments: files by name that the log carries.
 
     Raises:
-        LandingError: the folder exists or cannot be written, or a topic's type is not installed; nothing is left behind then.
+        LandingError: the folder exists or cannot be written, or a topic's type is not installed;
+            nothing is left behind then.
 
-    A disk that fills up later, or a folder that is removed or moved away, does not raise: `error` is set, writing stops, and what was
-    written stays readable. Not for several threads at once.
+    A disk that fills up later, or a folder that is removed or moved away, does not raise: `error`
+    is set, writing stops, and what was written stays readable. Not for several threads at once.
     """
 
     def __init__(
@@ -61,7 +65,12 @@ class Recorder:
         except OSError as e:
             raise self._unwritable(e) from None
         self.path = self._bag.path
-        self._entries = {t.name: BagTopic(t.name, t.type_name, [t.qos.record()], definitions[t.type_name].type_hash) for t in self.topics}
+        self._entries = {
+            t.name: BagTopic(
+                t.name, t.type_name, [t.qos.record()], definitions[t.type_name].type_hash
+            )
+            for t in self.topics
+        }
         self._bag.bag.topics = list(self._entries.values())
         self._span = self._bag.bag.span
         # Of the messages of a sample: the channels; how many samples were recorded.
@@ -69,7 +78,9 @@ class Recorder:
         self._samples = 0
         try:
             for name, data in (attachments or {}).items():
-                self._bag.mcap.add_attachment(create_time=0, log_time=0, name=name, media_type=media_type(name), data=data)
+                self._bag.mcap.add_attachment(
+                    create_time=0, log_time=0, name=name, media_type=media_type(name), data=data
+                )
             if metadata:
                 self._bag.mcap.add_metadata("rlv_landing", dict(metadata))
             self._channels = self._register(definitions)
@@ -82,17 +93,25 @@ class Recorder:
             raise
 
     def _unwritable(self, e: OSError) -> LandingError:
-        return LandingError(f"log folder {self.folder} cannot be written: {e.strerror or e}; name one that can be, or make room")
+        return LandingError(
+            f"log folder {self.folder} cannot be written: {e.strerror or e}; name one that can be, or make room"
+        )
 
     def _register(self, definitions: Mapping[str, Definition]) -> dict[str, int]:
         import yaml
 
         mcap = self._bag.mcap
-        schemas = {name: mcap.register_schema(name, "ros2msg", d.text.encode("utf-8")) for name, d in definitions.items()}
+        schemas = {
+            name: mcap.register_schema(name, "ros2msg", d.text.encode("utf-8"))
+            for name, d in definitions.items()
+        }
         channels: dict[str, int] = {}
         for t in self.topics:
             qos = yaml.safe_dump([t.qos.record()], sort_keys=False)
-            metadata = {"offered_qos_profiles": qos, "topic_type_hash": definitions[t.type_name].type_hash}
+            metadata = {
+                "offered_qos_profiles": qos,
+                "topic_type_hash": definitions[t.type_name].type_hash,
+            }
             channels[t.name] = mcap.register_channel(t.name, "cdr", schemas[t.type_name], metadata)
         return channels
 
@@ -102,8 +121,10 @@ class Recorder:
         return sum(t.count for t in self._entries.values()) + self._samples * len(self._sampled)
 
     def begin_samples(self, sizes: Mapping[str, int]) -> list[bytes]:
-        """From now on samples are recorded as a whole: messages of the topics in `sizes`, of that many bytes each. How the record of each
-        begins; a sequence number and the time twice (as in `open_chunk.TIMES`), and the message follow."""
+        """From now on samples are recorded as a whole: messages of the topics in `sizes`, of that
+        many bytes each. How the record of each begins; a sequence number and the time twice (as in
+        `open_chunk.TIMES`), and the message follow.
+        """
         self._sampled = tuple(sizes)
         place = 0
         for topic, size in sizes.items():
@@ -112,8 +133,10 @@ class Recorder:
         return [message_head(self._channels[topic], size) for topic, size in sizes.items()]
 
     def write_sample(self, log_time_ns: int, records: bytes) -> None:
-        """Record a sample's messages at the simulation time `log_time_ns`: their records, in the order of `begin_samples`, the number of
-        the sample as their sequence number. After an error it does nothing."""
+        """Record a sample's messages at the simulation time `log_time_ns`: their records, in the
+        order of `begin_samples`, the number of the sample as their sequence number. After an error
+        it does nothing.
+        """
         if self.error:
             return
         try:
@@ -125,7 +148,10 @@ class Recorder:
         self._span.add(log_time_ns)
 
     def write(self, topic: str, log_time_ns: int, data: bytes) -> None:
-        """Record the serialised message `data` of `topic` at the simulation time `log_time_ns`. After an error it does nothing."""
+        """Record the serialised message `data` of `topic` at the simulation time `log_time_ns`.
+
+        After an error it does nothing.
+        """
         if self.error:
             return
         entry = self._entries[topic]
@@ -138,7 +164,9 @@ class Recorder:
         self._span.add(log_time_ns)
 
     def flush(self) -> None:
-        """Hand what is recorded to the operating system if the last time is a quarter of a second ago. To be called now and then."""
+        """Hand what is recorded to the operating system if the last time is a quarter of a second
+        ago. To be called now and then.
+        """
         now = time.monotonic()
         if self.error or now - self._flushed < FLUSH_SECONDS:
             return
@@ -151,7 +179,10 @@ class Recorder:
             self._fail(e.strerror or str(e))
 
     def close(self) -> None:
-        """Finish the file and write `metadata.yaml`. After an error only closes the file, which `rlv-landing log` still reads."""
+        """Finish the file and write `metadata.yaml`.
+
+        After an error only closes the file, which `rlv-landing log` still reads.
+        """
         if not self._bag.open:
             return
         try:

@@ -19,8 +19,9 @@ REMADE = "rosbag2"
 
 @dataclass
 class Recovery:
-    """What was saved: messages, and their first and last time [s]; what was not: bytes that could not be read, messages whose topic is
-    not known any more, `stop_time` [s] up to which the run was to go (if the log says so), and what was wrong, a sentence each.
+    """What was saved: messages, and their first and last time [s]; what was not: bytes that could
+    not be read, messages whose topic is not known any more, `stop_time` [s] up to which the run was
+    to go (if the log says so), and what was wrong, a sentence each.
     """
 
     path: str
@@ -45,14 +46,20 @@ class Recovery:
 
     def text(self) -> str:
         """As lines for people."""
-        lines = [f"saved    {self.messages} messages from {self.start:g} s to {self.end:g} s, all that is whole: {self.folder}"]
+        lines = [
+            f"saved    {self.messages} messages from {self.start:g} s to {self.end:g} s, all that is whole: {self.folder}"
+        ]
         lines += [f"damage   {text}" for text in self.damage]
         if self.unknown_topic:
-            lines.append(f"missing  {self.unknown_topic} messages whose topic is not known any more")
+            lines.append(
+                f"missing  {self.unknown_topic} messages whose topic is not known any more"
+            )
         if self.lost_bytes:
             lines.append(f"missing  {self.lost_bytes} bytes that make no whole chunk")
         if not self.finished and self.stop_time is not None and self.end < self.stop_time:
-            lines.append(f"missing  the span from {self.end:g} s on, at most to the stop time of {self.stop_time:g} s")
+            lines.append(
+                f"missing  the span from {self.end:g} s on, at most to the stop time of {self.stop_time:g} s"
+            )
         elif not self.finished:
             lines.append(f"missing  what was recorded after {self.end:g} s, if anything")
         return "\n".join(lines)
@@ -65,10 +72,12 @@ def recovered_folder(path: Path) -> Path:
 
 
 def recover(path: Path, folder: Path | None = None) -> Recovery:
-    """Copies every whole, checked record of the log at `path` into a new log `folder` (default: `recovered_folder`).
+    """Copies every whole, checked record of the log at `path` into a new log `folder` (default:
+    `recovered_folder`).
 
-    A log that is complete, `metadata.yaml` included, is left as it is: `folder` is empty in what is returned.
-    Raises LandingError: no log, nothing whole in it, the folder exists, or it cannot be written (nothing is left behind then).
+    A log that is complete, `metadata.yaml` included, is left as it is: `folder` is empty in what is
+    returned. Raises LandingError: no log, nothing whole in it, the folder exists, or it cannot be
+    written (nothing is left behind then).
     """
     files = find_files(path)
     for file in files:
@@ -80,7 +89,9 @@ def recover(path: Path, folder: Path | None = None) -> Recovery:
     try:
         writer = BagWriter(target)
     except OSError as e:
-        raise LandingError(f"log folder {target} cannot be written: {e.strerror or e}; name another") from None
+        raise LandingError(
+            f"log folder {target} cannot be written: {e.strerror or e}; name another"
+        ) from None
     try:
         copy = _Copy(writer, found)
         for file in files:
@@ -91,7 +102,9 @@ def recover(path: Path, folder: Path | None = None) -> Recovery:
     except BaseException as e:
         writer.discard()
         if isinstance(e, OSError):
-            raise LandingError(f"log folder {target} cannot be written: {e.strerror or e}; make room, or name another") from None
+            raise LandingError(
+                f"log folder {target} cannot be written: {e.strerror or e}; make room, or name another"
+            ) from None
         raise
     found.folder = str(target)
     return found
@@ -110,7 +123,9 @@ def _is_complete(path: Path, files: list[Path]) -> bool:
 
 
 class _Copy:
-    """Copies the records of one log's files through one writer, numbering schemas and channels anew."""
+    """Copies the records of one log's files through one writer, numbering schemas and channels
+    anew.
+    """
 
     def __init__(self, writer: BagWriter, found: Recovery) -> None:
         self._writer = writer
@@ -136,11 +151,15 @@ class _Copy:
                         continue
                     known[record.channel_id] = self._channel(channel, schema)
                 number, topic = known[record.channel_id]
-                mcap.add_message(number, record.log_time, record.data, record.publish_time, record.sequence)
+                mcap.add_message(
+                    number, record.log_time, record.data, record.publish_time, record.sequence
+                )
                 topic.count += 1
                 self._writer.bag.span.add(record.log_time)
             elif isinstance(record, Attachment):
-                mcap.add_attachment(record.create_time, record.log_time, record.name, record.media_type, record.data)
+                mcap.add_attachment(
+                    record.create_time, record.log_time, record.name, record.media_type, record.data
+                )
             elif isinstance(record, Metadata):
                 if record.name == "rlv_landing":
                     self._ours.update(record.metadata)
@@ -162,7 +181,10 @@ class _Copy:
         except (KeyError, ValueError):
             found.stop_time = None
         whole = "" if found.complete else found.text().split("\n", 1)[-1]
-        self._writer.mcap.add_metadata("rlv_landing", {**self._ours, "recovered_from": Path(found.path).name, "recovery": whole})
+        self._writer.mcap.add_metadata(
+            "rlv_landing",
+            {**self._ours, "recovered_from": Path(found.path).name, "recovery": whole},
+        )
         self._writer.finish()
 
     def _channel(self, channel: Any, schema: Any) -> tuple[int, BagTopic]:
@@ -170,9 +192,16 @@ class _Copy:
         key = (channel.topic, number)
         if key not in self._channels:
             metadata = channel.metadata
-            made = self._writer.mcap.register_channel(channel.topic, channel.message_encoding, number, metadata)
+            made = self._writer.mcap.register_channel(
+                channel.topic, channel.message_encoding, number, metadata
+            )
             qos = _profiles(metadata.get("offered_qos_profiles", ""))
-            topic = BagTopic(channel.topic, schema.name if schema is not None else "", qos, metadata.get("topic_type_hash", ""))
+            topic = BagTopic(
+                channel.topic,
+                schema.name if schema is not None else "",
+                qos,
+                metadata.get("topic_type_hash", ""),
+            )
             self._writer.bag.topics.append(topic)
             self._channels[key] = (made, topic)
         return self._channels[key]
@@ -195,4 +224,8 @@ def _profiles(text: str) -> list[dict[str, Any]]:
         found = yaml.safe_load(text)
     except yaml.YAMLError:
         return []
-    return [dict(p) for p in found] if isinstance(found, list) and all(isinstance(p, dict) for p in found) else []
+    return (
+        [dict(p) for p in found]
+        if isinstance(found, list) and all(isinstance(p, dict) for p in found)
+        else []
+    )

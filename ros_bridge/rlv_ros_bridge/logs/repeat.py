@@ -18,8 +18,9 @@ Inputs = dict[int, list[dict[str, float]]]
 
 
 class Run:
-    """What it takes to repeat the run of a log that has been read: parameters, step [s], inputs with their times, and the FMU to use
-    instead of `Landing`, if any. `input_messages` counts the inputs.
+    """What it takes to repeat the run of a log that has been read: parameters, step [s], inputs
+    with their times, and the FMU to use instead of `Landing`, if any. `input_messages` counts the
+    inputs.
 
     Raises LandingError, naming what is missing and what would be needed.
     """
@@ -28,22 +29,32 @@ class Run:
         cannot = f"{reader.path} cannot be repeated: "
         parameters = reader.parameters()
         if parameters is None:
-            raise LandingError(cannot + "it carries no parameters.toml; logs of `rlv-landing node` carry it, other recordings do not")
+            raise LandingError(
+                cannot
+                + "it carries no parameters.toml; logs of `rlv-landing node` carry it, other recordings do not"
+            )
         self.parameters: Parameters = parameters
         self.step = _number(reader, "step_size", cannot)
         self.step_ns = round(self.step * 1e9)
         if self.step_ns < 1:
-            raise LandingError(cannot + f"its step_size = {self.step:g} s is not a step of 1 ns or more")
+            raise LandingError(
+                cannot + f"its step_size = {self.step:g} s is not a step of 1 ns or more"
+            )
         self.stop_time = _number(reader, "stop_time", cannot)
         mode = reader.metadata.get("mode", parameters.drop.mode)
         if mode != parameters.drop.mode:
-            raise LandingError(cannot + f"its metadata say mode {mode}, its parameters.toml {parameters.drop.mode}; one was changed")
+            raise LandingError(
+                cannot
+                + f"its metadata say mode {mode}, its parameters.toml {parameters.drop.mode}; one was changed"
+            )
         self._inputs = _inputs(reader, self.step_ns, cannot)
         self.input_messages = sum(map(len, self._inputs.values()))
         self._fmu = fmu
 
     def samples(self) -> Generator[dict[str, float], None, None]:
-        """All outputs by name at 0, one step, two steps, and so on without end; the inputs act at their times."""
+        """All outputs by name at 0, one step, two steps, and so on without end; the inputs act at
+        their times.
+        """
         if self._fmu is None:
             landing = Landing(self.parameters)
             k = 0
@@ -66,12 +77,17 @@ class Run:
 
 
 def _inputs(reader: LogReader, step_ns: int, cannot: str) -> Inputs:
-    """What the log says of inputs, in its order. Raises LandingError for one that cannot be, or whose time is not that of a sample."""
+    """What the log says of inputs, in its order.
+
+    Raises LandingError for one that cannot be, or whose time is not that of a sample.
+    """
     names = {resolve(reader.namespace, name): read for name, read in READINGS.items()}
     for topic in (t for t in APPLIED if resolve(reader.namespace, t.name) in reader.channels):
         found_type = reader.channels[resolve(reader.namespace, topic.name)].type_name
         if found_type != topic.type_name:
-            raise LandingError(f"{cannot}its topic {topic.name} is {found_type}, not {topic.type_name}; another program has written it")
+            raise LandingError(
+                f"{cannot}its topic {topic.name} is {found_type}, not {topic.type_name}; another program has written it"
+            )
     decode = Decoder(reader)
     found: Inputs = {}
     for message in reader.messages(names):
@@ -80,9 +96,13 @@ def _inputs(reader: LogReader, step_ns: int, cannot: str) -> Inputs:
         stamp = decoded.header.stamp
         k, rest = divmod(message.log_time, step_ns)
         if stamp.sec * 1_000_000_000 + stamp.nanosec != message.log_time:
-            raise LandingError(at + f"has the stamp {stamp.sec}.{stamp.nanosec:09d} s; one of the two was changed")
+            raise LandingError(
+                at + f"has the stamp {stamp.sec}.{stamp.nanosec:09d} s; one of the two was changed"
+            )
         if rest or k < 0:
-            raise LandingError(at + f"is not at a sample: those are {step_ns / 1e9:g} s apart; it was changed")
+            raise LandingError(
+                at + f"is not at a sample: those are {step_ns / 1e9:g} s apart; it was changed"
+            )
         try:
             found.setdefault(k, []).append(names[message.topic](decoded))
         except LandingError as e:
@@ -94,9 +114,14 @@ def _number(reader: LogReader, name: str, cannot: str) -> float:
     try:
         value = float(reader.metadata[name])
     except KeyError:
-        raise LandingError(cannot + f"its metadata do not say {name}; logs of `rlv-landing node` do, other recordings do not") from None
+        raise LandingError(
+            cannot
+            + f"its metadata do not say {name}; logs of `rlv-landing node` do, other recordings do not"
+        ) from None
     except ValueError:
-        raise LandingError(cannot + f"its {name} = {reader.metadata[name]!r} is not a number of seconds") from None
+        raise LandingError(
+            cannot + f"its {name} = {reader.metadata[name]!r} is not a number of seconds"
+        ) from None
     if not 0.0 < value < 1e9:
         raise LandingError(cannot + f"its {name} = {value:g} s is not a time above 0 s")
     return value

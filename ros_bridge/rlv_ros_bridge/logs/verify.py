@@ -19,14 +19,17 @@ from ..messages.topics import resolve
 from .reader import Decoder, LogMessage, LogReader
 from .repeat import Run
 
-# Share of a field's largest value that a repetition by another build may differ by. One unit in the last place of a parameter comes to
-# 0.31 % within 3 s of the drop tests (a friction force that switches from stick to slip): contact magnifies the smallest difference.
+# Share of a field's largest value that a repetition by another build may differ by. One unit in the
+# last place of a parameter comes to 0.31 % within 3 s of the drop tests (a friction force that
+# switches from stick to slip): contact magnifies the smallest difference.
 TOLERANCE = 0.01
 
 
 @dataclass(frozen=True)
 class Difference:
-    """Where log and repetition differ: topic, field, time [s], and both values (SI, ROS axes; None: not there)."""
+    """Where log and repetition differ: topic, field, time [s], and both values (SI, ROS axes; None:
+    not there).
+    """
 
     topic: str
     field: str
@@ -45,9 +48,10 @@ class Difference:
 
 @dataclass
 class Verification:
-    """How a log compares: instants, messages and values compared, inputs repeated, values that are not the same bits, the largest
-    difference as a share of its field's largest value; `not_exact` says why not all bits must be the same, or is empty; `first` is the
-    first difference that counts.
+    """How a log compares: instants, messages and values compared, inputs repeated, values that are
+    not the same bits, the largest difference as a share of its field's largest value; `not_exact`
+    says why not all bits must be the same, or is empty; `first` is the first difference that
+    counts.
     """
 
     path: str
@@ -75,17 +79,23 @@ class Verification:
 
     def text(self) -> str:
         """As lines for people."""
-        until = f"{self.instants} instants up to {self.end:g} s" + ("" if self.end >= self.stop_time else f" of {self.stop_time:g} s")
+        until = f"{self.instants} instants up to {self.end:g} s" + (
+            "" if self.end >= self.stop_time else f" of {self.stop_time:g} s"
+        )
         lines = [f"compared  {self.values} values of {self.messages} messages at {until}"]
         if self.inputs:
-            lines.append(f"steered   by {self.inputs} input{'s' if self.inputs > 1 else ''}, repeated at their times")
+            lines.append(
+                f"steered   by {self.inputs} input{'s' if self.inputs > 1 else ''}, repeated at their times"
+            )
         if self.first is not None:
             lines.append(f"differs   first in {self.first.text()}")
         elif self.other_bits:
             lines.append(
                 f"same      within {self.tolerance:g} of each field's largest value; {self.other_bits} values are not the same bits,"
             )
-            lines.append(f"          the largest difference is {self.largest:.2g} of its field's largest value")
+            lines.append(
+                f"          the largest difference is {self.largest:.2g} of its field's largest value"
+            )
         else:
             lines.append("same      bit for bit")
         if self.not_exact:
@@ -94,9 +104,9 @@ class Verification:
 
 
 def verify(reader: LogReader, fmu: Path | None = None) -> Verification:
-    """Repeats the run of the log, by `Landing` or by the FMU `fmu`, and compares all that follows from it: every field of struts, pose,
-    rpy, twist, accel, top/accel, contacts and odom (markers and diagnostics are not compared). Inputs that the log tells of act
-    again at their times.
+    """Repeats the run of the log, by `Landing` or by the FMU `fmu`, and compares all that follows
+    from it: every field of struts, pose, rpy, twist, accel, top/accel, contacts and odom (markers
+    and diagnostics are not compared). Inputs that the log tells of act again at their times.
 
     Raises LandingError where the log cannot be repeated.
     """
@@ -104,7 +114,9 @@ def verify(reader: LogReader, fmu: Path | None = None) -> Verification:
     most_instants = sum(1 for _ in reader.messages())
     run = Run(reader, fmu)
     not_exact = why_not_exact(reader.metadata, fmu)
-    found = Verification(str(reader.path), not_exact, TOLERANCE if not_exact else 0.0, stop_time=run.stop_time)
+    found = Verification(
+        str(reader.path), not_exact, TOLERANCE if not_exact else 0.0, stop_time=run.stop_time
+    )
     found.inputs = run.input_messages
     try:
         with closing(run.samples()) as samples:
@@ -124,7 +136,9 @@ class _DiffersError(Exception):
 class _Comparison:
     """One pass through a log beside one repetition."""
 
-    def __init__(self, reader: LogReader, run: Run, found: Verification, most_instants: int) -> None:
+    def __init__(
+        self, reader: LogReader, run: Run, found: Verification, most_instants: int
+    ) -> None:
         self._reader = reader
         self._run = run
         self._found = found
@@ -148,7 +162,13 @@ class _Comparison:
                 if k >= 0 and missing:
                     self._differ(min(missing), "", k * run.step, None, "a message")
                 if k * run.step > run.stop_time + run.step:
-                    self._differ(message.topic, "", message.log_time / 1e9, "a message after the stop time", None)
+                    self._differ(
+                        message.topic,
+                        "",
+                        message.log_time / 1e9,
+                        "a message after the stop time",
+                        None,
+                    )
                 k += 1
                 values = next(samples)
                 missing = set(self._topics)
@@ -156,7 +176,9 @@ class _Comparison:
             self._compare(message, values)
             missing.discard(message.topic)
         if found.instants == 0:
-            raise LandingError(f"{self._reader.path} cannot be compared: it holds no message of {', '.join(self._topics)}")
+            raise LandingError(
+                f"{self._reader.path} cannot be compared: it holds no message of {', '.join(self._topics)}"
+            )
         if missing and not (self._reader.cut or self._recovered):
             self._differ(min(missing), "", k * run.step, None, "a message")
         found.end = k * run.step
@@ -182,15 +204,23 @@ class _Comparison:
 
     def _judge(self, message: LogMessage, path: str, recorded: float, repeated: float) -> None:
         scale = self._scale(self._topics[message.topic], path) if self._found.not_exact else 0.0
-        share = abs(recorded - repeated) / scale if scale > 0.0 else (0.0 if recorded == repeated else math.inf)
+        share = (
+            abs(recorded - repeated) / scale
+            if scale > 0.0
+            else (0.0 if recorded == repeated else math.inf)
+        )
         if not (self._found.not_exact and share <= TOLERANCE):
             self._differ(message.topic, path, message.log_time / 1e9, recorded, repeated)
         self._found.largest = max(self._found.largest, share)
 
     def _scale(self, topic: str, path: str) -> float:
-        """The largest value of a field in the repetition up to the log's end; it is made once more for that."""
+        """The largest value of a field in the repetition up to the log's end; it is made once more
+        for that.
+        """
         if self._scales is None:
-            self._scales = _largest(self._run, min(self._most_instants, int(self._run.stop_time / self._run.step) + 1))
+            self._scales = _largest(
+                self._run, min(self._most_instants, int(self._run.stop_time / self._run.step) + 1)
+            )
         return self._scales.get((topic, path), 0.0)
 
     def _differ(self, topic: str, field: str, time: float, recorded: Any, repeated: Any) -> None:

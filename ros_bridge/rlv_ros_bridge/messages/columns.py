@@ -1,6 +1,9 @@
-"""Messages back to the model's outputs: the inverse of `messages.py`, digit for digit. Needs no ROS 2.
+"""Messages back to the model's outputs: the inverse of `messages.py`, digit for digit.
 
-A message here is anything with the fields of the ROS message: rclpy's own object or one decoded from a log.
+Needs no ROS 2.
+
+A message here is anything with the fields of the ROS message: rclpy's own object or one decoded
+    from a log.
 """
 
 from __future__ import annotations
@@ -19,7 +22,9 @@ Reading = Callable[[Any], Sequence[float]]
 
 def _struts(message: Any) -> list[float]:
     if tuple(message.name) != JOINTS:
-        raise LandingError(f"the log's struts are called {', '.join(message.name)}; a landing's are {', '.join(JOINTS)}")
+        raise LandingError(
+            f"the log's struts are called {', '.join(message.name)}; a landing's are {', '.join(JOINTS)}"
+        )
     return [*message.position, *message.velocity, *message.effort]
 
 
@@ -38,8 +43,14 @@ READINGS: dict[str, tuple[Sequence[str], Reading]] = {
     STRUTS.name: (_strut_names(), _struts),
     POSE.name: (("body.x", "body.y"), lambda m: _in_plane(m.pose.position)),
     RPY.name: (("body.pitch",), lambda m: (m.vector.y,)),
-    TWIST.name: (("body.vx", "body.vy", "body.pitch_rate"), lambda m: (*_in_plane(m.twist.linear), m.twist.angular.y)),
-    ACCEL.name: (("body.ax", "body.ay", "body.pitch_acceleration"), lambda m: (*_in_plane(m.accel.linear), m.accel.angular.y)),
+    TWIST.name: (
+        ("body.vx", "body.vy", "body.pitch_rate"),
+        lambda m: (*_in_plane(m.twist.linear), m.twist.angular.y),
+    ),
+    ACCEL.name: (
+        ("body.ax", "body.ay", "body.pitch_acceleration"),
+        lambda m: (*_in_plane(m.accel.linear), m.accel.angular.y),
+    ),
     TOP_ACCEL.name: (("body.top_axial_acceleration",), lambda m: (m.accel.linear.z,)),
     **{
         topic.name: (

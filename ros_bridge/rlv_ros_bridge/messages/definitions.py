@@ -1,4 +1,6 @@
-"""Message definitions as a log needs them: the `.msg` texts of a type and of all it is made of, and its hash."""
+"""Message definitions as a log needs them: the `.msg` texts of a type and of all it is made of, and
+its hash.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ from rlv_landing.errors import LandingError
 
 SEPARATOR = "=" * 80
 INTEGERS = tuple(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))
-PRIMITIVES = frozenset(("bool", "byte", "char", "float32", "float64", "string", "wstring", *INTEGERS))
+PRIMITIVES = frozenset(
+    ("bool", "byte", "char", "float32", "float64", "string", "wstring", *INTEGERS)
+)
 FIELD = re.compile(r"^\s*([A-Za-z][A-Za-z0-9_/]*)(?:<=\d+)?(?:\[[^\]]*\])?\s+[A-Za-z]\w*")
 
 
@@ -30,7 +34,9 @@ WITHOUT_WHEEL = {
 
 @dataclass(frozen=True)
 class Definition:
-    """A message type `pkg/msg/Type`: its text in the form of MCAP's `ros2msg` schema, and its hash (`RIHS01_...`)."""
+    """A message type `pkg/msg/Type`: its text in the form of MCAP's `ros2msg` schema, and its hash
+    (`RIHS01_...`).
+    """
 
     name: str
     text: str
@@ -39,7 +45,10 @@ class Definition:
 
 @cache
 def definition(name: str) -> Definition:
-    """The definition of the type `pkg/msg/Type`. Raises LandingError where its package is not installed."""
+    """The definition of the type `pkg/msg/Type`.
+
+    Raises LandingError where its package is not installed.
+    """
     done: dict[str, str] = {}
     queue = [name]
     while queue:
@@ -63,7 +72,9 @@ def dependencies(name: str, text: str) -> list[str]:
         if match is None or match[1] in PRIMITIVES:
             continue
         parts = match[1].split("/")
-        found.append(f"{parts[0]}/msg/{parts[-1]}" if len(parts) > 1 else f"{package}/msg/{parts[0]}")
+        found.append(
+            f"{parts[0]}/msg/{parts[-1]}" if len(parts) > 1 else f"{package}/msg/{parts[0]}"
+        )
     return list(dict.fromkeys(found))
 
 

@@ -1,4 +1,6 @@
-"""What the fields of a landing's messages must hold, by their names: what `messages.py` publishes, told without ROS 2."""
+"""What the fields of a landing's messages must hold, by their names: what `messages.py` publishes,
+told without ROS 2.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,20 @@ from typing import Any
 from rlv_landing.quantities import LEGS
 
 from .axes import IN_PLANE, pitch_quaternion, to_ros, world_to_body
-from .topics import ACCEL, BODY_FRAME, CONTACTS, JOINTS, ODOM, POSE, RPY, STRUTS, TOP_ACCEL, TOP_FRAME, TWIST, WORLD_FRAME
+from .topics import (
+    ACCEL,
+    BODY_FRAME,
+    CONTACTS,
+    JOINTS,
+    ODOM,
+    POSE,
+    RPY,
+    STRUTS,
+    TOP_ACCEL,
+    TOP_FRAME,
+    TWIST,
+    WORLD_FRAME,
+)
 
 Values = Mapping[str, float]
 Fields = dict[str, Any]
@@ -22,13 +37,25 @@ def _vector(at: str, vector: tuple[float, float, float]) -> Fields:
 
 def _struts(v: Values) -> Fields:
     columns = [f"leg[{leg}].{strut}" for leg in LEGS for strut in ("main_strut", "auxiliary_strut")]
-    values = {f"{field}[{i}]": v[f"{c}.{what}"] for field, what in QUANTITIES.items() for i, c in enumerate(columns)}
-    return {**values, **{f"name[{i}]": joint for i, joint in enumerate(JOINTS)}, "header.frame_id": BODY_FRAME}
+    values = {
+        f"{field}[{i}]": v[f"{c}.{what}"]
+        for field, what in QUANTITIES.items()
+        for i, c in enumerate(columns)
+    }
+    return {
+        **values,
+        **{f"name[{i}]": joint for i, joint in enumerate(JOINTS)},
+        "header.frame_id": BODY_FRAME,
+    }
 
 
 def _pose(v: Values, at: str = "pose") -> Fields:
     turn = dict(zip((f"{at}.orientation.{c}" for c in "xyzw"), pitch_quaternion(v["body.pitch"])))
-    return {**_vector(f"{at}.position", to_ros(v["body.x"], v["body.y"], IN_PLANE)), **turn, "header.frame_id": WORLD_FRAME}
+    return {
+        **_vector(f"{at}.position", to_ros(v["body.x"], v["body.y"], IN_PLANE)),
+        **turn,
+        "header.frame_id": WORLD_FRAME,
+    }
 
 
 def _twist(v: Values) -> Fields:
@@ -38,13 +65,21 @@ def _twist(v: Values) -> Fields:
 
 def _accel(v: Values) -> Fields:
     linear = _vector("accel.linear", to_ros(v["body.ax"], v["body.ay"], IN_PLANE))
-    return {**linear, "accel.angular.y": v["body.pitch_acceleration"], "header.frame_id": WORLD_FRAME}
+    return {
+        **linear,
+        "accel.angular.y": v["body.pitch_acceleration"],
+        "header.frame_id": WORLD_FRAME,
+    }
 
 
 def _odom(v: Values) -> Fields:
     x, _, z = to_ros(v["body.vx"], v["body.vy"], IN_PLANE)
     forward, up = world_to_body(x, z, v["body.pitch"])
-    twist = {"twist.twist.linear.x": forward, "twist.twist.linear.z": up, "twist.twist.angular.y": v["body.pitch_rate"]}
+    twist = {
+        "twist.twist.linear.x": forward,
+        "twist.twist.linear.z": up,
+        "twist.twist.angular.y": v["body.pitch_rate"],
+    }
     return {**_pose(v, "pose.pose"), **twist, "child_frame_id": BODY_FRAME}
 
 
@@ -65,14 +100,19 @@ FIELDS: dict[str, Callable[[Values], Fields]] = {
     RPY.name: lambda v: {"vector.y": v["body.pitch"], "header.frame_id": WORLD_FRAME},
     TWIST.name: _twist,
     ACCEL.name: _accel,
-    TOP_ACCEL.name: lambda v: {"accel.linear.z": v["body.top_axial_acceleration"], "header.frame_id": TOP_FRAME},
+    TOP_ACCEL.name: lambda v: {
+        "accel.linear.z": v["body.top_axial_acceleration"],
+        "header.frame_id": TOP_FRAME,
+    },
     **{topic.name: _contact(leg) for leg, topic in zip(LEGS, CONTACTS)},
     ODOM.name: _odom,
 }
 
 
 def expected_fields(topic: str, values: Values, nanoseconds: int) -> Fields:
-    """The fields of the message of `topic` (relative) at the sample `values` (outputs by name) and the time `nanoseconds`."""
+    """The fields of the message of `topic` (relative) at the sample `values` (outputs by name) and
+    the time `nanoseconds`.
+    """
     seconds, rest = divmod(nanoseconds, 1_000_000_000)
     return {**FIELDS[topic](values), "header.stamp.sec": seconds, "header.stamp.nanosec": rest}
 

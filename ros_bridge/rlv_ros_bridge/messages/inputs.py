@@ -1,8 +1,11 @@
-"""Inputs as messages: ROS axes to the model's inputs and back. Needs no ROS 2: a message is anything with the ROS message's fields.
+"""Inputs as messages: ROS axes to the model's inputs and back.
 
-`external_wrench` (geometry_msgs/WrenchStamped, frame `map`): force x forward and z up [N] at the CG, torque about +y (nose down, as
-the pitch) [N m]. `ground` (sensor_msgs/JointState): joints `ground_heave` (position [m] up, velocity [m/s]) and `ground_tilt` (position
-[rad] about +y, velocity [rad/s]).
+Needs no ROS 2: a message is anything with the ROS message's fields.
+
+`external_wrench` (geometry_msgs/WrenchStamped, frame `map`): force x forward and z up [N] at the
+CG, torque about +y (nose down, as the pitch) [N m]. `ground` (sensor_msgs/JointState): joints
+`ground_heave` (position [m] up, velocity [m/s]) and `ground_tilt` (position [rad] about +y,
+velocity [rad/s]).
 """
 
 from __future__ import annotations
@@ -26,27 +29,40 @@ QUANTITIES = {q.name: q for q in INPUT_QUANTITIES}
 
 
 def read_wrench(message: Any) -> dict[str, float]:
-    """The inputs that a WrenchStamped asks for. Raises LandingError: another frame than the world's, not finite, out of bounds."""
+    """The inputs that a WrenchStamped asks for.
+
+    Raises LandingError: another frame than the world's, not finite, out of bounds.
+    """
     frame = message.header.frame_id
     if frame not in ("", WORLD_FRAME):
-        raise LandingError(f"external_wrench is given in the frame {frame!r}; give it in {WORLD_FRAME!r}, at the CG")
+        raise LandingError(
+            f"external_wrench is given in the frame {frame!r}; give it in {WORLD_FRAME!r}, at the CG"
+        )
     force, torque = message.wrench.force, message.wrench.torque
     x, y, _ = from_ros(force.x, force.y, force.z)
     return _checked(dict(zip(WRENCH, (x, y, torque.y))))
 
 
 def out_of_plane(message: Any) -> bool:
-    """Whether a WrenchStamped has parts that the planar body cannot follow: force y, torques x and z. They are left out."""
+    """Whether a WrenchStamped has parts that the planar body cannot follow: force y, torques x and
+    z. They are left out.
+    """
     force, torque = message.wrench.force, message.wrench.torque
     return bool(force.y or torque.x or torque.z)
 
 
 def read_ground(message: Any) -> dict[str, float]:
-    """The inputs that a JointState of `ground` asks for; a joint that it does not name stays as it is, no velocity is standstill.
+    """The inputs that a JointState of `ground` asks for; a joint that it does not name stays as it
+    is, no velocity is standstill.
 
-    Raises LandingError: an unknown joint, positions or velocities that do not fit the names, not finite, out of bounds.
+    Raises LandingError: an unknown joint, positions or velocities that do not fit the names, not
+        finite, out of bounds.
     """
-    names, positions, velocities = list(message.name), list(message.position), list(message.velocity)
+    names, positions, velocities = (
+        list(message.name),
+        list(message.position),
+        list(message.velocity),
+    )
     if not names or len(positions) != len(names) or len(velocities) not in (0, len(names)):
         raise LandingError(
             f"ground has {len(names)} names, {len(positions)} positions and {len(velocities)} velocities; "
@@ -55,7 +71,9 @@ def read_ground(message: Any) -> dict[str, float]:
     values: dict[str, float] = {}
     for i, name in enumerate(names):
         if name not in JOINTS:
-            raise LandingError(f"ground has no joint {name!r}; its joints are {' and '.join(JOINTS)}")
+            raise LandingError(
+                f"ground has no joint {name!r}; its joints are {' and '.join(JOINTS)}"
+            )
         position, rate = JOINTS[name]
         values[position] = positions[i]
         values[rate] = velocities[i] if velocities else 0.0
@@ -66,11 +84,17 @@ def _checked(values: Mapping[str, float]) -> dict[str, float]:
     return {name: float(check_value(QUANTITIES[name], value)) for name, value in values.items()}
 
 
-# What a log holds of them: topic, relative to the namespace -> the inputs that act from the message's stamp on.
-READINGS: dict[str, Callable[[Any], dict[str, float]]] = {APPLIED_WRENCH.name: read_wrench, APPLIED_GROUND.name: read_ground}
+# What a log holds of them: topic, relative to the namespace -> the inputs that act from the
+# message's stamp on.
+READINGS: dict[str, Callable[[Any], dict[str, float]]] = {
+    APPLIED_WRENCH.name: read_wrench,
+    APPLIED_GROUND.name: read_ground,
+}
 
 
-def wrench_vectors(values: Mapping[str, float]) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+def wrench_vectors(
+    values: Mapping[str, float],
+) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
     """Force and torque in ROS axes: the inverse of `read_wrench`, digit for digit."""
     x, y, moment = (values[name] for name in WRENCH)
     return to_ros(x, y, IN_PLANE), (0.0, moment, 0.0)

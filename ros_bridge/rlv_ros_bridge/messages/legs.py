@@ -11,9 +11,14 @@ from .axes import to_ros
 
 
 def around(mode: str, radius: float, height: float) -> list[tuple[float, float, float]]:
-    """For each leg, by its number, the point at `radius` from the axis and `height` above the CG [m]: x forward, y left, z up."""
+    """For each leg, by its number, the point at `radius` from the axis and `height` above the CG
+    [m]: x forward, y left, z up.
+    """
     turns = dict(_turns(mode))
-    return [to_ros(radius * cosine, height, side * radius * sine) for sine, cosine, side in (turns[leg] for leg in LEGS)]
+    return [
+        to_ros(radius * cosine, height, side * radius * sine)
+        for sine, cosine, side in (turns[leg] for leg in LEGS)
+    ]
 
 
 def _turns(mode: str) -> Iterator[tuple[int, tuple[float, float, int]]]:

@@ -34,12 +34,21 @@ class Wireframe:
     """The vehicle's lines and footpads, made once and moved with each sample."""
 
     def __init__(self, parameters: Parameters) -> None:
-        vehicle, main, auxiliary = parameters.vehicle, parameters.main_strut, parameters.auxiliary_strut
+        vehicle, main, auxiliary = (
+            parameters.vehicle,
+            parameters.main_strut,
+            parameters.auxiliary_strut,
+        )
         self._top = (0.0, vehicle.top_height, 0.0)
         self._bottom = (0.0, -max(main.joint_depth, auxiliary.joint_depth), 0.0)
         # The paper's axes, as the sample's.
-        self._main = [from_ros(*j) for j in around(parameters.drop.mode, main.joint_radius, -main.joint_depth)]
-        self._auxiliary = [from_ros(*j) for j in around(parameters.drop.mode, auxiliary.joint_radius, -auxiliary.joint_depth)]
+        self._main = [
+            from_ros(*j) for j in around(parameters.drop.mode, main.joint_radius, -main.joint_depth)
+        ]
+        self._auxiliary = [
+            from_ros(*j)
+            for j in around(parameters.drop.mode, auxiliary.joint_radius, -auxiliary.joint_depth)
+        ]
         self._body = columns("body.x", "body.y", "body.pitch")
         self._feet = [columns(*(f"leg[{leg}].footpad.{axis}" for axis in "xyz")) for leg in LEGS]
         self._stamp = Time()
@@ -49,11 +58,21 @@ class Wireframe:
         for i, (name, kind, width, colour) in enumerate(STYLES):
             self.message.markers.append(self._marker(i, name, kind, width, colour))
 
-    def _marker(self, i: int, name: str, kind: int, width: float, colour: tuple[float, float, float]) -> Any:
-        marker = Marker(ns=name, id=i, type=kind, action=Marker.ADD, color=ColorRGBA(r=colour[0], g=colour[1], b=colour[2], a=1.0))
+    def _marker(
+        self, i: int, name: str, kind: int, width: float, colour: tuple[float, float, float]
+    ) -> Any:
+        marker = Marker(
+            ns=name,
+            id=i,
+            type=kind,
+            action=Marker.ADD,
+            color=ColorRGBA(r=colour[0], g=colour[1], b=colour[2], a=1.0),
+        )
         marker.header.frame_id = WORLD_FRAME
         marker.header.stamp = self._stamp
-        set_vector(marker.scale, (width, width, width) if kind == Marker.SPHERE_LIST else (width, 0.0, 0.0))
+        set_vector(
+            marker.scale, (width, width, width) if kind == Marker.SPHERE_LIST else (width, 0.0, 0.0)
+        )
         count = 2 if name == "body" else len(LEGS) if kind == Marker.SPHERE_LIST else 2 * len(LEGS)
         points = [Point() for _ in range(count)]
         marker.points = points
@@ -61,7 +80,9 @@ class Wireframe:
         return marker
 
     def numbers(self, values: Sequence[float]) -> list[float]:
-        """The points of the sample `values` in the frame `map`, x, y, z after each other: body, main and auxiliary joints, footpads."""
+        """The points of the sample `values` in the frame `map`, x, y, z after each other: body,
+        main and auxiliary joints, footpads.
+        """
         x, y, pitch = (values[i] for i in self._body)
         s, c = sin(pitch), cos(pitch)
         found: list[float] = []
@@ -92,5 +113,7 @@ class Wireframe:
         """The message of `fill`, serialised: the same bytes, at a fraction of the cost."""
         if self._frame is None:
             probe = probe_numbers(len(OUTPUT_NAMES))
-            self._frame = WireFrame([serialize_message(self.fill(PROBE_STAMP, probe))], self.numbers(probe))
+            self._frame = WireFrame(
+                [serialize_message(self.fill(PROBE_STAMP, probe))], self.numbers(probe)
+            )
         return self._frame.pack(nanoseconds, self.numbers(values))

@@ -17,10 +17,15 @@ def is_installed(name: str) -> bool:
 
 @cache
 def message_class(name: str) -> Any:
-    """The class of the type `pkg/msg/Type`. Raises LandingError where its package is not installed."""
+    """The class of the type `pkg/msg/Type`.
+
+    Raises LandingError where its package is not installed.
+    """
     try:
         package, kind, short = name.split("/")
         return getattr(importlib.import_module(f"{package}.{kind}"), short)
     except (ValueError, ImportError, AttributeError):
         package = name.split("/")[0]
-        raise LandingError(f"message type {name!r} is not installed; install the ROS 2 package {package!r}, or source your ROS 2") from None
+        raise LandingError(
+            f"message type {name!r} is not installed; install the ROS 2 package {package!r}, or source your ROS 2"
+        ) from None

@@ -15,7 +15,9 @@ DURABILITY = {1: "transient_local", 2: "volatile"}
 
 @dataclass(frozen=True)
 class Qos:
-    """What a publisher offers: `reliable` or `best_effort`, `volatile` or `transient_local`, the last `depth` samples kept."""
+    """What a publisher offers: `reliable` or `best_effort`, `volatile` or `transient_local`, the
+    last `depth` samples kept.
+    """
 
     reliability: str = "reliable"
     durability: str = "volatile"
@@ -36,7 +38,8 @@ class Qos:
         }
 
 
-# The last second is kept for a slow subscriber, never everything: a writer that keeps all waits for its slowest reader.
+# The last second is kept for a slow subscriber, never everything: a writer that keeps all waits for
+# its slowest reader.
 TELEMETRY = Qos()
 # ROS's own profile for sensors: what is late is not sent again.
 SENSOR_DATA = Qos(reliability="best_effort", depth=5)
@@ -47,7 +50,9 @@ PROFILES = {"telemetry": TELEMETRY, "sensor_data": SENSOR_DATA}
 
 
 def parse_qos(text: str) -> Qos:
-    """The first of the `offered_qos_profiles` that a channel carries; the telemetry's where there is none that can be read."""
+    """The first of the `offered_qos_profiles` that a channel carries; the telemetry's where there
+    is none that can be read.
+    """
     import yaml
 
     try:
@@ -55,7 +60,9 @@ def parse_qos(text: str) -> Qos:
         return Qos(
             reliability=RELIABILITY.get(first["reliability"], first["reliability"]),
             durability=DURABILITY.get(first["durability"], first["durability"]),
-            depth=max(1, int(first["depth"])) if HISTORY.get(first["history"], first["history"]) == "keep_last" else TELEMETRY.depth,
+            depth=max(1, int(first["depth"]))
+            if HISTORY.get(first["history"], first["history"]) == "keep_last"
+            else TELEMETRY.depth,
         )
     except (yaml.YAMLError, LookupError, TypeError, ValueError):
         return TELEMETRY

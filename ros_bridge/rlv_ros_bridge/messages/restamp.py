@@ -1,4 +1,6 @@
-"""Moves the stamps inside serialised messages on, so that a looped replay's time never runs backwards."""
+"""Moves the stamps inside serialised messages on, so that a looped replay's time never runs
+backwards.
+"""
 
 from __future__ import annotations
 
@@ -13,25 +15,39 @@ from .samples import NANOSECONDS, set_stamp
 HEADER = "std_msgs/Header"
 # Types that are lists of what carries a header: the list's name.
 LISTS = {"visualization_msgs/msg/MarkerArray": "markers", "tf2_msgs/msg/TFMessage": "transforms"}
-# CDR: four bytes of encapsulation, the second of which tells the byte order; then the header's stamp, a message's first field.
+# CDR: four bytes of encapsulation, the second of which tells the byte order; then the header's
+# stamp, a message's first field.
 AT = 4
 
 
 class Restamper:
-    """Adds `shift` [ns] to the stamps of messages whose first field is a header, of markers and of transforms. `types` is type by topic."""
+    """Adds `shift` [ns] to the stamps of messages whose first field is a header, of markers and of
+    transforms. `types` is type by topic.
+    """
 
     def __init__(self, types: Mapping[str, str], shift: int) -> None:
         self._shift = shift
-        self._stamped = {topic for topic, name in types.items() if next(iter(_fields(name).values()), "") == HEADER}
+        self._stamped = {
+            topic
+            for topic, name in types.items()
+            if next(iter(_fields(name).values()), "") == HEADER
+        }
         self._lists = {topic: name for topic, name in types.items() if name in LISTS}
 
     def __call__(self, topic: str, data: bytes) -> bytes:
-        """The message `data` of `topic`, moved on; unchanged where it carries no stamp that we know of."""
+        """The message `data` of `topic`, moved on; unchanged where it carries no stamp that we know
+        of.
+        """
         if topic in self._stamped:
             form = "<iI" if data[1] & 1 else ">iI"
             seconds, nanoseconds = struct.unpack_from(form, data, AT)
             moved = bytearray(data)
-            struct.pack_into(form, moved, AT, *divmod(seconds * NANOSECONDS + nanoseconds + self._shift, NANOSECONDS))
+            struct.pack_into(
+                form,
+                moved,
+                AT,
+                *divmod(seconds * NANOSECONDS + nanoseconds + self._shift, NANOSECONDS),
+            )
             return bytes(moved)
         if topic in self._lists:
             name = self._lists[topic]

@@ -29,18 +29,29 @@ def variables() -> str:
         ("output", OUTPUT_QUANTITIES),
         ("local", STATISTIC_QUANTITIES),
     )
-    return json.dumps([{"name": q.name, "causality": kind, "unit": q.unit, "meaning": q.meaning} for kind, group in groups for q in group])
+    return json.dumps(
+        [
+            {"name": q.name, "causality": kind, "unit": q.unit, "meaning": q.meaning}
+            for kind, group in groups
+            for q in group
+        ]
+    )
 
 
 def robot_description(parameters: Parameters) -> str:
-    """The vehicle as URDF, its root `base_link` at the CG: body, top sensor, and for each leg two struts.
+    """The vehicle as URDF, its root `base_link` at the CG: body, top sensor, and for each leg two
+    struts.
 
-    A strut is a prismatic joint of the name that it has in `struts`, at 0 fully extended (auxiliary: unloaded), positive in compression.
-    Struts keep the direction that they have with all of them extended: turning with the strokes is left to the markers, which are exact.
+    A strut is a prismatic joint of the name that it has in `struts`, at 0 fully extended
+    (auxiliary: unloaded), positive in compression. Struts keep the direction that they have with
+    all of them extended: turning with the strokes is left to the markers, which are exact.
     """
     p = parameters
     robot = Element("robot", name="rlv_landing")
-    bottom, top = -max(p.main_strut.joint_depth, p.auxiliary_strut.joint_depth), p.vehicle.top_height
+    bottom, top = (
+        -max(p.main_strut.joint_depth, p.auxiliary_strut.joint_depth),
+        p.vehicle.top_height,
+    )
     body = SubElement(robot, "link", name=BODY_FRAME)
     _cylinder(body, (0.0, 0.0, 0.5 * (top + bottom)), BODY_RADIUS, top - bottom)
     SubElement(robot, "link", name=TOP_FRAME)
@@ -49,7 +60,12 @@ def robot_description(parameters: Parameters) -> str:
     feet = around(p.drop.mode, radius, height)
     for strut, own, width, travel in (
         ("main_strut", p.main_strut, MAIN_RADIUS, (0.0, p.main_strut.stroke_max)),
-        ("auxiliary_strut", p.auxiliary_strut, AUXILIARY_RADIUS, (-0.5 * p.auxiliary_strut.length, 0.5 * p.auxiliary_strut.length)),
+        (
+            "auxiliary_strut",
+            p.auxiliary_strut,
+            AUXILIARY_RADIUS,
+            (-0.5 * p.auxiliary_strut.length, 0.5 * p.auxiliary_strut.length),
+        ),
     ):
         joints = around(p.drop.mode, own.joint_radius, -own.joint_depth)
         for leg, joint, foot in zip(LEGS, joints, feet):
@@ -58,8 +74,12 @@ def robot_description(parameters: Parameters) -> str:
     return '<?xml version="1.0"?>\n' + tostring(robot, encoding="unicode") + "\n"
 
 
-def _strut(robot: Element, name: str, joint: Point, foot: Point, radius: float, travel: tuple[float, float]) -> None:
-    """A cylinder at the body and a rod that goes into it; z of both runs along the strut, down to the foot."""
+def _strut(
+    robot: Element, name: str, joint: Point, foot: Point, radius: float, travel: tuple[float, float]
+) -> None:
+    """A cylinder at the body and a rod that goes into it; z of both runs along the strut, down to
+    the foot.
+    """
     length = dist(joint, foot)
     x, y, z = ((b - a) / length for a, b in zip(joint, foot))
     cylinder = SubElement(robot, "link", name=f"{name}_cylinder")
@@ -68,13 +88,23 @@ def _strut(robot: Element, name: str, joint: Point, foot: Point, radius: float, 
     _cylinder(rod, (0.0, 0.0, -0.3 * length), radius, 0.6 * length)
     foot_visual = SubElement(rod, "visual")
     SubElement(SubElement(foot_visual, "geometry"), "sphere", radius=repr(FOOTPAD_RADIUS))
-    _joint(robot, f"{name}_mount", "fixed", BODY_FRAME, f"{name}_cylinder", joint, (0.0, acos(z), atan2(y, x)))
+    _joint(
+        robot,
+        f"{name}_mount",
+        "fixed",
+        BODY_FRAME,
+        f"{name}_cylinder",
+        joint,
+        (0.0, acos(z), atan2(y, x)),
+    )
     moving = _joint(robot, name, "prismatic", f"{name}_cylinder", f"{name}_rod", (0.0, 0.0, length))
     SubElement(moving, "axis", xyz="0 0 -1")
     SubElement(moving, "limit", {"lower": repr(travel[0]), "upper": repr(travel[1]), **NO_LIMIT})
 
 
-def _joint(robot: Element, name: str, kind: str, parent: str, child: str, xyz: Point, rpy: Point = ORIGIN) -> Element:
+def _joint(
+    robot: Element, name: str, kind: str, parent: str, child: str, xyz: Point, rpy: Point = ORIGIN
+) -> Element:
     joint = SubElement(robot, "joint", name=name, type=kind)
     SubElement(joint, "parent", link=parent)
     SubElement(joint, "child", link=child)

@@ -40,19 +40,34 @@ def columns(*names: str) -> tuple[int, ...]:
 
 def strut_columns(what: str) -> tuple[int, ...]:
     """Where the eight struts' `what` stands in a sample, in the order of `JOINTS`."""
-    return columns(*(f"leg[{leg}].{strut}.{what}" for leg in LEGS for strut in ("main_strut", "auxiliary_strut")))
+    return columns(
+        *(
+            f"leg[{leg}].{strut}.{what}"
+            for leg in LEGS
+            for strut in ("main_strut", "auxiliary_strut")
+        )
+    )
 
 
 class SampleMessages:
-    """The messages that go out at every step. The message objects are made once and filled again for each sample."""
+    """The messages that go out at every step.
+
+    The message objects are made once and filled again for each sample.
+    """
 
     def __init__(self) -> None:
         self._position = strut_columns("stroke")
         self._velocity = strut_columns("stroke_rate")
         self._effort = strut_columns("force")
-        self._body = columns("body.x", "body.y", "body.pitch", "body.vx", "body.vy", "body.pitch_rate")
-        self._acceleration = columns("body.ax", "body.ay", "body.pitch_acceleration", "body.top_axial_acceleration")
-        self._contact = [columns(*(f"leg[{leg}].contact.force_{axis}" for axis in "xyz")) for leg in LEGS]
+        self._body = columns(
+            "body.x", "body.y", "body.pitch", "body.vx", "body.vy", "body.pitch_rate"
+        )
+        self._acceleration = columns(
+            "body.ax", "body.ay", "body.pitch_acceleration", "body.top_axial_acceleration"
+        )
+        self._contact = [
+            columns(*(f"leg[{leg}].contact.force_{axis}" for axis in "xyz")) for leg in LEGS
+        ]
         self.struts = JointState(name=list(JOINTS))
         self.pose = PoseStamped()
         self.rpy = Vector3Stamped()
@@ -83,7 +98,9 @@ class SampleMessages:
             message.header.stamp = self._stamp
 
     def fill(self, nanoseconds: int, values: Sequence[float]) -> None:
-        """Take the sample `values` (in the order of `OUTPUT_NAMES`) at the simulation time `nanoseconds`."""
+        """Take the sample `values` (in the order of `OUTPUT_NAMES`) at the simulation time
+        `nanoseconds`.
+        """
         set_stamp(self._stamp, nanoseconds)
         struts = self.struts
         struts.position = [values[i] for i in self._position]
@@ -97,7 +114,9 @@ class SampleMessages:
         for contact, (x, y, z) in zip(self.contacts, self._contact):
             set_vector(contact.wrench.force, to_ros(values[x], values[y], values[z]))
 
-    def _fill_motion(self, x: float, y: float, pitch: float, vx: float, vy: float, pitch_rate: float) -> None:
+    def _fill_motion(
+        self, x: float, y: float, pitch: float, vx: float, vy: float, pitch_rate: float
+    ) -> None:
         position, velocity = to_ros(x, y, IN_PLANE), to_ros(vx, vy, IN_PLANE)
         qx, qy, qz, qw = pitch_quaternion(pitch)
         for pose in (self.pose.pose, self.odom.pose.pose):
@@ -114,10 +133,11 @@ class SampleMessages:
 
 
 class SampleBytes:
-    """The serialised messages of `SampleMessages` without the message objects: the same bytes, at a fraction of the cost.
+    """The serialised messages of `SampleMessages` without the message objects: the same bytes, at a
+    fraction of the cost.
 
-    `topics` are in the order of the messages; `places` tell where each one's message stands in what `pack` gives, `heads`, by topic,
-    what comes before it (see `WireFrame`).
+    `topics` are in the order of the messages; `places` tell where each one's message stands in what
+    `pack` gives, `heads`, by topic, what comes before it (see `WireFrame`).
     """
 
     def __init__(self, heads: Mapping[Topic, bytes] | None = None) -> None:
@@ -137,8 +157,16 @@ class SampleBytes:
         pitch = values[self._pitch]
         _, qy, _, qw = pitch_quaternion(pitch)
         vx, _, vz = to_ros(values[self._vx], values[self._vy], IN_PLANE)
-        return [*values, qy, qw, *world_to_body(vx, vz, pitch), *[to_ros(0.0, 0.0, values[i])[1] for i in self._turned]]
+        return [
+            *values,
+            qy,
+            qw,
+            *world_to_body(vx, vz, pitch),
+            *[to_ros(0.0, 0.0, values[i])[1] for i in self._turned],
+        ]
 
     def pack(self, nanoseconds: int, values: Sequence[float], count: int = 0) -> bytes:
-        """The messages of the sample `values` at the simulation time `nanoseconds`; `count` is for their heads."""
+        """The messages of the sample `values` at the simulation time `nanoseconds`; `count` is for
+        their heads.
+        """
         return self._frame.pack(nanoseconds, self._numbers(values), count)

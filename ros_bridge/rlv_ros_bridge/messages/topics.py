@@ -1,4 +1,5 @@
-"""The topics of a landing: names, types, how often, and which field of which message carries which output.
+"""The topics of a landing: names, types, how often, and which field of which message carries which
+output.
 
 Both directions are made from here: `messages.py` fills messages, `columns.py` reads them back.
 """
@@ -13,12 +14,15 @@ WORLD_FRAME = "map"
 BODY_FRAME = "base_link"
 TOP_FRAME = "top_sensor"
 
-JOINTS: tuple[str, ...] = tuple(f"leg_{leg}_{strut}" for leg in LEGS for strut in ("main_strut", "auxiliary_strut"))
+JOINTS: tuple[str, ...] = tuple(
+    f"leg_{leg}_{strut}" for leg in LEGS for strut in ("main_strut", "auxiliary_strut")
+)
 
 
 @dataclass(frozen=True)
 class Topic:
-    """A topic: `name` (relative to the node's namespace unless it starts with a slash), message type, and its period.
+    """A topic: `name` (relative to the node's namespace unless it starts with a slash), message
+    type, and its period.
 
     `period` is in seconds of simulation time; 0 means every step.
     """
@@ -55,7 +59,8 @@ APPLIED: tuple[Topic, ...] = (APPLIED_WRENCH, APPLIED_GROUND)
 # Said once, and kept for those who come later.
 LATCHED: tuple[Topic, ...] = (ROBOT_DESCRIPTION, VARIABLES)
 
-# What is recorded, in the order it is published at one instant. The clock is not: a replay makes its own.
+# What is recorded, in the order it is published at one instant. The clock is not: a replay makes
+# its own.
 RECORDED: tuple[Topic, ...] = (*SAMPLED, *OCCASIONAL, *APPLIED, ROBOT_DESCRIPTION)
 
 

@@ -1,4 +1,6 @@
-"""The frames of the vehicle for `/tf`: the body in the map, and what hangs on it, as the URDF has it. Needs no ROS 2."""
+"""The frames of the vehicle for `/tf`: the body in the map, and what hangs on it, as the URDF has
+it. Needs no ROS 2.
+"""
 
 from __future__ import annotations
 
@@ -31,22 +33,31 @@ class Transform:
 
 
 class Transforms:
-    """Makes the messages of `/tf`: `map` to `base_link`, and every joint of the URDF, moved by its strut's stroke."""
+    """Makes the messages of `/tf`: `map` to `base_link`, and every joint of the URDF, moved by its
+    strut's stroke.
+    """
 
     def __init__(self, parameters: Parameters) -> None:
         joints = list(ElementTree.fromstring(robot_description(parameters)).iter("joint"))
         index = {name: i for i, name in enumerate(OUTPUT_NAMES)}
         self._body = [index[f"body.{name}"] for name in ("x", "y", "pitch")]
         self._strokes = [index[f"leg[{name[4]}].{name[6:]}.stroke"] for name in JOINTS]
-        self._lengths = [_vector(j, "xyz")[2] for name in JOINTS for j in joints if j.get("name") == name]
+        self._lengths = [
+            _vector(j, "xyz")[2] for name in JOINTS for j in joints if j.get("name") == name
+        ]
         probe = probe_numbers(4 + len(JOINTS))
         x, z, qy, qw = probe[:4]
         moved = dict(zip(JOINTS, probe[4:]))
-        frames = [Transform(WORLD_FRAME, BODY_FRAME, (x, 0.0, z), (0.0, qy, 0.0, qw)), *(_transform(joint, moved) for joint in joints)]
+        frames = [
+            Transform(WORLD_FRAME, BODY_FRAME, (x, 0.0, z), (0.0, qy, 0.0, qw)),
+            *(_transform(joint, moved) for joint in joints),
+        ]
         self._frame = WireFrame([serialised(frames, PROBE_STAMP)], probe)
 
     def pack(self, nanoseconds: int, values: Sequence[float]) -> bytes:
-        """The message of the sample `values` (in the order of `OUTPUT_NAMES`) at the simulation time `nanoseconds`, serialised."""
+        """The message of the sample `values` (in the order of `OUTPUT_NAMES`) at the simulation
+        time `nanoseconds`, serialised.
+        """
         x, y, pitch = (values[i] for i in self._body)
         forward, _, up = to_ros(x, y, IN_PLANE)
         _, qy, _, qw = pitch_quaternion(pitch)
@@ -71,7 +82,9 @@ def _transform(joint: ElementTree.Element, moved: dict[str, float]) -> Transform
     assert child is not None
     x, y, z = _vector(joint, "xyz")
     place = (x, y, moved.get(joint.attrib["name"], z))
-    return Transform(parent.attrib["link"], child.attrib["link"], place, _turned(*_vector(joint, "rpy")))
+    return Transform(
+        parent.attrib["link"], child.attrib["link"], place, _turned(*_vector(joint, "rpy"))
+    )
 
 
 def _vector(joint: ElementTree.Element, name: str) -> tuple[float, float, float]:
@@ -83,5 +96,12 @@ def _vector(joint: ElementTree.Element, name: str) -> tuple[float, float, float]
 
 def _turned(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
     """The rotation (x, y, z, w) by URDF's angles: about the parent's x, then its y, then its z."""
-    (sr, cr), (sp, cp), (sy, cy) = ((sin(0.5 * angle), cos(0.5 * angle)) for angle in (roll, pitch, yaw))
-    return sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy
+    (sr, cr), (sp, cp), (sy, cy) = (
+        (sin(0.5 * angle), cos(0.5 * angle)) for angle in (roll, pitch, yaw)
+    )
+    return (
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    )

@@ -18,18 +18,36 @@ def phase_name(phase: float) -> str:
 
 
 class Health:
-    """Makes the messages of `/diagnostics` for the node called `name`, whose landing mode is `mode`."""
+    """Makes the messages of `/diagnostics` for the node called `name`, whose landing mode is
+    `mode`.
+    """
 
     def __init__(self, name: str, mode: str) -> None:
         self._status = DiagnosticStatus(name=name, hardware_id=f"rlv-landing {mode}")
         self.message = DiagnosticArray(status=[self._status])
 
-    def fill(self, nanoseconds: int, values: Mapping[str, str], problems: Mapping[str, int], failure: str = "") -> DiagnosticArray:
-        """The message at `nanoseconds` of simulation time: `values` by name; `problems` make it a warning, a `failure` an error."""
+    def fill(
+        self,
+        nanoseconds: int,
+        values: Mapping[str, str],
+        problems: Mapping[str, int],
+        failure: str = "",
+    ) -> DiagnosticArray:
+        """The message at `nanoseconds` of simulation time: `values` by name; `problems` make it a
+        warning, a `failure` an error.
+        """
         set_stamp(self.message.header.stamp, nanoseconds)
         status = self._status
-        trouble = failure or ", ".join(f"{count} {name}" for name, count in problems.items() if count)
-        status.level = DiagnosticStatus.ERROR if failure else DiagnosticStatus.WARN if trouble else DiagnosticStatus.OK
+        trouble = failure or ", ".join(
+            f"{count} {name}" for name, count in problems.items() if count
+        )
+        status.level = (
+            DiagnosticStatus.ERROR
+            if failure
+            else DiagnosticStatus.WARN
+            if trouble
+            else DiagnosticStatus.OK
+        )
         status.message = trouble or values.get("phase", "")
         status.values = [KeyValue(key=key, value=value) for key, value in values.items()]
         return self.message

@@ -1,4 +1,6 @@
-"""The inputs that reach the node: checked when they come, applied at the next step, given up when their sender falls silent."""
+"""The inputs that reach the node: checked when they come, applied at the next step, given up when
+their sender falls silent.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,16 @@ from sensor_msgs.msg import JointState
 
 from rlv_landing.errors import LandingError
 
-from ..messages.inputs import HEAVE, JOINTS, TILT, WRENCH, out_of_plane, read_ground, read_wrench, wrench_vectors
+from ..messages.inputs import (
+    HEAVE,
+    JOINTS,
+    TILT,
+    WRENCH,
+    out_of_plane,
+    read_ground,
+    read_wrench,
+    wrench_vectors,
+)
 from ..messages.samples import set_stamp, set_vector
 from ..messages.topics import APPLIED_GROUND, APPLIED_WRENCH, WORLD_FRAME, Topic
 
@@ -25,7 +36,9 @@ LONGEST_QUEUE = 1000
 
 @dataclass(frozen=True)
 class Applied:
-    """A change of inputs: values by name, which act from the simulation time `nanoseconds` on; `topic` tells it."""
+    """A change of inputs: values by name, which act from the simulation time `nanoseconds` on;
+    `topic` tells it.
+    """
 
     topic: Topic
     nanoseconds: int
@@ -48,10 +61,12 @@ class Applied:
 
 
 class InputQueue:
-    """Takes the messages of `external_wrench` and `ground` in any thread; `take` hands the changes out in the landing's.
+    """Takes the messages of `external_wrench` and `ground` in any thread; `take` hands the changes
+    out in the landing's.
 
-    `timeout` [s of wall time] after the last message the wrench is taken back to 0, and a moving ground stands still where it is; 0:
-    never. `received` and `refused` count messages; `warn` is told why one cannot be used.
+    `timeout` [s of wall time] after the last message the wrench is taken back to 0, and a moving
+    ground stands still where it is; 0: never. `received` and `refused` count messages; `warn` is
+    told why one cannot be used.
     """
 
     def __init__(self, timeout: float, warn: Callable[[str], None]) -> None:
@@ -73,7 +88,9 @@ class InputQueue:
     def take_wrench(self, message: Any) -> None:
         """A message of `external_wrench`."""
         if out_of_plane(message):
-            self._warn("external_wrench: force y and torques x and z are left out: the body moves in its plane")
+            self._warn(
+                "external_wrench: force y and torques x and z are left out: the body moves in its plane"
+            )
         self._receive(APPLIED_WRENCH, read_wrench, message)
 
     def take_ground(self, message: Any) -> None:
@@ -91,7 +108,10 @@ class InputQueue:
         self._arrived.append((topic, values))
 
     def take(self, nanoseconds: int) -> list[Applied]:
-        """What changes at the simulation time `nanoseconds`, at which a step begins. Of several messages the last one counts."""
+        """What changes at the simulation time `nanoseconds`, at which a step begins.
+
+        Of several messages the last one counts.
+        """
         if not self._arrived and not self._heard:
             return []
         changed: dict[Topic, None] = {}
@@ -110,12 +130,17 @@ class InputQueue:
                 del self._heard[topic]
                 if self._give_up(topic, nanoseconds):
                     changed[topic] = None
-        return [Applied(topic, nanoseconds, self._wrench if topic is APPLIED_WRENCH else self._ground) for topic in changed]
+        return [
+            Applied(topic, nanoseconds, self._wrench if topic is APPLIED_WRENCH else self._ground)
+            for topic in changed
+        ]
 
     def _ground_at(self, nanoseconds: int) -> dict[str, float]:
         """The ground's motion at the simulation time `nanoseconds`: it goes on at its rates."""
         passed = 1e-9 * (nanoseconds - self._ground_since)
-        moved = {name: self._ground[name] + passed * self._ground[rate] for name, rate in JOINTS.values()}
+        moved = {
+            name: self._ground[name] + passed * self._ground[rate] for name, rate in JOINTS.values()
+        }
         return {**self._ground, **moved}
 
     def _give_up(self, topic: Topic, nanoseconds: int) -> bool:

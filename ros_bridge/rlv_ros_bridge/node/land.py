@@ -1,4 +1,6 @@
-"""Land once, in a ROS 2 started for it: the lifecycle node walks its states by itself; or serve one that others walk."""
+"""Land once, in a ROS 2 started for it: the lifecycle node walks its states by itself; or serve one
+that others walk.
+"""
 
 from __future__ import annotations
 
@@ -20,9 +22,12 @@ LOOK_ROUND_SECONDS = 0.02
 BAR_FORMAT = "landing {percentage:3.0f}%|{bar}| {n:.2f}/{total:.2f} s [{elapsed}<{remaining}]"
 
 
-def land(changes: Mapping[str, Any], ros_args: Sequence[str], stop: StopFlag, namespace: str = NAMESPACE) -> RunSummary | None:
-    """One landing with the ROS parameters `changes`, in a ROS 2 started for it with `ros_args`; or, with `autostart` false, a node that
-    waits for transitions until it is shut down or a signal comes. None where there was no landing. Raises LandingError as the node does.
+def land(
+    changes: Mapping[str, Any], ros_args: Sequence[str], stop: StopFlag, namespace: str = NAMESPACE
+) -> RunSummary | None:
+    """One landing with the ROS parameters `changes`, in a ROS 2 started for it with `ros_args`; or,
+    with `autostart` false, a node that waits for transitions until it is shut down or a signal
+    comes. None where there was no landing. Raises LandingError as the node does.
     """
     with ros_context(ros_args):
         node = LandingNode(changes, namespace)
@@ -62,18 +67,24 @@ def _serve(node: LandingNode, spinner: Spinner, stop: StopFlag) -> RunSummary | 
     return summary
 
 
-def _do(node: LandingNode, spinner: Spinner, transition: Callable[[], TransitionCallbackReturn]) -> None:
+def _do(
+    node: LandingNode, spinner: Spinner, transition: Callable[[], TransitionCallbackReturn]
+) -> None:
     result = spinner.call(transition)
     if result != TransitionCallbackReturn.SUCCESS:
         raise node.failure or LandingError(f"the transition from {node.state} failed")
 
 
 def _wait(node: LandingNode, stop: StopFlag) -> None:
-    """Returns at the landing's end, at an error or a signal; with a bar that shows how far it is, on a terminal."""
+    """Returns at the landing's end, at an error or a signal; with a bar that shows how far it is,
+    on a terminal.
+    """
     from tqdm import tqdm
 
     total = node.values["stop_time"]
-    with tqdm(total=total, disable=not sys.stderr.isatty(), bar_format=BAR_FORMAT, file=sys.stderr) as bar:
+    with tqdm(
+        total=total, disable=not sys.stderr.isatty(), bar_format=BAR_FORMAT, file=sys.stderr
+    ) as bar:
         while not node.over.wait(LOOK_ROUND_SECONDS) and not stop:
             if node.landing is not None:
                 bar.update(node.landing.time - bar.n)

@@ -1,4 +1,6 @@
-"""The ROS 2 lifecycle node that lands: configure loads the FMU, activate lands, deactivate pauses, cleanup frees."""
+"""The ROS 2 lifecycle node that lands: configure loads the FMU, activate lands, deactivate pauses,
+cleanup frees.
+"""
 
 from __future__ import annotations
 
@@ -34,27 +36,37 @@ from .run_summary import RunSummary
 from .settings import unused
 
 NAMESPACE = "landing"
-SUCCESS, FAILURE, ERROR = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE, TransitionCallbackReturn.ERROR
+SUCCESS, FAILURE, ERROR = (
+    TransitionCallbackReturn.SUCCESS,
+    TransitionCallbackReturn.FAILURE,
+    TransitionCallbackReturn.ERROR,
+)
 # A warning of one kind is repeated at most this often [s].
 WARN_SECONDS = 1.0
 
 
 class LandingNode(LifecycleNode):
-    """Lands when it is activated, in a thread of its own. Its ROS parameters are those of `rlv_ros_bridge.node.settings` and the model's own.
+    """Lands when it is activated, in a thread of its own.
 
-    `changes` are parameters that win over the command line's. `failure` is the error that the last transition or the landing met with.
-    `over` is set when the landing has come to its end or to an error, and when the node is shut down. Raises LandingError for bad
-    parameters.
+    Its ROS parameters are those of `rlv_ros_bridge.node.settings` and the model's own.
+
+    `changes` are parameters that win over the command line's. `failure` is the error that the last
+    transition or the landing met with. `over` is set when the landing has come to its end or to an
+    error, and when the node is shut down. Raises LandingError for bad parameters.
     """
 
-    def __init__(self, changes: Mapping[str, Any] | None = None, namespace: str = NAMESPACE) -> None:
+    def __init__(
+        self, changes: Mapping[str, Any] | None = None, namespace: str = NAMESPACE
+    ) -> None:
         given = [Parameter(name, value=value) for name, value in (changes or {}).items()]
         super().__init__("landing_node", namespace=namespace, parameter_overrides=given)
         self.failure: LandingError | None = None
         self.over = threading.Event()
         self.landing: LandingRun | None = None
         self._thread: threading.Thread | None = None
-        self.values = NodeParameters(self, lambda: self._thread is not None, self._parameters_changed)
+        self.values = NodeParameters(
+            self, lambda: self._thread is not None, self._parameters_changed
+        )
         self._pause = threading.Event()
         self._fatal: LandingError | None = None
         self._last: LandingRun | None = None
@@ -65,26 +77,43 @@ class LandingNode(LifecycleNode):
         self._names: dict[Topic, str] = {}
         self._outlets: dict[Topic, Outlet] = {}
         # `struts` last: who waits for a match on it finds the others matched.
-        for topic in (*topics.LATCHED, *reversed([t for t in topics.RECORDED if t not in topics.LATCHED])):
+        for topic in (
+            *topics.LATCHED,
+            *reversed([t for t in topics.RECORDED if t not in topics.LATCHED]),
+        ):
             self._add_outlet(topic, LATCHED if topic in topics.LATCHED else self._qos)
         if self.values["clock"]:
             self._add_outlet(topics.CLOCK, CLOCK)
         self._inputs = InputQueue(self.values["input_timeout"], self._warn)
-        self.create_subscription(WrenchStamped, "external_wrench", self._inputs.take_wrench, qos_profile(TELEMETRY))
-        self.create_subscription(JointState, "ground", self._inputs.take_ground, qos_profile(TELEMETRY))
+        self.create_subscription(
+            WrenchStamped, "external_wrench", self._inputs.take_wrench, qos_profile(TELEMETRY)
+        )
+        self.create_subscription(
+            JointState, "ground", self._inputs.take_ground, qos_profile(TELEMETRY)
+        )
         create_landing_services(self, self.reset, self.step)
 
     def _add_outlet(self, topic: Topic, qos: Qos) -> None:
         name = self._names[topic] = resolve(self.get_namespace(), topic.name)
         if topic is not topics.TF or is_installed(topic.type_name):
-            self._outlets[topic] = self._live.add(Outlet(self.create_publisher(message_class(topic.type_name), name, qos_profile(qos))))
+            self._outlets[topic] = self._live.add(
+                Outlet(
+                    self.create_publisher(message_class(topic.type_name), name, qos_profile(qos))
+                )
+            )
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Loads the FMU, tells what it has, and describes the vehicle. Fails, with the reason in the node's log, where that cannot be."""
+        """Loads the FMU, tells what it has, and describes the vehicle.
+
+        Fails, with the reason in the node's log, where that cannot be.
+        """
         return self._transition(self._make_landing, FAILURE)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Lands, or goes on after a pause, in the pace of `realtime_factor`. The first time it begins the log."""
+        """Lands, or goes on after a pause, in the pace of `realtime_factor`.
+
+        The first time it begins the log.
+        """
         return self._transition(self._start, FAILURE)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -102,14 +131,18 @@ class LandingNode(LifecycleNode):
         return result
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Frees everything: the node is unconfigured afterwards, with its log complete as far as it got."""
+        """Frees everything: the node is unconfigured afterwards, with its log complete as far as it
+        got.
+        """
         failure = self.failure
         result = self._transition(self._free, FAILURE)
         self.failure = failure
         self.over.set()
         return result
 
-    def _transition(self, action: Callable[[], None], otherwise: TransitionCallbackReturn) -> TransitionCallbackReturn:
+    def _transition(
+        self, action: Callable[[], None], otherwise: TransitionCallbackReturn
+    ) -> TransitionCallbackReturn:
         # rclpy takes exceptions from transitions without a word.
         self.failure = None
         try:
@@ -143,8 +176,13 @@ class LandingNode(LifecycleNode):
         )
         fmu = self.landing.fmu
         counts = f"{len(PARAMETER_QUANTITIES)} parameters, {len(INPUT_QUANTITIES)} inputs, {len(OUTPUT_QUANTITIES)} outputs"
-        self.get_logger().info(f"{fmu.path}, version {fmu.version}: {counts}, listed on {self._names[topics.VARIABLES]}")
-        for topic, text in ((topics.VARIABLES, variables()), (topics.ROBOT_DESCRIPTION, robot_description(settings.parameters))):
+        self.get_logger().info(
+            f"{fmu.path}, version {fmu.version}: {counts}, listed on {self._names[topics.VARIABLES]}"
+        )
+        for topic, text in (
+            (topics.VARIABLES, variables()),
+            (topics.ROBOT_DESCRIPTION, robot_description(settings.parameters)),
+        ):
             data = serialize_message(String(data=text))
             self._outlets[topic].publish(data)
             if topic is topics.ROBOT_DESCRIPTION:
@@ -155,7 +193,9 @@ class LandingNode(LifecycleNode):
         self._begin(landing)
         self._pause.clear()
         self.over.clear()
-        self._thread = threading.Thread(target=self._land, args=(landing,), name="landing", daemon=True)
+        self._thread = threading.Thread(
+            target=self._land, args=(landing,), name="landing", daemon=True
+        )
         self._thread.start()
 
     def _begin(self, landing: LandingRun) -> None:
@@ -167,14 +207,21 @@ class LandingNode(LifecycleNode):
         try:
             if not landing.samples:
                 s = landing.settings
-                wait_until_matched(self._outlets[topics.STRUTS].publisher, s.wait_for_subscribers, s.wait_timeout, self._pause.is_set)
+                wait_until_matched(
+                    self._outlets[topics.STRUTS].publisher,
+                    s.wait_for_subscribers,
+                    s.wait_timeout,
+                    self._pause.is_set,
+                )
             landing.go_on(self._pause.is_set)
             if landing.end:
                 self.get_logger().debug(f"{landing.end} after {landing.time:g} s")
                 landing.close_log()
                 self.over.set()
         except Exception as e:
-            self._fatal = e if isinstance(e, LandingError) else LandingError(f"{type(e).__name__}: {e}")
+            self._fatal = (
+                e if isinstance(e, LandingError) else LandingError(f"{type(e).__name__}: {e}")
+            )
             # Transitions belong to the executor's thread.
             if self.executor is not None:
                 self.executor.create_task(self.trigger_deactivate)
@@ -204,7 +251,9 @@ class LandingNode(LifecycleNode):
         return self.landing
 
     def reset(self) -> str:
-        """Back to time 0 with the parameters as they are now, and a log of its own; a node that lands lands on from there."""
+        """Back to time 0 with the parameters as they are now, and a log of its own; a node that
+        lands lands on from there.
+        """
         self._need_landing()
         lands = self._thread is not None
         self._free()
@@ -214,12 +263,17 @@ class LandingNode(LifecycleNode):
         return f"back to 0 s{', landing' if lands else ''}"
 
     def step(self) -> str:
-        """`step_count` steps of a node that is configured and does not land; the time reached. Raises LandingError in another state."""
+        """`step_count` steps of a node that is configured and does not land; the time reached.
+
+        Raises LandingError in another state.
+        """
         landing = self._need_landing()
         if self._thread is not None:
             raise LandingError("the node lands; deactivate it, then it can be stepped")
         if landing.end:
-            raise LandingError(f"the landing has {landing.end} at {landing.time:g} s; ~/reset begins another")
+            raise LandingError(
+                f"the landing has {landing.end} at {landing.time:g} s; ~/reset begins another"
+            )
         self._begin(landing)
         landing.step(self.values["step_count"])
         if landing.end:
@@ -239,7 +293,9 @@ class LandingNode(LifecycleNode):
 
     @property
     def state(self) -> str:
-        """The lifecycle's state: unconfigured, inactive, active, finalized, or on the way between two of them."""
+        """The lifecycle's state: unconfigured, inactive, active, finalized, or on the way between
+        two of them.
+        """
         return str(self._state_machine.current_state[1])
 
     @property
@@ -249,11 +305,17 @@ class LandingNode(LifecycleNode):
         return landing is not None and landing.samples > 0
 
     def summary(self, signal: int) -> RunSummary:
-        """How the last landing went, once it has ended or is paused; `signal` is the one that interrupted it, or 0."""
+        """How the last landing went, once it has ended or is paused; `signal` is the one that
+        interrupted it, or 0.
+        """
         landing = self.landing or self._last
         if landing is None:
             raise LandingError("nothing has landed; configure and activate the node")
-        publishers = [o.publisher for t, o in self._outlets.items() if t not in topics.LATCHED and t is not topics.CLOCK]
+        publishers = [
+            o.publisher
+            for t, o in self._outlets.items()
+            if t not in topics.LATCHED and t is not topics.CLOCK
+        ]
         acknowledged = wait_for_acknowledgement(publishers, interrupted=bool(signal))
         return landing.summary(landing.end or "interrupted", signal, acknowledged)
 

@@ -1,4 +1,6 @@
-"""One landing: step the FMU, make the messages, record all of them, and hand them on to be published at their time."""
+"""One landing: step the FMU, make the messages, record all of them, and hand them on to be
+published at their time.
+"""
 
 from __future__ import annotations
 
@@ -34,11 +36,13 @@ from .settings import Settings
 PHASE = OUTPUT_NAMES.index("status.phase")
 BALANCE = OUTPUT_NAMES.index("energy.balance")
 TOPPLED = 3
-# How long the last samples may take to be published while some subscriber takes nothing [s of wall time].
+# How long the last samples may take to be published while some subscriber takes nothing [s of wall
+# time].
 LAST_SECONDS = 0.5
 # Weight of a new step in the mean of what a step costs.
 MEMORY = 1.0 / 32.0
-# How long another thread, which answers a service, may keep Python's lock when a sample is due; Python's own 5 ms are five samples.
+# How long another thread, which answers a service, may keep Python's lock when a sample is due;
+# Python's own 5 ms are five samples.
 SWITCH_SECONDS = 2e-4
 
 
@@ -48,10 +52,12 @@ class LandingRun:
     Args:
         settings: what to do. `folder`: where to record to, or None.
         live: what publishes; `outlets` are its outlets by topic, `names` the topics' full names.
-        inputs: what arrives from outside. `namespace`: the node's, for the log. `tell`: is told of an error of the recording.
+        inputs: what arrives from outside. `namespace`: the node's, for the log. `tell`: is told of
+            an error of the recording.
 
     Raises:
-        LandingError: the FMU is missing, not ours, or refuses the parameters; the log's folder cannot be had. Nothing is left behind then.
+        LandingError: the FMU is missing, not ours, or refuses the parameters; the log's folder
+            cannot be had. Nothing is left behind then.
     """
 
     def __init__(
@@ -71,14 +77,22 @@ class LandingRun:
         self.samples = 0
         self.end = ""
         self.realtime_factor = settings.realtime_factor
-        self._folder, self._live, self._outlets, self._names, self._qos = folder, live, outlets, names, qos
+        self._folder, self._live, self._outlets, self._names, self._qos = (
+            folder,
+            live,
+            outlets,
+            names,
+            qos,
+        )
         self._inputs, self._namespace, self._tell = inputs, namespace, tell
         self._take_packer(SampleBytes())
         self._wireframe = Wireframe(settings.parameters)
         self._transforms = Transforms(settings.parameters)
         self._health = Health(node_name, settings.mode)
         occasional = (topics.MARKERS, topics.TF, topics.DIAGNOSTICS)
-        self._markers_every, self._tf_every, self._diagnostics_every = (settings.every[t] for t in occasional)
+        self._markers_every, self._tf_every, self._diagnostics_every = (
+            settings.every[t] for t in occasional
+        )
         self._pacer = Pacer(0.0)
         self._work = 0.0
         self._told = False
@@ -91,28 +105,50 @@ class LandingRun:
         live.on_published(self._note_published)
 
     def open_log(self) -> None:
-        """Begins the log, where one is wanted; before the first sample. Raises LandingError where its folder cannot be had."""
+        """Begins the log, where one is wanted; before the first sample.
+
+        Raises LandingError where its folder cannot be had.
+        """
         if self._folder is None or self.recorder is not None:
             return
         recorded = [
-            RecordedTopic(self._names[t], t.type_name, LATCHED if t is topics.ROBOT_DESCRIPTION else self._qos) for t in topics.RECORDED
+            RecordedTopic(
+                self._names[t], t.type_name, LATCHED if t is topics.ROBOT_DESCRIPTION else self._qos
+            )
+            for t in topics.RECORDED
         ]
         metadata = log_metadata(self.settings, self._namespace, self.fmu)
-        self.recorder = Recorder(self._folder, recorded, metadata, {"parameters.toml": to_toml(self.settings.parameters).encode("utf-8")})
+        self.recorder = Recorder(
+            self._folder,
+            recorded,
+            metadata,
+            {"parameters.toml": to_toml(self.settings.parameters).encode("utf-8")},
+        )
         self.recorder.write(self._names[topics.ROBOT_DESCRIPTION], 0, padded(self.description))
         packer = self._packer
-        sizes = {t: place.stop - place.start for t, place in zip(packer.topics, packer.places) if t in topics.RECORDED}
+        sizes = {
+            t: place.stop - place.start
+            for t, place in zip(packer.topics, packer.places)
+            if t in topics.RECORDED
+        }
         heads = self.recorder.begin_samples({self._names[t]: size for t, size in sizes.items()})
         self._take_packer(SampleBytes(dict(zip(sizes, heads))))
 
     def _take_packer(self, packer: SampleBytes) -> None:
         self._packer = packer
-        self._places = [(self._outlets[t], place) for t, place in zip(packer.topics, packer.places) if t in self._outlets]
+        self._places = [
+            (self._outlets[t], place)
+            for t, place in zip(packer.topics, packer.places)
+            if t in self._outlets
+        ]
         # The clock comes first, and is not recorded.
         self._records = slice(packer.places[0].stop, None)
 
     def go_on(self, interrupted: Callable[[], bool]) -> None:
-        """Lands on in its own pace until the end, or until `interrupted` gets true. Raises LandingError for a step that the FMU refuses."""
+        """Lands on in its own pace until the end, or until `interrupted` gets true.
+
+        Raises LandingError for a step that the FMU refuses.
+        """
         s, pacer, live = self.settings, self._pacer, self._live
         factor = None
         live.look_round()
@@ -145,7 +181,10 @@ class LandingRun:
         live.finish(LAST_SECONDS)
 
     def step(self, count: int) -> None:
-        """`count` steps at once; each is published and recorded. Raises LandingError for a step that the FMU refuses."""
+        """`count` steps at once; each is published and recorded.
+
+        Raises LandingError for a step that the FMU refuses.
+        """
         self._live.look_round()
         goal = max(0, self.samples - 1) + count
         while not self.end and self.samples <= goal:
@@ -226,7 +265,9 @@ class LandingRun:
             "messages not published": self.dropped,
             "inputs refused": self._inputs.refused,
         }
-        return self._health.fill(k * self.settings.step_ns, told, problems, recorder.error if recorder else "")
+        return self._health.fill(
+            k * self.settings.step_ns, told, problems, recorder.error if recorder else ""
+        )
 
     @property
     def dropped(self) -> int:

@@ -14,8 +14,8 @@ from rlv_landing.errors import LandingError
 def create_landing_services(node: Node, reset: Callable[[], str], step: Callable[[], str]) -> None:
     """Create `~/reset` and `~/step` (std_srvs/Trigger) on `node`.
 
-    `reset` and `step` act on the landing and return the time that was reached, as text. A LandingError of theirs is the answer's message
-    with success = false.
+    `reset` and `step` act on the landing and return the time that was reached, as text. A
+    LandingError of theirs is the answer's message with success = false.
     """
     node.create_service(Trigger, "~/reset", lambda _, response: _answer(node, reset, response))
     node.create_service(Trigger, "~/step", lambda _, response: _answer(node, step, response))

@@ -7,16 +7,19 @@ import time
 from array import array
 from collections.abc import Callable, Sequence
 
-# Beyond this the lost time is given up: to make it good would be a burst that no subscriber expects.
+# Beyond this the lost time is given up: to make it good would be a burst that no subscriber
+# expects.
 STALL_SECONDS = 0.1
 LOOK_ROUND_SECONDS = 0.05
 
 
 class Pacer:
-    """Holds step k back until `start + (k - first) * period` [s] of wall time; a period of 0 never holds back.
+    """Holds step k back until `start + (k - first) * period` [s] of wall time; a period of 0 never
+    holds back.
 
-    The start is fixed, so that single late steps do not add up. `late_steps` began more than one period too late; `lost` [s] is time
-    given up after stalls; `lateness` [s] is that of each sample's publication.
+    The start is fixed, so that single late steps do not add up. `late_steps` began more than one
+    period too late; `lost` [s] is time given up after stalls; `lateness` [s] is that of each
+    sample's publication.
     """
 
     def __init__(self, period: float) -> None:
@@ -44,10 +47,14 @@ class Pacer:
     @property
     def elapsed(self) -> float:
         """Wall time in which time ran [s]."""
-        return self._active + (time.perf_counter() - self._started if self._started is not None else 0.0)
+        return self._active + (
+            time.perf_counter() - self._started if self._started is not None else 0.0
+        )
 
     def due(self, k: int) -> float:
-        """When step k is due, on `time.perf_counter`'s clock [s]; the past where nothing is held back."""
+        """When step k is due, on `time.perf_counter`'s clock [s]; the past where nothing is held
+        back.
+        """
         return self._start + (k - self._first) * self.period
 
     def hold(self, k: int, interrupted: Callable[[], bool]) -> bool:
@@ -72,7 +79,11 @@ class Pacer:
 
 
 def spread(lateness: Sequence[float]) -> tuple[float, float, float]:
-    """What half of the values, 99 % of them, and all of them stay at or below; 0 where there are none."""
+    """What half of the values, 99 % of them, and all of them stay at or below; 0 where there are
+    none.
+    """
     ordered = sorted(lateness)
-    half, most, all_of_them = (ordered[math.ceil(part * len(ordered)) - 1] if ordered else 0.0 for part in (0.5, 0.99, 1.0))
+    half, most, all_of_them = (
+        ordered[math.ceil(part * len(ordered)) - 1] if ordered else 0.0 for part in (0.5, 0.99, 1.0)
+    )
     return half, most, all_of_them

@@ -1,11 +1,18 @@
-"""The node's ROS parameters: every setting and every quantity under its own name, with description, unit and range, checked when set."""
+"""The node's ROS parameters: every setting and every quantity under its own name, with description,
+unit and range, checked when set.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
-from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
+from rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+    SetParametersResult,
+)
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
@@ -18,25 +25,36 @@ from .settings import SETTINGS, Settings, check_setting, make_settings
 
 # What rclpy declares by itself for every node.
 BUILT_IN = ("use_sim_time", "start_type_description_service")
-# The landing mode is the setting `mode`, which also chooses the values that belong to one mode only.
+# The landing mode is the setting `mode`, which also chooses the values that belong to one mode
+# only.
 MODE = "drop.mode"
 
 
 class NodeParameters:
-    """Declares the parameters of `node` and keeps them. `landing` tells whether it lands at present; `changed` is called with what was set.
+    """Declares the parameters of `node` and keeps them.
 
-    Raises LandingError for a bad value on the command line or in a parameter file: unknown name, wrong type, out of bounds, no such preset.
+    `landing` tells whether it lands at present; `changed` is called with what was set.
+
+    Raises LandingError for a bad value on the command line or in a parameter file: unknown name,
+        wrong type, out of bounds, no such preset.
     """
 
-    def __init__(self, node: Node, landing: Callable[[], bool], changed: Callable[[dict[str, Any]], None]) -> None:
-        # rclpy leaves overrides of undeclared parameters aside without a word; a misspelt name must not go unnoticed.
+    def __init__(
+        self, node: Node, landing: Callable[[], bool], changed: Callable[[dict[str, Any]], None]
+    ) -> None:
+        # rclpy leaves overrides of undeclared parameters aside without a word; a misspelt name must
+        # not go unnoticed.
         given: dict[str, Any] = {name: p.value for name, p in node._parameter_overrides.items()}
         for name in given:
-            if name not in (*SETTINGS, *PARAMETER_QUANTITIES, *BUILT_IN) and not name.startswith("qos_overrides."):
+            if name not in (*SETTINGS, *PARAMETER_QUANTITIES, *BUILT_IN) and not name.startswith(
+                "qos_overrides."
+            ):
                 raise unknown("ROS parameter", name, (*SETTINGS, *PARAMETER_QUANTITIES))
         if MODE in given:
             given.setdefault("mode", given.pop(MODE))
-        self._values = {name: check_setting(name, given.get(name, s.default)) for name, s in SETTINGS.items()}
+        self._values = {
+            name: check_setting(name, given.get(name, s.default)) for name, s in SETTINGS.items()
+        }
         self.parameters: Parameters = choose_parameters(
             self._values["preset"] or None,
             self._values["parameters_file"] or None,
@@ -57,29 +75,48 @@ class NodeParameters:
         return self._values[name]
 
     def settings(self) -> Settings:
-        """The settings as they are now. Raises LandingError where two of them do not go together."""
+        """The settings as they are now.
+
+        Raises LandingError where two of them do not go together.
+        """
         return make_settings(self._values, self.parameters)
 
     def _declare(self, node: Node) -> None:
         for name, s in SETTINGS.items():
             descriptor = ParameterDescriptor(description=s.meaning, read_only=s.when == "start")
             if isinstance(s.default, float):
-                descriptor.floating_point_range = [FloatingPointRange(from_value=s.lo, to_value=s.hi, step=0.0)]
+                descriptor.floating_point_range = [
+                    FloatingPointRange(from_value=s.lo, to_value=s.hi, step=0.0)
+                ]
             elif isinstance(s.default, int) and not isinstance(s.default, bool):
-                descriptor.integer_range = [IntegerRange(from_value=int(s.lo), to_value=int(s.hi), step=1)]
-            descriptor.additional_constraints = _constraints(s.choices, "" if s.when == "always" else s.when)
+                descriptor.integer_range = [
+                    IntegerRange(from_value=int(s.lo), to_value=int(s.hi), step=1)
+                ]
+            descriptor.additional_constraints = _constraints(
+                s.choices, "" if s.when == "always" else s.when
+            )
             node.declare_parameter(name, self._values[name], descriptor, ignore_override=True)
         for name, value in self.parameters.items():
             q = PARAMETER_QUANTITIES[name]
-            descriptor = ParameterDescriptor(description=f"{q.meaning} [{q.unit}]" if q.unit else q.meaning, read_only=name == MODE)
-            descriptor.additional_constraints = _constraints(q.choices, "start" if name == MODE else "paused")
+            descriptor = ParameterDescriptor(
+                description=f"{q.meaning} [{q.unit}]" if q.unit else q.meaning,
+                read_only=name == MODE,
+            )
+            descriptor.additional_constraints = _constraints(
+                q.choices, "start" if name == MODE else "paused"
+            )
             if not q.choices:
-                descriptor.floating_point_range = [FloatingPointRange(from_value=q.lo, to_value=q.hi, step=0.0)]
+                descriptor.floating_point_range = [
+                    FloatingPointRange(from_value=q.lo, to_value=q.hi, step=0.0)
+                ]
             node.declare_parameter(name, value, descriptor, ignore_override=True)
 
     def _before(self, parameters: list[Parameter[Any]]) -> list[Parameter[Any]]:
-        """Whole numbers become floats where floats are wanted. What is wrong is noted, and left as it was for rclpy's own checks to pass:
-        these would refuse it with less to say than `_check`."""
+        """Whole numbers become floats where floats are wanted.
+
+        What is wrong is noted, and left as it was for rclpy's own checks to pass: these would
+        refuse it with less to say than `_check`.
+        """
         self._refused = ""
         taken = []
         for p in parameters:
@@ -97,12 +134,20 @@ class NodeParameters:
     def _checked(self, p: Parameter[Any]) -> Any:
         if p.type_ == Parameter.Type.NOT_SET:
             raise LandingError(f"{p.name} cannot be deleted; set it to a value")
-        when = SETTINGS[p.name].when if p.name in SETTINGS else "start" if p.name == MODE else "paused"
+        when = (
+            SETTINGS[p.name].when if p.name in SETTINGS else "start" if p.name == MODE else "paused"
+        )
         if when == "start":
             raise LandingError(f"{p.name} can only be given when the node is started")
         if when == "paused" and self._landing():
-            raise LandingError(f"{p.name} cannot be changed while the node lands; deactivate it first, and ~/reset it afterwards")
-        return check_setting(p.name, p.value) if p.name in SETTINGS else check_value(PARAMETER_QUANTITIES[p.name], p.value)
+            raise LandingError(
+                f"{p.name} cannot be changed while the node lands; deactivate it first, and ~/reset it afterwards"
+            )
+        return (
+            check_setting(p.name, p.value)
+            if p.name in SETTINGS
+            else check_value(PARAMETER_QUANTITIES[p.name], p.value)
+        )
 
     def _present(self, name: str) -> Any:
         return self._values[name] if name in SETTINGS else self.parameters[name]
@@ -117,9 +162,14 @@ class NodeParameters:
         return SetParametersResult(successful=True)
 
     def _with(self, parameters: list[Parameter[Any]]) -> tuple[dict[str, Any], Parameters]:
-        """All values with `parameters` among them. Raises LandingError where they do not go together."""
+        """All values with `parameters` among them.
+
+        Raises LandingError where they do not go together.
+        """
         values = {**self._values, **{p.name: p.value for p in parameters if p.name in SETTINGS}}
-        physical = self.parameters.with_values({p.name: p.value for p in parameters if p.name in PARAMETER_QUANTITIES})
+        physical = self.parameters.with_values(
+            {p.name: p.value for p in parameters if p.name in PARAMETER_QUANTITIES}
+        )
         make_settings(values, physical)
         return values, physical
 
@@ -130,7 +180,8 @@ class NodeParameters:
 
 def _constraints(choices: tuple[str, ...], when: str) -> str:
     parts = [f"one of {', '.join(choices)}"] if choices else []
-    parts += {"start": ["given at the start only"], "paused": ["not while the node lands; acts from the next ~/reset or configure on"]}.get(
-        when, []
-    )
+    parts += {
+        "start": ["given at the start only"],
+        "paused": ["not while the node lands; acts from the next ~/reset or configure on"],
+    }.get(when, [])
     return "; ".join(parts)

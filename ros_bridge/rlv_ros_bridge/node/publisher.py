@@ -1,8 +1,10 @@
-"""Publishes serialised messages without holding up the landing: as time allows, from a bounded queue.
+"""Publishes serialised messages without holding up the landing: as time allows, from a bounded
+queue.
 
-rclpy keeps Python's lock while it writes, so a thread of its own would stop the landing as long as the write does. So the landing's
-own thread publishes, between a sample and the next step. A write to a subscriber that is frozen takes some fifteen times as long
-as others: while it is so, only the time that the next step leaves is written in, and the oldest messages are dropped and counted.
+rclpy keeps Python's lock while it writes, so a thread of its own would stop the landing as long as
+the write does. So the landing's own thread publishes, between a sample and the next step. A write
+to a subscriber that is frozen takes some fifteen times as long as others: while it is so, only the
+time that the next step leaves is written in, and the oldest messages are dropped and counted.
 """
 
 from __future__ import annotations
@@ -16,7 +18,8 @@ from typing import Any
 QUEUE_MESSAGES = 16_000
 # How often it is asked whether anybody listens [s].
 LOOK_ROUND_SECONDS = 0.05
-# A write takes some 15 us of processor time, one to a subscriber that takes nothing 250 us. Wall time would tell of other processes, too.
+# A write takes some 15 us of processor time, one to a subscriber that takes nothing 250 us. Wall
+# time would tell of other processes, too.
 SLUGGISH_SECONDS = 80e-6
 MEMORY = 1.0 / 32.0
 # The longest time without any write [s].
@@ -24,7 +27,10 @@ PROBE_SECONDS = 0.1
 
 
 class Outlet:
-    """A topic's publisher, and whether anybody listens. `every`: of so many messages one is published."""
+    """A topic's publisher, and whether anybody listens.
+
+    `every`: of so many messages one is published.
+    """
 
     def __init__(self, publisher: Any, every: int = 1) -> None:
         self.publisher = publisher
@@ -35,7 +41,10 @@ class Outlet:
 
 
 class LivePublisher:
-    """The queue in front of a node's publishers. `published` and `dropped` count messages for topics that somebody listens to."""
+    """The queue in front of a node's publishers.
+
+    `published` and `dropped` count messages for topics that somebody listens to.
+    """
 
     def __init__(self) -> None:
         self.outlets: list[Outlet] = []
@@ -73,8 +82,12 @@ class LivePublisher:
         if outlet.heard:
             self._queue.append((outlet, data, 0.0))
 
-    def offer_sample(self, places: Sequence[tuple[Outlet, slice]], data: bytes, k: int, due: float) -> None:
-        """A sample's messages, the k-th, due at `due` of `time.perf_counter`; `places` tell where in `data` each one stands."""
+    def offer_sample(
+        self, places: Sequence[tuple[Outlet, slice]], data: bytes, k: int, due: float
+    ) -> None:
+        """A sample's messages, the k-th, due at `due` of `time.perf_counter`; `places` tell where
+        in `data` each one stands.
+        """
         append = self._queue.append
         for outlet, place in places:
             if outlet.heard and k % outlet.every == 0:
@@ -89,8 +102,10 @@ class LivePublisher:
             self.dropped += 1
 
     def publish(self, until: float) -> None:
-        """Publishes what waits: at least the newest sample and as much again, then as long as writes will be done by `until` of
-        `time.perf_counter`; while writes are slow only the latter."""
+        """Publishes what waits: at least the newest sample and as much again, then as long as
+        writes will be done by `until` of `time.perf_counter`; while writes are slow only the
+        latter.
+        """
         now = time.perf_counter()
         self.look_round(now)
         while self._queue and self._queue[0][0] is None:
@@ -123,7 +138,10 @@ class LivePublisher:
             self._written = now = clock()
 
     def finish(self, seconds: float) -> None:
-        """Publishes what still waits; while writes are slow for at most `seconds` of wall time. The rest is dropped."""
+        """Publishes what still waits; while writes are slow for at most `seconds` of wall time.
+
+        The rest is dropped.
+        """
         end = time.perf_counter() + seconds
         while self._queue and not (self.sluggish and time.perf_counter() > end):
             self._publish(time.perf_counter(), end, 0 if self.sluggish else len(self.outlets))

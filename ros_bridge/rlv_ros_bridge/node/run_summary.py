@@ -8,9 +8,12 @@ from pathlib import Path
 
 @dataclass(frozen=True)
 class RunSummary:
-    """How a landing went. `end` is "finished", "toppled" or "interrupted" (by `signal`); lateness and wall time in s.
+    """How a landing went.
 
-    `dropped` messages were recorded, but not published: a subscriber did not take them, or the node had no time.
+    `end` is "finished", "toppled" or "interrupted" (by `signal`); lateness and wall time in s.
+
+    `dropped` messages were recorded, but not published: a subscriber did not take them, or the node
+    had no time.
     """
 
     samples: int

@@ -1,4 +1,7 @@
-"""The node's settings: one table of what they are called, what they mean and what they may be. Needs no ROS 2."""
+"""The node's settings: one table of what they are called, what they mean and what they may be.
+
+Needs no ROS 2.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,9 @@ When = Literal["start", "paused", "always"]
 
 @dataclass(frozen=True)
 class Setting:
-    """A setting of the node: its default (whose type is its own), meaning, bounds or choices, and when it may be changed."""
+    """A setting of the node: its default (whose type is its own), meaning, bounds or choices, and
+    when it may be changed.
+    """
 
     default: Any
     meaning: str
@@ -44,8 +49,19 @@ SETTINGS: dict[str, Setting] = {
     "preset": Setting("", f"preset of parameters; empty: {DEFAULT_PRESET}", when="start"),
     "mode": Setting("", "landing mode 2-2 or 1-2-1; empty: the parameters' own", when="start"),
     "parameters_file": Setting("", "TOML file of parameters, instead of a preset", when="start"),
-    "realtime_factor": Setting(1.0, "simulated seconds per second of wall time; 1 is real time, 0 as fast as possible", 0.0, 1e3, "always"),
-    "step_size": Setting(1e-3, "communication step and publishing period [s], a whole number of nanoseconds", 1e-6, 1.0),
+    "realtime_factor": Setting(
+        1.0,
+        "simulated seconds per second of wall time; 1 is real time, 0 as fast as possible",
+        0.0,
+        1e3,
+        "always",
+    ),
+    "step_size": Setting(
+        1e-3,
+        "communication step and publishing period [s], a whole number of nanoseconds",
+        1e-6,
+        1.0,
+    ),
     "stop_time": Setting(1.0, "end of the landing [s]", 0.0, 3600.0),
     "step_count": Setting(1, "steps that one call of ~/step does", 1.0, 1e6, "always"),
     "input_timeout": Setting(
@@ -55,15 +71,38 @@ SETTINGS: dict[str, Setting] = {
         3600.0,
         "always",
     ),
-    "qos": Setting("telemetry", "quality of service of what is published at every step", when="start", choices=tuple(PROFILES)),
-    "clock": Setting(True, "whether /clock is published; of several nodes in one ROS domain one should", when="start"),
-    "autostart": Setting(True, "land at once and end afterwards; else wait for lifecycle transitions, and stay", when="start"),
+    "qos": Setting(
+        "telemetry",
+        "quality of service of what is published at every step",
+        when="start",
+        choices=tuple(PROFILES),
+    ),
+    "clock": Setting(
+        True,
+        "whether /clock is published; of several nodes in one ROS domain one should",
+        when="start",
+    ),
+    "autostart": Setting(
+        True,
+        "land at once and end afterwards; else wait for lifecycle transitions, and stay",
+        when="start",
+    ),
     "record": Setting("", "folder to record to, which must not exist; empty: no recording"),
-    "log_root": Setting("", "record to a new folder below this one, named by UTC time and mode, where `record` is empty"),
-    "wait_for_subscribers": Setting(0, "subscriptions on `struts` to wait for before the landing starts", 0.0, 1000.0),
+    "log_root": Setting(
+        "",
+        "record to a new folder below this one, named by UTC time and mode, where `record` is empty",
+    ),
+    "wait_for_subscribers": Setting(
+        0, "subscriptions on `struts` to wait for before the landing starts", 0.0, 1000.0
+    ),
     "wait_timeout": Setting(30.0, "longest wait for them [s]", 0.0, 86400.0),
     **{
-        downsampling(t): Setting(0, f"publish one sample of so many on {t.name}; 0: {'its own rate' if t.period else 'each'}", 0.0, 1e9)
+        downsampling(t): Setting(
+            0,
+            f"publish one sample of so many on {t.name}; 0: {'its own rate' if t.period else 'each'}",
+            0.0,
+            1e9,
+        )
         for t in PUBLISHED
     },
 }
@@ -71,7 +110,9 @@ SETTINGS: dict[str, Setting] = {
 
 @dataclass(frozen=True)
 class Settings:
-    """What a landing is done with. Times in s; `step_ns` is the step in nanoseconds, from which all stamps are counted.
+    """What a landing is done with.
+
+    Times in s; `step_ns` is the step in nanoseconds, from which all stamps are counted.
 
     `every` says of how many samples one is published, by topic.
     """
@@ -100,12 +141,17 @@ class Settings:
         return int(self.stop_time / self.step_size * (1.0 + 1e-12) + 1e-9)
 
     def folder(self) -> Path | None:
-        """A folder to record to that does not exist yet, or None. A second landing into `record` gets a number of its own."""
+        """A folder to record to that does not exist yet, or None.
+
+        A second landing into `record` gets a number of its own.
+        """
         if self.record:
             return Path(self.record)
         if not self.log_root:
             return None
-        return unused(Path(self.log_root) / f"{datetime.now(timezone.utc):%Y%m%dT%H%M%SZ}-{self.mode}")
+        return unused(
+            Path(self.log_root) / f"{datetime.now(timezone.utc):%Y%m%dT%H%M%SZ}-{self.mode}"
+        )
 
 
 def unused(folder: Path) -> Path:
@@ -115,10 +161,15 @@ def unused(folder: Path) -> Path:
 
 
 def make_settings(values: Mapping[str, Any], parameters: Parameters) -> Settings:
-    """The settings from `values` by name, each checked. Raises LandingError where two of them do not go together."""
+    """The settings from `values` by name, each checked.
+
+    Raises LandingError where two of them do not go together.
+    """
     step_ns = whole_nanoseconds(values["step_size"])
     if values["stop_time"] < values["step_size"]:
-        raise LandingError(f"stop_time = {values['stop_time']:g} s is below the step of {values['step_size']:g} s; land for longer")
+        raise LandingError(
+            f"stop_time = {values['stop_time']:g} s is below the step of {values['step_size']:g} s; land for longer"
+        )
     own = {t: max(1, round(t.period / values["step_size"])) for t in PUBLISHED}
     return Settings(
         fmu=Path(values["fmu"]),
@@ -137,7 +188,10 @@ def make_settings(values: Mapping[str, Any], parameters: Parameters) -> Settings
 
 
 def check_setting(name: str, value: Any) -> Any:
-    """`value` as the setting `name` takes it. Raises LandingError: wrong type, not finite, out of bounds, not one of its choices."""
+    """`value` as the setting `name` takes it.
+
+    Raises LandingError: wrong type, not finite, out of bounds, not one of its choices.
+    """
     s = SETTINGS[name]
     if isinstance(s.default, bool):
         if not isinstance(value, bool):
@@ -147,7 +201,9 @@ def check_setting(name: str, value: Any) -> Any:
         if not isinstance(value, str):
             raise LandingError(f"{name} = {value!r} is not a text ({s.meaning}); put it in quotes")
         if s.choices and value not in s.choices:
-            raise LandingError(f"{name} = {value!r} is not one of {', '.join(s.choices)} ({s.meaning})")
+            raise LandingError(
+                f"{name} = {value!r} is not one of {', '.join(s.choices)} ({s.meaning})"
+            )
         return value
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise LandingError(f"{name} = {value!r} is not a number ({s.meaning})")
@@ -161,10 +217,15 @@ def check_setting(name: str, value: Any) -> Any:
 
 
 def whole_nanoseconds(step: float) -> int:
-    """The step in nanoseconds. Raises LandingError unless it is above 0 and a whole number of them: stamps are counted."""
+    """The step in nanoseconds.
+
+    Raises LandingError unless it is above 0 and a whole number of them: stamps are counted.
+    """
     if not 0.0 < step < inf:
         raise LandingError(f"step_size = {step:g} s must be finite and above 0 s")
     nanoseconds = round(step * 1e9)
     if nanoseconds < 1 or nanoseconds / 1e9 != step:
-        raise LandingError(f"step_size = {step!r} s is not a whole number of nanoseconds, which stamps are counted in; round it to 1e-9 s")
+        raise LandingError(
+            f"step_size = {step!r} s is not a whole number of nanoseconds, which stamps are counted in; round it to 1e-9 s"
+        )
     return nanoseconds

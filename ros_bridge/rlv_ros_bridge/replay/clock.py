@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 
-# Beyond this lateness [s of wall time] the lost time is given up: to make it good would be a burst that no subscriber expects.
+# Beyond this lateness [s of wall time] the lost time is given up: to make it good would be a burst
+# that no subscriber expects.
 STALL_SECONDS = 0.1
 SLOWEST, FASTEST = 1e-3, 1e3
 
 
 class ReplayClock:
-    """Which time of the log is due when. Times of the log in s since the replay's start, wall times in s of `time.perf_counter`.
+    """Which time of the log is due when.
+
+    Times of the log in s since the replay's start, wall times in s of `time.perf_counter`.
 
     `lost` is the wall time that was given up after stalls [s].
     """
@@ -28,7 +31,9 @@ class ReplayClock:
         self._wall = now
 
     def due(self, position: float) -> float:
-        """When the time `position` of the log is due: never in a pause, at once for a step that was asked for."""
+        """When the time `position` of the log is due: never in a pause, at once for a step that was
+        asked for.
+        """
         if self.paused:
             return -math.inf if self._steps else math.inf
         return self._wall + (position - self._position) / self.rate
@@ -61,7 +66,10 @@ class ReplayClock:
         return True
 
     def step(self, now: float = 0.0) -> bool:
-        """One message more; whether that was possible, which it is in a pause only. `now` is of no account."""
+        """One message more; whether that was possible, which it is in a pause only.
+
+        `now` is of no account.
+        """
         self._steps += self.paused
         return self.paused
 

@@ -18,7 +18,11 @@ KEYS = {
     b" ": "space",
     b"q": "q",
     b"Q": "q",
-    **{b"\x1b" + mode + code: name for mode in (b"[", b"O") for code, name in ((b"A", "up"), (b"B", "down"), (b"C", "right"))},
+    **{
+        b"\x1b" + mode + code: name
+        for mode in (b"[", b"O")
+        for code, name in ((b"A", "up"), (b"B", "down"), (b"C", "right"))
+    },
 }
 KEY = re.compile(b"|".join(map(re.escape, KEYS)))
 # The beginning of a key whose rest has not arrived yet.
@@ -28,10 +32,12 @@ ENDING = (signal.SIGHUP, signal.SIGQUIT)
 
 
 class Keyboard:
-    """Keys of the terminal on standard input while it is entered; where that is no terminal, or another program has it, none ever come.
+    """Keys of the terminal on standard input while it is entered; where that is no terminal, or
+    another program has it, none ever come.
 
-    The terminal's settings are restored at the end, also by an error, SIGHUP, SIGQUIT, and while the process is stopped by Ctrl-Z.
-    Ctrl-C stays a signal. Python takes signals in the main thread only, so in others no keys come.
+    The terminal's settings are restored at the end, also by an error, SIGHUP, SIGQUIT, and while
+    the process is stopped by Ctrl-Z. Ctrl-C stays a signal. Python takes signals in the main thread
+    only, so in others no keys come.
     """
 
     def __init__(self) -> None:
@@ -57,7 +63,9 @@ class Keyboard:
             return self
         self._fd = fd
         for number in (*ENDING, signal.SIGTSTP):
-            self._handlers[number] = signal.signal(number, self._suspend if number == signal.SIGTSTP else self._end)
+            self._handlers[number] = signal.signal(
+                number, self._suspend if number == signal.SIGTSTP else self._end
+            )
         try:
             self._set()
         except BaseException:
@@ -65,14 +73,22 @@ class Keyboard:
             raise
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         self._restore()
         for number, handler in self._handlers.items():
             signal.signal(number, handler)
         self._handlers, self._fd = {}, -1
 
     def keys(self, seconds: float = 0.0) -> list[str]:
-        """The keys pressed since the last time; waits at most `seconds` for one. Others than those of `KEYS` are left out."""
+        """The keys pressed since the last time; waits at most `seconds` for one.
+
+        Others than those of `KEYS` are left out.
+        """
         if not self.there:
             return []
         try:

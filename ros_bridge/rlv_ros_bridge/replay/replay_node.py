@@ -1,4 +1,6 @@
-"""Plays a log back: the recorded bytes, in the log's order, with its original timing and quality of service."""
+"""Plays a log back: the recorded bytes, in the log's order, with its original timing and quality of
+service.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +39,8 @@ from .selection import ReplayOptions, Selection
 # The system wakes a sleeper up to some hundred microseconds late: the rest is waited for awake.
 SPIN_SECONDS = 300e-6
 LOOK_ROUND_SECONDS = 0.05
-# One look at the node's services costs half a millisecond: in a pause, or at the latest after half a second.
+# One look at the node's services costs half a millisecond: in a pause, or at the latest after half
+# a second.
 PAUSE_SECONDS = 2e-3
 LONGEST_DEAF_SECONDS = 0.5
 # How often the keyboard is asked [s], and what a press of up changes the rate by.
@@ -48,8 +51,10 @@ BAR = "replay {percentage:3.0f}%|{bar}| {n:.2f}/{total:.2f} s [{elapsed}<{remain
 
 @dataclass(frozen=True)
 class ReplaySummary:
-    """How a replay went: messages and whole turns played, the signal that ended it (or 0), whether a key did; lateness of messages in
-    median, 99th percentile and at most, and wall time given up after stalls [s]; whether the log was cut."""
+    """How a replay went: messages and whole turns played, the signal that ended it (or 0), whether
+    a key did; lateness of messages in median, 99th percentile and at most, and wall time given up
+    after stalls [s]; whether the log was cut.
+    """
 
     messages: int
     turns: int
@@ -64,10 +69,14 @@ class ReplaySummary:
 
 
 class ReplayNode(Node):
-    """Publishes a selection of a log's messages, at a pace that keys of `keyboard` and services (`~/pause`, `~/resume`, `~/play_next`)
-    change. Raises LandingError: a message type is not installed, a topic's new name cannot be."""
+    """Publishes a selection of a log's messages, at a pace that keys of `keyboard` and services
+    (`~/pause`, `~/resume`, `~/play_next`) change. Raises LandingError: a message type is not
+    installed, a topic's new name cannot be.
+    """
 
-    def __init__(self, selection: Selection, options: ReplayOptions, keyboard: Keyboard, stop: StopFlag) -> None:
+    def __init__(
+        self, selection: Selection, options: ReplayOptions, keyboard: Keyboard, stop: StopFlag
+    ) -> None:
         super().__init__("replay_node")
         self._selection = selection
         self._options = options
@@ -78,21 +87,28 @@ class ReplayNode(Node):
         self._spinner = SingleThreadedExecutor(context=self.context)
         self._spinner.add_node(self)
         self._offer_services()
-        # `struts` last, as in the landing node: who waits for a match on it finds the others matched.
-        channels = sorted(selection.channels, key=lambda c: c.topic.endswith(f"/{landing_topics.STRUTS.name}"))
+        # `struts` last, as in the landing node: who waits for a match on it finds the others
+        # matched.
+        channels = sorted(
+            selection.channels, key=lambda c: c.topic.endswith(f"/{landing_topics.STRUTS.name}")
+        )
         publishers: dict[str, Any] = {}
         for c in channels:
             name = selection.names[c.topic]
             if name not in publishers:
                 _check_name(name)
-                publishers[name] = self.create_publisher(message_class(c.type_name), name, qos_profile(parse_qos(c.qos)))
+                publishers[name] = self.create_publisher(
+                    message_class(c.type_name), name, qos_profile(parse_qos(c.qos))
+                )
         self._outlets = {c.topic: publishers[selection.names[c.topic]] for c in channels}
         self._types = {c.topic: c.type_name for c in channels}
         self._waited_for = channels[-1].topic
         self._clock_message = message_class(landing_topics.CLOCK.type_name)()
         self._clock_publisher = None
         if options.clock > 0.0:
-            self._clock_publisher = self.create_publisher(type(self._clock_message), landing_topics.CLOCK.name, qos_profile(CLOCK))
+            self._clock_publisher = self.create_publisher(
+                type(self._clock_message), landing_topics.CLOCK.name, qos_profile(CLOCK)
+            )
         self._lateness: list[float] = []
         self._spun = self._asked = 0.0
 
@@ -106,9 +122,17 @@ class ReplayNode(Node):
             self.create_service(Trigger, f"~/{name}", partial(_answer, act, otherwise))
 
     def play(self) -> ReplaySummary:
-        """The selection once, or turn after turn with `loop`, until its end, a signal, or the key q."""
+        """The selection once, or turn after turn with `loop`, until its end, a signal, or the key
+        q.
+        """
         o, selection, stop = self._options, self._selection, self._stop
-        wait_for_subscribers(self._outlets[self._waited_for], o.wait_for_subscribers, o.wait_timeout, self._spinner, stop)
+        wait_for_subscribers(
+            self._outlets[self._waited_for],
+            o.wait_for_subscribers,
+            o.wait_timeout,
+            self._spinner,
+            stop,
+        )
         played = turns = 0
         # One step of the log lies between the last message of a turn and the first of the next.
         period = selection.length + selection.step
@@ -130,7 +154,9 @@ class ReplayNode(Node):
         finally:
             gc.enable()
             gc.unfreeze()
-        acknowledged = wait_for_acknowledgement(list(self._outlets.values()), interrupted=bool(stop))
+        acknowledged = wait_for_acknowledgement(
+            list(self._outlets.values()), interrupted=bool(stop)
+        )
         median, p99, largest = spread(self._lateness)
         return ReplaySummary(
             messages=played,
@@ -155,7 +181,11 @@ class ReplayNode(Node):
         restamp = Restamper(self._types, epoch) if epoch else None
         next_tick = epoch / 1e9 if self._clock_publisher is not None else math.inf
         with tqdm(
-            total=selection.length / 1e9, disable=not sys.stderr.isatty(), bar_format=BAR, file=sys.stderr, postfix=self._pace
+            total=selection.length / 1e9,
+            disable=not sys.stderr.isatty(),
+            bar_format=BAR,
+            file=sys.stderr,
+            postfix=self._pace,
         ) as bar:
             for i, message in enumerate(selection.messages):
                 position = (epoch + message.log_time - selection.first) / 1e9
@@ -195,7 +225,9 @@ class ReplayNode(Node):
                 self._spinner.spin_once(timeout_sec=KEY_SECONDS)
             elif left > SPIN_SECONDS:
                 deaf = now - self._spun
-                if (deaf > LOOK_ROUND_SECONDS and left > PAUSE_SECONDS) or deaf > LONGEST_DEAF_SECONDS:
+                if (
+                    deaf > LOOK_ROUND_SECONDS and left > PAUSE_SECONDS
+                ) or deaf > LONGEST_DEAF_SECONDS:
                     self._spinner.spin_once(timeout_sec=0)
                     self._spun = time.perf_counter()
                 else:
@@ -247,7 +279,10 @@ def _check_name(name: str) -> None:
 
 
 def replay(options: ReplayOptions, ros_args: Sequence[str], stop: StopFlag) -> ReplaySummary:
-    """Plays a log in a ROS 2 of its own, started with `ros_args`. Raises LandingError: bad options, a log or a topic that is not there."""
+    """Plays a log in a ROS 2 of its own, started with `ros_args`.
+
+    Raises LandingError: bad options, a log or a topic that is not there.
+    """
     options.check()
     selection = Selection(LogReader(options.path), options)
     with ros_context(ros_args), Keyboard() as keyboard:

@@ -1,4 +1,7 @@
-"""What a replay is to play: its options, and the part of the log that they choose. Needs no ROS 2."""
+"""What a replay is to play: its options, and the part of the log that they choose.
+
+Needs no ROS 2.
+"""
 
 from __future__ import annotations
 
@@ -18,8 +21,11 @@ from .clock import FASTEST, SLOWEST
 
 @dataclass(frozen=True)
 class ReplayOptions:
-    """What to play, and how. Times in s of the log; `clock` is the rate of /clock in Hz of wall time, 0 for none; `remap` holds texts
-    OLD:=NEW."""
+    """What to play, and how.
+
+    Times in s of the log; `clock` is the rate of /clock in Hz of wall time, 0 for none; `remap`
+    holds texts OLD:=NEW.
+    """
 
     path: Path
     rate: float = 1.0
@@ -43,13 +49,17 @@ class ReplayOptions:
             ("--wait-timeout", self.wait_timeout, "s", 0.0, 86400.0),
         ):
             if not (lo <= value <= hi and math.isfinite(value)):
-                raise LandingError(f"{name} = {value:g} {unit}".rstrip() + f" is outside [{lo:g}, {hi:g}] {unit}".rstrip())
+                raise LandingError(
+                    f"{name} = {value:g} {unit}".rstrip()
+                    + f" is outside [{lo:g}, {hi:g}] {unit}".rstrip()
+                )
         if not self.duration > 0.0:
             raise LandingError(f"--duration = {self.duration:g} s must be above 0 s")
 
 
 class Selection:
-    """The part of a log that is to be played, in memory; `names` tells for each topic of the log under which name it is played.
+    """The part of a log that is to be played, in memory; `names` tells for each topic of the log
+    under which name it is played.
 
     Raises LandingError where there is nothing to play.
     """
@@ -57,14 +67,28 @@ class Selection:
     def __init__(self, reader: LogReader, options: ReplayOptions) -> None:
         messages = list(reader.messages())
         if not messages:
-            raise LandingError(f"{reader.path} holds no message that can be read; there is nothing to play")
-        chosen = {t for t in reader.select(options.topics) if options.topics or playable(reader.channels[t].type_name)}
+            raise LandingError(
+                f"{reader.path} holds no message that can be read; there is nothing to play"
+            )
+        chosen = {
+            t
+            for t in reader.select(options.topics)
+            if options.topics or playable(reader.channels[t].type_name)
+        }
         self.first = min(m.log_time for m in messages) + round(options.start * 1e9)
-        last = self.first + round(options.duration * 1e9) if math.isfinite(options.duration) else math.inf
-        self.messages: list[LogMessage] = [m for m in messages if m.topic in chosen and self.first <= m.log_time <= last]
+        last = (
+            self.first + round(options.duration * 1e9)
+            if math.isfinite(options.duration)
+            else math.inf
+        )
+        self.messages: list[LogMessage] = [
+            m for m in messages if m.topic in chosen and self.first <= m.log_time <= last
+        ]
         if not self.messages:
             length = (max(m.log_time for m in messages) - min(m.log_time for m in messages)) / 1e9
-            raise LandingError(f"nothing to play from --start {options.start:g} s on: the log is {length:g} s long")
+            raise LandingError(
+                f"nothing to play from --start {options.start:g} s on: the log is {length:g} s long"
+            )
         self.channels = [c for c in reader.channels.values() if c.topic in chosen]
         self.names = renamed(reader, sorted(chosen), options.remap)
         self.length = max(m.log_time for m in self.messages) - self.first
@@ -78,14 +102,18 @@ class Selection:
 
 
 def playable(type_name: str) -> bool:
-    """Whether messages of that type can be published here; of all that a log holds only those of `/tf` may be left out."""
+    """Whether messages of that type can be published here; of all that a log holds only those of
+    `/tf` may be left out.
+    """
     return type_name != TF.type_name or is_installed(type_name)
 
 
 def renamed(reader: LogReader, topics: Sequence[str], remap: Sequence[str]) -> dict[str, str]:
-    """The names under which `topics` (full) are played: their own, but for `remap`, texts OLD:=NEW, full or relative to the namespace.
+    """The names under which `topics` (full) are played: their own, but for `remap`, texts OLD:=NEW,
+    full or relative to the namespace.
 
-    Raises LandingError: a text that is no OLD:=NEW, a topic that is not there or is given two names, two types under one name.
+    Raises LandingError: a text that is no OLD:=NEW, a topic that is not there or is given two
+        names, two types under one name.
     """
     names = {topic: topic for topic in topics}
     given: dict[str, str] = {}
@@ -95,9 +123,13 @@ def renamed(reader: LogReader, topics: Sequence[str], remap: Sequence[str]) -> d
             raise LandingError(f"--remap {text!r} is not OLD:=NEW, as in struts:=recorded/struts")
         (topic,) = reader.select([old])
         if topic not in names:
-            raise LandingError(f"--remap {text!r}: {topic} is not among the topics chosen by --topics; add it there or leave the remap out")
+            raise LandingError(
+                f"--remap {text!r}: {topic} is not among the topics chosen by --topics; add it there or leave the remap out"
+            )
         if topic in given:
-            raise LandingError(f"--remap gives {topic} two names, {given[topic]!r} and {new!r}; leave one out")
+            raise LandingError(
+                f"--remap gives {topic} two names, {given[topic]!r} and {new!r}; leave one out"
+            )
         given[topic] = new
         names[topic] = resolve(reader.namespace, new)
     types: dict[str, tuple[str, str]] = {}
@@ -105,5 +137,7 @@ def renamed(reader: LogReader, topics: Sequence[str], remap: Sequence[str]) -> d
         kind = reader.channels[topic].type_name
         other, other_kind = types.setdefault(name, (topic, kind))
         if kind != other_kind:
-            raise LandingError(f"{other} ({other_kind}) and {topic} ({kind}) cannot both be played as {name}; choose another name")
+            raise LandingError(
+                f"{other} ({other_kind}) and {topic} ({kind}) cannot both be played as {name}; choose another name"
+            )
     return names

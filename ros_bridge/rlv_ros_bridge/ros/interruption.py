@@ -12,7 +12,9 @@ from types import FrameType
 
 @contextmanager
 def ends_tidily() -> Iterator[None]:
-    """SIGTERM ends the command as Ctrl-C does, by an exception that lets it clean up, with exit code 143."""
+    """SIGTERM ends the command as Ctrl-C does, by an exception that lets it clean up, with exit
+    code 143.
+    """
 
     def end(number: int, _frame: FrameType | None) -> None:
         sys.exit(128 + number)

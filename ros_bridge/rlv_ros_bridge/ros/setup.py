@@ -1,4 +1,6 @@
-"""ROS 2 for a command: start and stop it, take signals without being cut in the middle, wait for subscribers."""
+"""ROS 2 for a command: start and stop it, take signals without being cut in the middle, wait for
+subscribers.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,10 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class StopFlag:
-    """Notes SIGINT and SIGTERM while it is entered, so that the loop ends at a good moment. `number` is the first that came, or 0."""
+    """Notes SIGINT and SIGTERM while it is entered, so that the loop ends at a good moment.
+
+    `number` is the first that came, or 0.
+    """
 
     def __init__(self) -> None:
         self.number = 0
@@ -54,7 +59,12 @@ class StopFlag:
                 self._previous[number] = signal.signal(number, self._note)
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         for number, handler in self._previous.items():
             signal.signal(number, handler)
         self._previous = {}
@@ -66,7 +76,9 @@ def require_ros() -> None:
     try:
         import rclpy  # noqa: F401
     except ImportError as e:
-        raise LandingError(f'ROS 2 is missing ({e}); install it with pip install "rlv-landing[ros]", or source your ROS 2') from None
+        raise LandingError(
+            f'ROS 2 is missing ({e}); install it with pip install "rlv-landing[ros]", or source your ROS 2'
+        ) from None
 
 
 @contextmanager
@@ -95,10 +107,14 @@ def _ensure_log_folder() -> None:
         return
     home = os.environ.get("HOME", "")
     if not home or not os.access(home, os.W_OK):
-        os.environ["ROS_LOG_DIR"] = str(Path(tempfile.gettempdir()) / f"rlv-landing-ros-log-{os.getuid()}")
+        os.environ["ROS_LOG_DIR"] = str(
+            Path(tempfile.gettempdir()) / f"rlv-landing-ros-log-{os.getuid()}"
+        )
 
 
-def wait_for_subscribers(publisher: Publisher[Any], count: int, timeout: float, executor: Executor, stop: StopFlag) -> None:
+def wait_for_subscribers(
+    publisher: Publisher[Any], count: int, timeout: float, executor: Executor, stop: StopFlag
+) -> None:
     """Returns once `count` subscriptions are matched on the publisher's topic, or a signal came.
 
     Raises LandingError after `timeout` [s].
@@ -111,8 +127,11 @@ def wait_for_subscribers(publisher: Publisher[Any], count: int, timeout: float, 
     wait_until_matched(publisher, count, timeout, interrupted)
 
 
-def wait_until_matched(publisher: Publisher[Any], count: int, timeout: float, interrupted: Callable[[], object]) -> None:
-    """Returns once `count` subscriptions are matched on the publisher's topic, or `interrupted` gets true.
+def wait_until_matched(
+    publisher: Publisher[Any], count: int, timeout: float, interrupted: Callable[[], object]
+) -> None:
+    """Returns once `count` subscriptions are matched on the publisher's topic, or `interrupted`
+    gets true.
 
     Raises LandingError after `timeout` [s].
     """
@@ -127,8 +146,12 @@ def wait_until_matched(publisher: Publisher[Any], count: int, timeout: float, in
 
 
 def wait_for_acknowledgement(publishers: Sequence[Publisher[Any]], interrupted: bool) -> bool:
-    """Whether all reliable subscribers have acknowledged all samples in due time, which is short where `interrupted`."""
+    """Whether all reliable subscribers have acknowledged all samples in due time, which is short
+    where `interrupted`.
+    """
     from rclpy.duration import Duration
 
     end = time.monotonic() + (INTERRUPTED_SECONDS if interrupted else ACKNOWLEDGE_SECONDS)
-    return all(p.wait_for_all_acked(Duration(seconds=max(0.0, end - time.monotonic()))) for p in publishers)
+    return all(
+        p.wait_for_all_acked(Duration(seconds=max(0.0, end - time.monotonic()))) for p in publishers
+    )

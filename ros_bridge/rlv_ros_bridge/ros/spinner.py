@@ -15,7 +15,10 @@ Result = TypeVar("Result")
 
 
 class Spinner:
-    """Spins `node` in a thread of its own while it is entered. All callbacks run there, and `call` runs there, too."""
+    """Spins `node` in a thread of its own while it is entered.
+
+    All callbacks run there, and `call` runs there, too.
+    """
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -51,7 +54,12 @@ class Spinner:
         self._thread.start()
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         self._stop.set()
         self._executor.wake()
         self._thread.join()

@@ -1,4 +1,7 @@
-"""The live topics of a landing as Rerun scenes, one for each landing that is heard. Needs rerun-sdk and ROS 2."""
+"""The live topics of a landing as Rerun scenes, one for each landing that is heard.
+
+Needs rerun-sdk and ROS 2.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,8 @@ from ..ros.spinner import Spinner
 from .rerun_scene import AUXILIARY, BODY, MAIN, Scene
 
 WATCHED: tuple[Topic, ...] = (STRUTS, RPY, TWIST, *CONTACTS)
-# What is shown must not hold the landing up, so nothing is sent again; a second of it may wait here.
+# What is shown must not hold the landing up, so nothing is sent again; a second of it may wait
+# here.
 QOS = Qos(reliability="best_effort", depth=1000)
 # Samples that lack a topic longer than this are given up [ns].
 PATIENCE = 100_000_000
@@ -36,10 +40,11 @@ STILL = dict.fromkeys((f"leg[{leg}].contact.force_{axis}" for leg in LEGS for ax
 
 
 class LiveScenes:
-    """Subscribes `node` to the landing below `namespace`; `begin` is told of each new scene, once its first markers are there.
+    """Subscribes `node` to the landing below `namespace`; `begin` is told of each new scene, once
+    its first markers are there.
 
-    A stamp that lies before the one before begins a new scene: somebody has reset the landing. `samples` counts what was shown, `failure`
-    is what went wrong.
+    A stamp that lies before the one before begins a new scene: somebody has reset the landing.
+    `samples` counts what was shown, `failure` is what went wrong.
     """
 
     def __init__(self, node: Node, namespace: str, begin: Callable[[Scene], object]) -> None:
@@ -53,7 +58,12 @@ class LiveScenes:
         self._forces = STILL
         for topic in (*WATCHED, MARKERS):
             take = self._take_markers if topic is MARKERS else self._taker(topic)
-            node.create_subscription(message_class(topic.type_name), resolve(namespace, topic.name), take, qos_profile(QOS))
+            node.create_subscription(
+                message_class(topic.type_name),
+                resolve(namespace, topic.name),
+                take,
+                qos_profile(QOS),
+            )
         self._asking = AsyncParameterClient(node, resolve(namespace, "landing_node"))
         node.create_timer(SHOW_SECONDS, self._show)
 
@@ -93,13 +103,17 @@ class LiveScenes:
     def _show(self) -> None:
         complete = {t: row for t, row in sorted(self._rows.items()) if len(row) == self._columns}
         newest = max(self._rows, default=0)
-        self._rows = {t: row for t, row in self._rows.items() if t not in complete and t > newest - PATIENCE}
+        self._rows = {
+            t: row for t, row in self._rows.items() if t not in complete and t > newest - PATIENCE
+        }
         if self.scene is None:
             return
         if complete:
             rows = list(complete.values())
             time = np.array(list(complete)) / NANOSECONDS
-            self.scene.curves(time, {name: np.array([row[name] for row in rows]) for name in rows[0]})
+            self.scene.curves(
+                time, {name: np.array([row[name] for row in rows]) for name in rows[0]}
+            )
             self.samples += len(rows)
             self._forces = rows[-1]
         if self._marked:
@@ -109,19 +123,26 @@ class LiveScenes:
     def _draw(self, scene: Scene, complete: dict[int, dict[str, float]]) -> None:
         time = np.array([at for at, _ in self._marked]) / NANOSECONDS
         body, main, auxiliary, feet = (
-            np.array([[(p.x, p.y, p.z) for p in m.markers[i].points] for _, m in self._marked]) for i in range(4)
+            np.array([[(p.x, p.y, p.z) for p in m.markers[i].points] for _, m in self._marked])
+            for i in range(4)
         )
         shape = (len(time), -1, 2, 3)
         for entity, points in ((BODY, body), (MAIN, main), (AUXILIARY, auxiliary)):
             scene.lines(entity, time, (points.reshape(shape),))
         scene.footpads(time, feet)
         forces = [complete.get(at, self._forces) for at, _ in self._marked]
-        columns = [[[row[f"leg[{leg}].contact.force_{a}"] * sign for a, sign in AXES] for leg in LEGS] for row in forces]
+        columns = [
+            [[row[f"leg[{leg}].contact.force_{a}"] * sign for a, sign in AXES] for leg in LEGS]
+            for row in forces
+        ]
         scene.contacts(time, feet, np.array(columns))
 
 
-def watch(namespace: str, begin: Callable[[Scene], object], going_on: Callable[[], object], stop: StopFlag) -> int:
-    """Shows the landings below `namespace` until a signal comes or `going_on` gets false; how many samples were shown.
+def watch(
+    namespace: str, begin: Callable[[Scene], object], going_on: Callable[[], object], stop: StopFlag
+) -> int:
+    """Shows the landings below `namespace` until a signal comes or `going_on` gets false; how many
+    samples were shown.
 
     Raises LandingError: no ROS 2, or markers that are no landing's; and what `going_on` raises.
     """
@@ -147,7 +168,8 @@ def stamp_of(header: Any) -> int:
 
 
 def mode_of(markers: Any) -> str:
-    """The landing mode, told by where the main struts of `markers` are joined to the body: legs lie in the body's plane, or all beside it.
+    """The landing mode, told by where the main struts of `markers` are joined to the body: legs lie
+    in the body's plane, or all beside it.
 
     Raises LandingError where that is no mode of ours.
     """
@@ -155,6 +177,10 @@ def mode_of(markers: Any) -> str:
     radius = max(map(abs, across))
     for mode in MODES:
         reach = max(abs(y) for _, y, _ in around(mode, 1.0, 0.0))
-        if np.allclose(across, [y * radius / reach for _, y, _ in around(mode, 1.0, 0.0)], atol=1e-6):
+        if np.allclose(
+            across, [y * radius / reach for _, y, _ in around(mode, 1.0, 0.0)], atol=1e-6
+        ):
             return mode
-    raise LandingError(f"the markers' struts are joined at y = {', '.join(f'{y:.3g}' for y in across)} m, which is no landing mode")
+    raise LandingError(
+        f"the markers' struts are joined at y = {', '.join(f'{y:.3g}' for y in across)} m, which is no landing mode"
+    )

@@ -19,7 +19,10 @@ def scene_of(history: History, parameters: Parameters) -> Scene:
     scene = Scene(parameters.drop.mode)
     scene.ground(parameters.ground.slope)
     time = history.time
-    parts = {part: in_ros_axes(lines) for part, lines in wireframe(history, parameters, np.arange(len(history))).items()}
+    parts = {
+        part: in_ros_axes(lines)
+        for part, lines in wireframe(history, parameters, np.arange(len(history))).items()
+    }
     scene.lines(BODY, time, (parts["outline"], parts["hull"]))
     scene.lines(MAIN, time, (parts["main"],))
     scene.lines(AUXILIARY, time, (parts["auxiliary"],))
@@ -32,5 +35,7 @@ def scene_of(history: History, parameters: Parameters) -> Scene:
 
 
 def in_ros_axes(points: Any) -> Array:
-    """Points of the paper's axes (x forward, y up, z right) in REP-103 axes (x forward, y left, z up)."""
+    """Points of the paper's axes (x forward, y up, z right) in REP-103 axes (x forward, y left, z
+    up).
+    """
     return np.stack([points[..., 0], -points[..., 2], points[..., 1]], axis=-1)

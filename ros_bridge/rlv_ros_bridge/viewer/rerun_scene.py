@@ -1,4 +1,6 @@
-"""A landing as Rerun draws it: the vehicle in space beside its curves, on the timeline of simulation time. Needs rerun-sdk."""
+"""A landing as Rerun draws it: the vehicle in space beside its curves, on the timeline of
+simulation time. Needs rerun-sdk.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,8 @@ Array = NDArray[np.float64]
 TIMELINE = "sim_time"
 INK, GROUND, FORCE, PAPER = "#222222", "#a8adb2", "#e0a100", "#f4f5f6"
 BODY, MAIN, AUXILIARY, FOOTPADS, CONTACT, FLOOR = (
-    f"vehicle/{part}" for part in ("body", "main_struts", "auxiliary_struts", "footpads", "contact_force", "ground")
+    f"vehicle/{part}"
+    for part in ("body", "main_struts", "auxiliary_struts", "footpads", "contact_force", "ground")
 )
 # Radii of lines and footpads [m], and how long an arrow is [m/N].
 RADII = {BODY: 0.012, MAIN: 0.03, AUXILIARY: 0.015, FOOTPADS: 0.05, CONTACT: 0.03, FLOOR: 0.004}
@@ -31,7 +34,9 @@ EYE, TARGET = (-2.0, -7.5, 2.2), (0.2, 0.0, 1.3)
 
 
 class Curve(NamedTuple):
-    """A plot: its entity, its title with unit, what is drawn (name of each line -> column), and how many of its unit an SI unit is."""
+    """A plot: its entity, its title with unit, what is drawn (name of each line -> column), and how
+    many of its unit an SI unit is.
+    """
 
     entity: str
     title: str
@@ -51,53 +56,86 @@ def curves(mode: str) -> list[Curve]:
     names = {f"leg {'/'.join(map(str, group))}": group[0] for group in legs}
 
     def strut(entity: str, title: str, column: str, factor: float) -> Curve:
-        return Curve(entity, title, {name: f"leg[{leg}].{column}" for name, leg in names.items()}, factor, COLOURS[: len(names)])
+        return Curve(
+            entity,
+            title,
+            {name: f"leg[{leg}].{column}" for name, leg in names.items()},
+            factor,
+            COLOURS[: len(names)],
+        )
 
     return [
         strut("main_strut/force", "main strut force [kN]", "main_strut.force", 1e-3),
         strut("main_strut/stroke", "main strut stroke [mm]", "main_strut.stroke", 1e3),
         strut("auxiliary_strut/force", "auxiliary strut force [kN]", "auxiliary_strut.force", 1e-3),
         Curve("body/pitch", "pitch [deg]", {"pitch": "body.pitch"}, float(np.degrees(1.0)), (INK,)),
-        Curve("body/speed", "speed [m/s]", {"forward": "body.vx", "up": "body.vy"}, 1.0, (INK, FORCE)),
+        Curve(
+            "body/speed", "speed [m/s]", {"forward": "body.vx", "up": "body.vy"}, 1.0, (INK, FORCE)
+        ),
     ]
 
 
 class Scene:
-    """A recording of a landing in `mode`. Lengths in m, axes as ROS has them (x forward, y left, z up), times in s."""
+    """A recording of a landing in `mode`.
+
+    Lengths in m, axes as ROS has them (x forward, y left, z up), times in s.
+    """
 
     def __init__(self, mode: str) -> None:
         self.mode = mode
         self.stream = rr.RecordingStream("rlv-landing")
-        colours = {leg: rgb(colour) for group, colour in zip(groups(mode), COLOURS) for leg in group}
+        colours = {
+            leg: rgb(colour) for group, colour in zip(groups(mode), COLOURS) for leg in group
+        }
         legs = [colours[leg] for leg in LEGS]
         self._log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
-        for part, shades in ((BODY, [rgb(INK)]), (MAIN, legs), (AUXILIARY, legs), (FLOOR, [rgb(GROUND)])):
+        for part, shades in (
+            (BODY, [rgb(INK)]),
+            (MAIN, legs),
+            (AUXILIARY, legs),
+            (FLOOR, [rgb(GROUND)]),
+        ):
             self._log(part, rr.LineStrips3D.from_fields(radii=RADII[part], colors=shades))
         self._log(FOOTPADS, rr.Points3D.from_fields(radii=RADII[FOOTPADS], colors=[rgb(INK)]))
         self._log(CONTACT, rr.Arrows3D.from_fields(radii=RADII[CONTACT], colors=[rgb(FORCE)]))
         self._curves = curves(mode)
         for curve in self._curves:
-            self._log(curve.entity, rr.SeriesLines(colors=[rgb(c) for c in curve.colours], names=list(curve.lines), widths=[1.5]))
+            self._log(
+                curve.entity,
+                rr.SeriesLines(
+                    colors=[rgb(c) for c in curve.colours], names=list(curve.lines), widths=[1.5]
+                ),
+            )
         self.ground(0.0)
 
     def _log(self, entity: str, what: Any) -> None:
         rr.log(entity, what, static=True, recording=self.stream)
 
     def _send(self, entity: str, time: Array, columns: Any) -> None:
-        rr.send_columns(entity, [rr.TimeColumn(TIMELINE, duration=time)], columns, recording=self.stream)
+        rr.send_columns(
+            entity, [rr.TimeColumn(TIMELINE, duration=time)], columns, recording=self.stream
+        )
 
     def ground(self, slope: float) -> None:
         """The ground at rest, which a positive `slope` [rad] lets fall along x."""
         fall = -np.tan(slope)
-        along = [[(EXTENT[0], y, fall * EXTENT[0]), (EXTENT[-1], y, fall * EXTENT[-1])] for y in EXTENT]
+        along = [
+            [(EXTENT[0], y, fall * EXTENT[0]), (EXTENT[-1], y, fall * EXTENT[-1])] for y in EXTENT
+        ]
         across = [[(x, EXTENT[0], fall * x), (x, EXTENT[-1], fall * x)] for x in EXTENT]
         self._log(FLOOR, rr.LineStrips3D.from_fields(strips=[*along, *across]))
 
     def curves(self, time: Array, columns: Mapping[str, Array]) -> None:
         """Samples of the outputs `columns`, by name, SI."""
         for curve in self._curves:
-            values = np.stack([columns[name] for name in curve.lines.values()], axis=-1) * curve.factor
-            self._send(curve.entity, time, rr.Scalars.columns(scalars=values.ravel()).partition([values.shape[1]] * len(time)))
+            values = (
+                np.stack([columns[name] for name in curve.lines.values()], axis=-1) * curve.factor
+            )
+            self._send(
+                curve.entity,
+                time,
+                rr.Scalars.columns(scalars=values.ravel()).partition([values.shape[1]] * len(time)),
+            )
 
     def lines(self, entity: str, time: Array, lines: Iterable[Array]) -> None:
         """Lines of `entity` at each time: arrays (times, lines, points, 3)."""
@@ -108,18 +146,31 @@ class Scene:
 
     def footpads(self, time: Array, feet: Array) -> None:
         """Footpads at each time: (times, legs, 3)."""
-        self._send(FOOTPADS, time, rr.Points3D.columns(positions=feet.reshape(-1, 3)).partition([len(LEGS)] * len(time)))
+        self._send(
+            FOOTPADS,
+            time,
+            rr.Points3D.columns(positions=feet.reshape(-1, 3)).partition([len(LEGS)] * len(time)),
+        )
 
     def contacts(self, time: Array, feet: Array, forces: Array) -> None:
         """Forces of the ground [N] on the footpads `feet`, both (times, legs, 3)."""
-        arrows = rr.Arrows3D.columns(origins=feet.reshape(-1, 3), vectors=ARROW * forces.reshape(-1, 3))
+        arrows = rr.Arrows3D.columns(
+            origins=feet.reshape(-1, 3), vectors=ARROW * forces.reshape(-1, 3)
+        )
         self._send(CONTACT, time, arrows.partition([len(LEGS)] * len(time)))
 
     def blueprint(self, live: bool) -> Any:
-        """The vehicle on the left, curves on the right; a `live` landing is followed, another played five times slower, in a loop."""
-        # The first plot's legend tells the colours of all that show legs; the last has lines of its own.
+        """The vehicle on the left, curves on the right; a `live` landing is followed, another
+        played five times slower, in a loop.
+        """
+        # The first plot's legend tells the colours of all that show legs; the last has lines of its
+        # own.
         plots = [
-            rrb.TimeSeriesView(origin=f"/{c.entity}", name=c.title, plot_legend=rrb.PlotLegend("RightBottom", visible=i in (0, 4)))
+            rrb.TimeSeriesView(
+                origin=f"/{c.entity}",
+                name=c.title,
+                plot_legend=rrb.PlotLegend("RightBottom", visible=i in (0, 4)),
+            )
             for i, c in enumerate(self._curves)
         ]
         vehicle = rrb.Spatial3DView(
@@ -127,15 +178,26 @@ class Scene:
             name="vehicle",
             background=rgb(PAPER),
             line_grid=False,
-            eye_controls=rrb.EyeControls3D(position=EYE, look_target=TARGET, eye_up=(0.0, 0.0, 1.0)),
+            eye_controls=rrb.EyeControls3D(
+                position=EYE, look_target=TARGET, eye_up=(0.0, 0.0, 1.0)
+            ),
         )
         time = rrb.TimePanel(
             state="collapsed",
             timeline=TIMELINE,
-            **({"play_state": "following"} if live else {"play_state": "playing", "loop_mode": "all", "playback_speed": 0.2}),
+            **(
+                {"play_state": "following"}
+                if live
+                else {"play_state": "playing", "loop_mode": "all", "playback_speed": 0.2}
+            ),
         )
         layout = rrb.Horizontal(vehicle, rrb.Vertical(*plots), column_shares=[1.0, 1.0])
-        return rrb.Blueprint(layout, time, rrb.BlueprintPanel(state="collapsed"), rrb.SelectionPanel(state="collapsed"))
+        return rrb.Blueprint(
+            layout,
+            time,
+            rrb.BlueprintPanel(state="collapsed"),
+            rrb.SelectionPanel(state="collapsed"),
+        )
 
 
 class SavedScene:
@@ -164,12 +226,19 @@ class SavedScene:
         try:
             yield
         except (OSError, RuntimeError, ValueError) as e:
-            raise LandingError(f"{self._path} cannot be written: {' '.join(str(e).split())}; make room, or name another file") from None
+            raise LandingError(
+                f"{self._path} cannot be written: {' '.join(str(e).split())}; make room, or name another file"
+            ) from None
 
     def __enter__(self) -> SavedScene:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         with suppress(OSError):
             self._unfinished.unlink()
 

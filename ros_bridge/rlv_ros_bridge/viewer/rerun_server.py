@@ -1,8 +1,9 @@
 """Serves a Rerun viewer to browsers on this machine, and keeps it from talking to anybody else.
 
-Rerun's own program, from its wheel, keeps the data and the viewer's files; it is told to listen on the loopback address only and to send
-no statistics. The viewer itself, once in a browser, would ask for news and report its use; so its files are handed on from here, with a
-content security policy that has the browser connect it to nothing but the data.
+Rerun's own program, from its wheel, keeps the data and the viewer's files; it is told to listen on
+the loopback address only and to send no statistics. The viewer itself, once in a browser, would ask
+for news and report its use; so its files are handed on from here, with a content security policy
+that has the browser connect it to nothing but the data.
 """
 
 from __future__ import annotations
@@ -37,10 +38,19 @@ END_SECONDS = 5.0
 
 
 def quiet_environment(folder: Path) -> dict[str, str]:
-    """The environment in which Rerun's program collects no statistics: with a configuration of its own in `folder` that says so."""
+    """The environment in which Rerun's program collects no statistics: with a configuration of its
+    own in `folder` that says so.
+    """
     kept = ("PATH", "TMPDIR", "LANG", "LD_LIBRARY_PATH")
     mine = {name: os.environ[name] for name in kept if name in os.environ}
-    return {**mine, "HOME": str(folder), "XDG_CONFIG_HOME": str(folder), "NO_COLOR": "1", "TELEMETRY_ENABLED": "false", "RUST_LOG": "info"}
+    return {
+        **mine,
+        "HOME": str(folder),
+        "XDG_CONFIG_HOME": str(folder),
+        "NO_COLOR": "1",
+        "TELEMETRY_ENABLED": "false",
+        "RUST_LOG": "info",
+    }
 
 
 def program() -> str:
@@ -49,7 +59,9 @@ def program() -> str:
 
 
 def policy(data_port: int) -> str:
-    """The content security policy of the viewer's page: files from where it came from, data from `data_port`, and nothing else."""
+    """The content security policy of the viewer's page: files from where it came from, data from
+    `data_port`, and nothing else.
+    """
     own = "'self' 'unsafe-inline'"
     return (
         f"default-src {own} 'wasm-unsafe-eval' data: blob:; connect-src 'self' http://{LOOPBACK}:{data_port}; "
@@ -58,7 +70,8 @@ def policy(data_port: int) -> str:
 
 
 class ViewerServer:
-    """A viewer at `address`, on `port` of the loopback address, for what is sent to `data`; the data's port is the next one.
+    """A viewer at `address`, on `port` of the loopback address, for what is sent to `data`; the
+    data's port is the next one.
 
     To be entered. Raises LandingError: a port is taken, or Rerun's program does not run.
     """
@@ -76,12 +89,19 @@ class ViewerServer:
     def __enter__(self) -> ViewerServer:
         try:
             environment = quiet_environment(self._folder)
-            subprocess.run([program(), "analytics", "disable"], env=environment, capture_output=True, check=True)
+            subprocess.run(
+                [program(), "analytics", "disable"],
+                env=environment,
+                capture_output=True,
+                check=True,
+            )
             self._front = front(self.port, self._start(environment), policy(self.data_port))
             threading.Thread(target=self._front.serve_forever, name="viewer", daemon=True).start()
         except (OSError, subprocess.CalledProcessError) as e:
             self.close()
-            raise LandingError(f'Rerun\'s viewer does not start: {e}; install it again with pip install "rlv-landing[view]"') from None
+            raise LandingError(
+                f'Rerun\'s viewer does not start: {e}; install it again with pip install "rlv-landing[view]"'
+            ) from None
         except BaseException:
             self.close()
             raise
@@ -89,7 +109,14 @@ class ViewerServer:
 
     def _start(self, environment: Mapping[str, str]) -> str:
         """Starts Rerun's program; where it hosts the viewer's files."""
-        ports = ("--port", str(self.data_port), "--web-viewer-port", "0", "--server-memory-limit", KEPT)
+        ports = (
+            "--port",
+            str(self.data_port),
+            "--web-viewer-port",
+            "0",
+            "--server-memory-limit",
+            KEPT,
+        )
         self._process = subprocess.Popen(
             [program(), "--serve-web", "--bind", LOOPBACK, *ports],
             env=environment,
@@ -106,7 +133,9 @@ class ViewerServer:
         said = ""
         for line in self._process.stdout:
             if found := HOSTING.search(line):
-                threading.Thread(target=self._process.stdout.read, name="viewer's words", daemon=True).start()
+                threading.Thread(
+                    target=self._process.stdout.read, name="viewer's words", daemon=True
+                ).start()
                 return found[1]
             said = line.strip() or said
         raise LandingError(f"Rerun's viewer does not start: {said}")
@@ -114,7 +143,9 @@ class ViewerServer:
     def runs(self) -> bool:
         """True. Raises LandingError where Rerun's program has ended by itself."""
         if self._process is not None and self._process.poll() is not None:
-            raise LandingError(f"Rerun's viewer ended with {self._process.returncode}; start the view again")
+            raise LandingError(
+                f"Rerun's viewer ended with {self._process.returncode}; start the view again"
+            )
         return True
 
     def close(self) -> None:
@@ -131,12 +162,19 @@ class ViewerServer:
                 self._process.wait()
         shutil.rmtree(self._folder, ignore_errors=True)
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         self.close()
 
 
 def front(port: int, files: str, security: str) -> ThreadingHTTPServer:
-    """A server on `port` that hands on what is at `files`, with the content security policy `security`."""
+    """A server on `port` that hands on what is at `files`, with the content security policy
+    `security`.
+    """
 
     class Handler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:

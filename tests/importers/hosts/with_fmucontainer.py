@@ -1,6 +1,8 @@
-"""fmucontainer of fmu-manipulation-toolbox: two landings in one FMU, the job's and the default drop, landed side by side by FMPy.
+"""fmucontainer of fmu-manipulation-toolbox: two landings in one FMU, the job's and the default
+drop, landed side by side by FMPy.
 
-The container's own outputs are `job.NAME` and `other.NAME`; the rows hold the job's and then the other's.
+The container's own outputs are `job.NAME` and `other.NAME`; the rows hold the job's and then the
+other's.
 """
 
 import json
@@ -29,18 +31,30 @@ def build(fmu, job, folder):
         "fmu": names,
         "path": {names[1]: names[0]},
         "input": [[f"job.{name}", names[0], name] for name in job["inputs"]],
-        "output": [[file, name, f"{who}.{name}"] for who, file in EMBEDDED.items() for name in job["outputs"]],
+        "output": [
+            [file, name, f"{who}.{name}"]
+            for who, file in EMBEDDED.items()
+            for name in job["outputs"]
+        ],
         "start": [[names[0], name, value] for name, value in job["parameters"].items()],
     }
     (folder / "two.json").write_text(json.dumps(description), encoding="utf-8")
-    command = [str(Path(sys.executable).parent / "fmucontainer"), "-fmu-directory", str(folder), "-container", "two.json"]
+    command = [
+        str(Path(sys.executable).parent / "fmucontainer"),
+        "-fmu-directory",
+        str(folder),
+        "-container",
+        "two.json",
+    ]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     return folder / "two.fmu"
 
 
 def land(fmu, job):
     time = np.arange(job["steps"] + 1) * job["step"]
-    table = np.zeros(len(time), dtype=[("time", float), *((f"job.{name}", float) for name in job["inputs"])])
+    table = np.zeros(
+        len(time), dtype=[("time", float), *((f"job.{name}", float) for name in job["inputs"])]
+    )
     table["time"] = time
     for name, value in job["inputs"].items():
         table[f"job.{name}"][job["inputs_after"] :] = value
@@ -48,7 +62,12 @@ def land(fmu, job):
     with TemporaryDirectory() as folder:
         container = build(fmu, job, Path(folder))
         result = fmpy.simulate_fmu(
-            str(container), stop_time=time[-1], step_size=job["step"], output_interval=job["step"], input=table, output=outputs
+            str(container),
+            stop_time=time[-1],
+            step_size=job["step"],
+            output_interval=job["step"],
+            input=table,
+            output=outputs,
         )
     return [[row[name] for name in ("time", *outputs)] for row in result[1:]]
 

@@ -1,4 +1,6 @@
-"""libcosim by libcosimpy: initial values of reals and strings, inputs by an override manipulator, outputs by an observer."""
+"""libcosim by libcosimpy: initial values of reals and strings, inputs by an override manipulator,
+outputs by an observer.
+"""
 
 from job import host
 from libcosimpy.CosimEnums import CosimVariableType
@@ -16,7 +18,11 @@ def land(fmu, job):
     landing = execution.add_local_slave(CosimLocalSlave(fmu, "landing"))
     variables = {v.name.decode(): v for v in execution.slave_variables(landing)}
     for name, value in job["parameters"].items():
-        set_start = execution.string_initial_value if isinstance(value, str) else execution.real_initial_value
+        set_start = (
+            execution.string_initial_value
+            if isinstance(value, str)
+            else execution.real_initial_value
+        )
         assert set_start(landing, variables[name].reference, value)
     inputs, observer = CosimManipulator.create_override(), CosimObserver.create_last_value()
     assert execution.add_manipulator(inputs)

@@ -1,7 +1,8 @@
-"""The boundary between two verdicts in a plane, from as few verdicts as can be: cells are halved where their corners differ, then the
-edges that the boundary crosses.
+"""The boundary between two verdicts in a plane, from as few verdicts as can be: cells are halved
+where their corners differ, then the edges that the boundary crosses.
 
-Points are whole numbers on one fine lattice, so that none is judged twice and the result does not depend on who judges.
+Points are whole numbers on one fine lattice, so that none is judged twice and the result does not
+depend on who judges.
 """
 
 from __future__ import annotations
@@ -19,8 +20,9 @@ Judge = Callable[[Sequence[Point]], Sequence[bool]]
 
 @dataclass(frozen=True)
 class Lattice:
-    """`cells` coarse cells along each axis, halved `levels` times where their corners differ; along x and y a coarse cell is `steps` units
-    of the fine lattice, a power of two at least 2^levels."""
+    """`cells` coarse cells along each axis, halved `levels` times where their corners differ; along
+    x and y a coarse cell is `steps` units of the fine lattice, a power of two at least 2^levels.
+    """
 
     cells: int
     levels: int
@@ -60,7 +62,10 @@ class Cell:
 
 
 class Tracer:
-    """Finds the boundary of what `judge` finds true (stable) on a lattice. `verdicts` has every point that was judged."""
+    """Finds the boundary of what `judge` finds true (stable) on a lattice.
+
+    `verdicts` has every point that was judged.
+    """
 
     def __init__(self, lattice: Lattice, judge: Judge) -> None:
         self.lattice = lattice
@@ -71,7 +76,10 @@ class Tracer:
         self._side = side
 
     def trace(self) -> list[list[Crossing]]:
-        """The boundary's lines, each in order; a closed one ends at its first crossing. None where all verdicts are the same."""
+        """The boundary's lines, each in order; a closed one ends at its first crossing.
+
+        None where all verdicts are the same.
+        """
         cells = self._refine()
         lines = contourpy.contour_generator(z=self._filled(cells)).lines(0.5)
         edges = [[self._edge(x, y) for x, y in np.asarray(line)] for line in lines]
@@ -83,16 +91,24 @@ class Tracer:
         self.verdicts.update(zip(new, self._judge(new)))
 
     def _refine(self) -> set[Cell]:
-        """Halve every cell on whose border verdicts differ, hanging points included, down to the finest level."""
+        """Halve every cell on whose border verdicts differ, hanging points included, down to the
+        finest level.
+        """
         n = self.lattice.cells
         cells = {Cell(0, i, j) for i, j in product(range(n), repeat=2)}
         self._ask(corner for cell in cells for corner in self._border(cell, 1))
         while True:
-            mixed = [cell for cell in cells if cell.level < self.lattice.levels and self._differ(cell)]
+            mixed = [
+                cell for cell in cells if cell.level < self.lattice.levels and self._differ(cell)
+            ]
             if not mixed:
                 return cells
             cells.difference_update(mixed)
-            halves = [Cell(c.level + 1, 2 * c.i + a, 2 * c.j + b) for c in mixed for a, b in product((0, 1), repeat=2)]
+            halves = [
+                Cell(c.level + 1, 2 * c.i + a, 2 * c.j + b)
+                for c in mixed
+                for a, b in product((0, 1), repeat=2)
+            ]
             cells.update(halves)
             self._ask(corner for cell in halves for corner in self._border(cell, 1))
 
@@ -101,26 +117,38 @@ class Tracer:
         step = self.lattice.steps[0] >> cell.level, self.lattice.steps[1] >> cell.level
         for k, m in product(range(parts + 1), repeat=2):
             if k in (0, parts) or m in (0, parts):
-                yield cell.i * step[0] + k * step[0] // parts, cell.j * step[1] + m * step[1] // parts
+                yield (
+                    cell.i * step[0] + k * step[0] // parts,
+                    cell.j * step[1] + m * step[1] // parts,
+                )
 
     def _differ(self, cell: Cell) -> bool:
         parts = 1 << (self.lattice.levels - cell.level)
         return len({self.verdicts[p] for p in self._border(cell, parts) if p in self.verdicts}) > 1
 
     def _filled(self, cells: set[Cell]) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
-        """1 stable, 0 lost at every corner of the finest cells; the whole of a larger cell has the verdict of its border."""
+        """1 stable, 0 lost at every corner of the finest cells; the whole of a larger cell has the
+        verdict of its border.
+        """
         z = np.zeros((self._side + 1, self._side + 1))
         for cell in sorted(cells):
             width = 1 << (self.lattice.levels - cell.level)
             i, j = cell.i * width, cell.j * width
-            z[j : j + width + 1, i : i + width + 1] = self.verdicts[i * self._spacing[0], j * self._spacing[1]]
+            z[j : j + width + 1, i : i + width + 1] = self.verdicts[
+                i * self._spacing[0], j * self._spacing[1]
+            ]
         for (x, y), stable in self.verdicts.items():
             z[y // self._spacing[1], x // self._spacing[0]] = stable
         return z
 
     def _edge(self, x: float, y: float) -> Crossing:
-        """The edge of a finest cell in whose middle a line of contourpy's crosses, its stable end first."""
-        a, b = ((int(way(x)) * self._spacing[0], int(way(y)) * self._spacing[1]) for way in (np.floor, np.ceil))
+        """The edge of a finest cell in whose middle a line of contourpy's crosses, its stable end
+        first.
+        """
+        a, b = (
+            (int(way(x)) * self._spacing[0], int(way(y)) * self._spacing[1])
+            for way in (np.floor, np.ceil)
+        )
         return Crossing(a, b) if self.verdicts[a] else Crossing(b, a)
 
     def _bisect(self, edges: set[Crossing]) -> dict[Crossing, Crossing]:
@@ -137,4 +165,8 @@ class Tracer:
             self._ask(middles.values())
             for edge, middle in middles.items():
                 now = narrowed[edge]
-                narrowed[edge] = Crossing(middle, now.lost) if self.verdicts[middle] else Crossing(now.stable, middle)
+                narrowed[edge] = (
+                    Crossing(middle, now.lost)
+                    if self.verdicts[middle]
+                    else Crossing(now.stable, middle)
+                )

@@ -14,7 +14,8 @@ from ..whole_landing import whole_landing
 from .study import EnvelopeStudy
 
 FAILED = "failed"
-# landings of each outcome are lost by each criterion; a landing that the integrator could not make is always lost
+# landings of each outcome are lost by each criterion; a landing that the integrator could not make
+# is always lost
 LOST = {
     "toppled": {"toppled", FAILED},
     "bottomed out": {"toppled", "bottomed out", FAILED},
@@ -27,8 +28,9 @@ LOST = {
 class Landed:
     """One landing of an envelope.
 
-    `name`, `time` [s], `leg` and `first_limit` as in `Outcome`, and `failed` where the integrator gave up, with its message in `error`;
-    `towards` the side, +x or -x, to which it toppled; `stability_min` and `stroke_left` [m].
+    `name`, `time` [s], `leg` and `first_limit` as in `Outcome`, and `failed` where the integrator
+    gave up, with its message in `error`; `towards` the side, +x or -x, to which it toppled;
+    `stability_min` and `stroke_left` [m].
     """
 
     name: str
@@ -42,11 +44,15 @@ class Landed:
 
     def lost(self, criterion: str) -> bool:
         """Whether the landing is lost by the criterion."""
-        return self.name in LOST[criterion] or (criterion == "limit" and self.first_limit is not None)
+        return self.name in LOST[criterion] or (
+            criterion == "limit" and self.first_limit is not None
+        )
 
     @property
     def condition(self) -> str:
-        """What is critical: which way it topples, which leg bottoms out first, which limit is passed first."""
+        """What is critical: which way it topples, which leg bottoms out first, which limit is
+        passed first.
+        """
         parts = [f"topples to {self.towards}" if self.name == "toppled" else self.name]
         if self.leg is not None:
             bottomed = f"leg {self.leg} bottoms out"
@@ -66,10 +72,13 @@ class Landed:
 def land(study: EnvelopeStudy, values: Mapping[str, float | str]) -> Landed:
     """One landing with `values` of the axes and the family.
 
-    Raises LandingError where the values make no landing (out of bounds, the flight starts below the ground).
+    Raises LandingError where the values make no landing (out of bounds, the flight starts below the
+    ground).
     """
     landing = Landing(study.parameters_with(values), rtol=study.rtol)
-    inputs = {name: float(value) for name, value in values.items() if name not in PARAMETER_QUANTITIES}
+    inputs = {
+        name: float(value) for name, value in values.items() if name not in PARAMETER_QUANTITIES
+    }
     landing.set_inputs({**study.inputs, **inputs})
     try:
         history = whole_landing(landing, study.until, study.every)
@@ -78,6 +87,16 @@ def land(study: EnvelopeStudy, values: Mapping[str, float | str]) -> Landed:
     found = outcome(history, study.limits, study.slide)
     towards = ""
     if found.name == "toppled":
-        towards = "+x" if history["body.pitch"][-1] > study.parameters_with(values).ground.slope else "-x"
+        towards = (
+            "+x" if history["body.pitch"][-1] > study.parameters_with(values).ground.slope else "-x"
+        )
     margins = found.margins
-    return Landed(found.name, found.time, found.leg, towards, found.first_limit, margins["stability_min"], margins["stroke_left"])
+    return Landed(
+        found.name,
+        found.time,
+        found.leg,
+        towards,
+        found.first_limit,
+        margins["stability_min"],
+        margins["stroke_left"],
+    )

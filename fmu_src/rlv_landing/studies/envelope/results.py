@@ -29,14 +29,21 @@ class Run:
 
 def runs(line: Sequence[Critical]) -> list[Run]:
     """The runs of a boundary line, in order."""
-    return [Run(condition, tuple(points)) for condition, points in groupby(line, lambda c: c.landed.condition)]
+    return [
+        Run(condition, tuple(points))
+        for condition, points in groupby(line, lambda c: c.landed.condition)
+    ]
 
 
 def verdict(family: Family, criterion: str) -> str:
     """In a word: a boundary, all stable, or all lost."""
     if family.lines:
         return "boundary found"
-    return "all lost" if all(landed.lost(criterion) for _, _, landed in family.landings) else "all stable"
+    return (
+        "all lost"
+        if all(landed.lost(criterion) for _, _, landed in family.landings)
+        else "all stable"
+    )
 
 
 def record(envelope: Envelope) -> dict[str, Any]:
@@ -61,31 +68,57 @@ def record(envelope: Envelope) -> dict[str, Any]:
 
 
 def _critical(c: Critical) -> dict[str, Any]:
-    return {"x": c.x, "y": c.y, "stable": c.stable, "lost": c.lost, "condition": c.landed.condition, **_landed(c.landed)}
+    return {
+        "x": c.x,
+        "y": c.y,
+        "stable": c.stable,
+        "lost": c.lost,
+        "condition": c.landed.condition,
+        **_landed(c.landed),
+    }
 
 
 def _landed(landed: Landed) -> dict[str, Any]:
-    return {k: None if isinstance(v, float) and not isfinite(v) else v for k, v in asdict(landed).items()}
+    return {
+        k: None if isinstance(v, float) and not isfinite(v) else v
+        for k, v in asdict(landed).items()
+    }
 
 
 def write_json(envelope: Envelope, path: Path) -> None:
     """Write `record`."""
-    path.write_text(json.dumps(record(envelope), indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    path.write_text(
+        json.dumps(record(envelope), indent=1, allow_nan=False) + "\n", encoding="utf-8"
+    )
 
 
 def write_csv(envelope: Envelope, path: Path) -> None:
-    """Write the boundary's points, a line each: the family's values, the number of the line, the point, the last landing that holds and the
-    first that is lost beside it, and what became of the latter. SI units."""
+    """Write the boundary's points, a line each: the family's values, the number of the line, the
+    point, the last landing that holds and the first that is lost beside it, and what became of the
+    latter. SI units.
+    """
     study = envelope.study
     family_names = list(envelope.families[0].values)
     axes = (study.x.name, study.y.name)
     with path.open("w", newline="", encoding="utf-8") as f:
         writer = csv.writer(f)
-        writer.writerow([*family_names, "line", *axes, *(f"{a} {end}" for end in ("stable", "lost") for a in axes), *COLUMNS])
+        writer.writerow(
+            [
+                *family_names,
+                "line",
+                *axes,
+                *(f"{a} {end}" for end in ("stable", "lost") for a in axes),
+                *COLUMNS,
+            ]
+        )
         for family in envelope.families:
             for number, line in enumerate(family.lines, 1):
                 for c in line:
                     limit = c.landed.first_limit
-                    passed = (limit.name, limit.leg, limit.time) if limit is not None else ("", "", "")
+                    passed = (
+                        (limit.name, limit.leg, limit.time) if limit is not None else ("", "", "")
+                    )
                     told = (c.landed.condition, c.landed.name, c.landed.time, c.landed.leg, *passed)
-                    writer.writerow([*family.values.values(), number, c.x, c.y, *c.stable, *c.lost, *told])
+                    writer.writerow(
+                        [*family.values.values(), number, c.x, c.y, *c.stable, *c.lost, *told]
+                    )

@@ -1,4 +1,6 @@
-"""The landing-stability boundary in two quantities, and the critical condition at every point of it."""
+"""The landing-stability boundary in two quantities, and the critical condition at every point of
+it.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +16,9 @@ from .study import EnvelopeStudy
 
 @dataclass(frozen=True)
 class Critical:
-    """A point of the boundary: `x`, `y` [SI] halfway between the last landing that holds and the first that is lost; of the two, what
-    became of the latter."""
+    """A point of the boundary: `x`, `y` [SI] halfway between the last landing that holds and the
+    first that is lost; of the two, what became of the latter.
+    """
 
     x: float
     y: float
@@ -39,7 +42,9 @@ class Family:
 
 @dataclass(frozen=True)
 class Envelope:
-    """The families of a study; `landings` that it took, `uniform` that a uniform grid of the same resolution takes."""
+    """The families of a study; `landings` that it took, `uniform` that a uniform grid of the same
+    resolution takes.
+    """
 
     study: EnvelopeStudy
     families: tuple[Family, ...]
@@ -51,7 +56,9 @@ class Envelope:
 
     @property
     def uniform(self) -> int:
-        """Landings of a uniform grid whose spacing is the resolution reached, all families together."""
+        """Landings of a uniform grid whose spacing is the resolution reached, all families
+        together.
+        """
         return self.study.lattice.uniform * len(self.families)
 
 
@@ -63,20 +70,30 @@ def envelope(
 ) -> Envelope:
     """The boundary of every family. The result does not depend on `workers`, the number of threads.
 
-    `progress` is told, after each landing, the family's number and the landings so far. Interrupted, it stops after the landings under way;
-    those made are in the `store`, and a study whose landings it has does not make them again. Raises LandingError where values within
-    the axes' ranges make no landing.
+    `progress` is told, after each landing, the family's number and the landings so far.
+    Interrupted, it stops after the landings under way; those made are in the `store`, and a study
+    whose landings it has does not make them again. Raises LandingError where values within the
+    axes' ranges make no landing.
     """
     kept = store if store is not None else Store(study)
     with ThreadPoolExecutor(workers) as pool:
         try:
-            return Envelope(study, tuple(_family(study, k, kept, pool, progress) for k in range(len(study.families))))
+            return Envelope(
+                study,
+                tuple(_family(study, k, kept, pool, progress) for k in range(len(study.families))),
+            )
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
 
 
-def _family(study: EnvelopeStudy, k: int, store: Store, pool: ThreadPoolExecutor, progress: Callable[[int, int], object] | None) -> Family:
+def _family(
+    study: EnvelopeStudy,
+    k: int,
+    store: Store,
+    pool: ThreadPoolExecutor,
+    progress: Callable[[int, int], object] | None,
+) -> Family:
     values = study.families[k]
 
     def one(point: Point) -> Landed:
@@ -97,5 +114,7 @@ def _family(study: EnvelopeStudy, k: int, store: Store, pool: ThreadPoolExecutor
 
     tracer = Tracer(study.lattice, judge)
     lines = tracer.trace()
-    landings = tuple((*study.place(*point), store.found[k, point]) for point in sorted(tracer.verdicts))
+    landings = tuple(
+        (*study.place(*point), store.found[k, point]) for point in sorted(tracer.verdicts)
+    )
     return Family(values, tuple(tuple(critical(c) for c in line) for line in lines), landings)

@@ -1,4 +1,6 @@
-"""The landings of an envelope, kept so that none is made twice and an interrupted study can be taken up again."""
+"""The landings of an envelope, kept so that none is made twice and an interrupted study can be
+taken up again.
+"""
 
 from __future__ import annotations
 
@@ -16,12 +18,16 @@ from .study import EnvelopeStudy
 
 
 class Store:
-    """Every landing made so far, by family and place; in a file as well, a line each, so that a study can be taken up again.
+    """Every landing made so far, by family and place; in a file as well, a line each, so that a
+    study can be taken up again.
 
-    Raises LandingError for a file of another study or version, or one that exists and is not to be resumed.
+    Raises LandingError for a file of another study or version, or one that exists and is not to be
+    resumed.
     """
 
-    def __init__(self, study: EnvelopeStudy, path: Path | None = None, resume: bool = False) -> None:
+    def __init__(
+        self, study: EnvelopeStudy, path: Path | None = None, resume: bool = False
+    ) -> None:
         told = json.dumps({"version": __version__, **study.record()}, sort_keys=True)
         header = json.dumps({"study": hashlib.sha256(told.encode()).hexdigest()})
         self.found: dict[tuple[int, Point], Landed] = {}
@@ -37,20 +43,29 @@ class Store:
             self._file.write(header + "\n")
         elif lines[0] != header + "\n":
             self._file.close()
-            raise LandingError(f"{path} holds landings of another study or version; name another folder")
+            raise LandingError(
+                f"{path} holds landings of another study or version; name another folder"
+            )
         elif not lines[-1].endswith("\n"):
             # it was being written when the last run was killed
             self._file.truncate(sum(map(len, lines[:-1])))
             del lines[-1]
         for line in lines[1:]:
             record = json.loads(line)
-            self.found[record["family"], (record["i"], record["j"])] = Landed.from_record(record["landed"])
+            self.found[record["family"], (record["i"], record["j"])] = Landed.from_record(
+                record["landed"]
+            )
 
     def add(self, family: int, place: Point, landed: Landed) -> None:
         """Keep a landing."""
         self.found[family, place] = landed
         if self._file is not None:
-            self._file.write(json.dumps({"family": family, "i": place[0], "j": place[1], "landed": asdict(landed)}) + "\n")
+            self._file.write(
+                json.dumps(
+                    {"family": family, "i": place[0], "j": place[1], "landed": asdict(landed)}
+                )
+                + "\n"
+            )
             self._file.flush()
 
     def close(self) -> None:

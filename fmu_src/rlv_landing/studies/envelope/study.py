@@ -1,4 +1,7 @@
-"""What an envelope is asked for: two axes, families, what counts as lost. Read from TOML, checked before anything lands."""
+"""What an envelope is asked for: two axes, families, what counts as lost.
+
+Read from TOML, checked before anything lands.
+"""
 
 from __future__ import annotations
 
@@ -31,10 +34,26 @@ TABLES = ("envelope", "set", "limits", "x", "y", "families")
 NUMBERS = {
     q.name: q
     for q in (
-        Quantity("s", "time at which a landing that is neither at rest nor toppled is given up", 0.1, 3600.0, name="until", default=6.0),
+        Quantity(
+            "s",
+            "time at which a landing that is neither at rest nor toppled is given up",
+            0.1,
+            3600.0,
+            name="until",
+            default=6.0,
+        ),
         Quantity("s", "time between samples", 1e-5, 0.1, name="every", default=1e-3),
-        Quantity("", "relative tolerance of the integrator", 1e-12, 1e-2, name="rtol", default=1e-5),
-        Quantity("m", "what a footpad may move and has not slid", 0.0, 1e3, name="slide", default=DEFAULT_SLIDE),
+        Quantity(
+            "", "relative tolerance of the integrator", 1e-12, 1e-2, name="rtol", default=1e-5
+        ),
+        Quantity(
+            "m",
+            "what a footpad may move and has not slid",
+            0.0,
+            1e3,
+            name="slide",
+            default=DEFAULT_SLIDE,
+        ),
     )
 }
 KEYS = ("preset", "parameters", "mode", "criterion", "cells", "levels", *NUMBERS)
@@ -45,8 +64,8 @@ AXIS_KEYS = ("name", "low", "high", "tolerance")
 class Axis:
     """A quantity from `low` to `high`, the boundary found to `tolerance`, all in SI.
 
-    Raises LandingError: an unknown quantity or one without numbers, bounds that are not allowed or not in order, a tolerance that is not
-    above 0, above the range or below 2^-20 of it.
+    Raises LandingError: an unknown quantity or one without numbers, bounds that are not allowed or
+    not in order, a tolerance that is not above 0, above the range or below 2^-20 of it.
     """
 
     name: str
@@ -57,11 +76,15 @@ class Axis:
     def __post_init__(self) -> None:
         q = variable(self.name, "quantity for an axis")
         if q.choices:
-            raise LandingError(f"{q.name} is one of {', '.join(q.choices)} and cannot be an axis; make it a family")
+            raise LandingError(
+                f"{q.name} is one of {', '.join(q.choices)} and cannot be an axis; make it a family"
+            )
         for value in (self.low, self.high):
             check_value(q, value)
         if not self.low < self.high:
-            raise LandingError(f"{q.name}: low = {self.low:g} must be below high = {self.high:g} {q.unit}".rstrip())
+            raise LandingError(
+                f"{q.name}: low = {self.low:g} must be below high = {self.high:g} {q.unit}".rstrip()
+            )
         least = (self.high - self.low) / 2**FINEST
         if not least <= self.tolerance <= self.high - self.low:
             raise LandingError(
@@ -78,10 +101,13 @@ class Axis:
 
 @dataclass(frozen=True)
 class EnvelopeStudy:
-    """All that decides an envelope; values in SI. The flight before the first contact is left out: the axes are states at first contact.
+    """All that decides an envelope; values in SI.
 
-    `families` are values by name, one boundary each. Raises LandingError: an unknown criterion or limit, `limit` without limits, cells or
-    levels out of bounds, a quantity that is both varied and set, a family that makes no vehicle.
+    The flight before the first contact is left out: the axes are states at first contact.
+
+    `families` are values by name, one boundary each. Raises LandingError: an unknown criterion or
+    limit, `limit` without limits, cells or levels out of bounds, a quantity that is both varied and
+    set, a family that makes no vehicle.
     """
 
     parameters: Parameters
@@ -102,7 +128,9 @@ class EnvelopeStudy:
         if self.criterion not in CRITERIA:
             raise unknown("criterion", self.criterion, CRITERIA)
         if self.criterion == "limit" and not self.limits:
-            raise LandingError('criterion = limit needs limits, for example [limits] main_strut.force = "20 kN"')
+            raise LandingError(
+                'criterion = limit needs limits, for example [limits] main_strut.force = "20 kN"'
+            )
         for name, value, lo, hi in (("cells", self.cells, 2, 256), ("levels", self.levels, 0, 6)):
             if not lo <= value <= hi:
                 raise LandingError(f"{name} = {value} is outside [{lo}, {hi}]")
@@ -114,7 +142,9 @@ class EnvelopeStudy:
             self.parameters_with(family)
 
     def parameters_with(self, values: Mapping[str, Any]) -> Parameters:
-        """The parameters with those of `values` that are parameters; the landing starts at its first contact."""
+        """The parameters with those of `values` that are parameters; the landing starts at its
+        first contact.
+        """
         own = {name: value for name, value in values.items() if name in PARAMETER_QUANTITIES}
         base = self.parameters.for_mode(str(own.get("drop.mode", self.parameters.drop.mode)))
         return base.with_values({"drop.contact_time": 0.0, **own})
@@ -132,7 +162,9 @@ class EnvelopeStudy:
     def place(self, x: float, y: float) -> tuple[float, float]:
         """The values at a place on the fine lattice."""
         width, height = self.lattice.size
-        return self.x.low + (self.x.high - self.x.low) * x / width, self.y.low + (self.y.high - self.y.low) * y / height
+        return self.x.low + (self.x.high - self.x.low) * x / width, self.y.low + (
+            self.y.high - self.y.low
+        ) * y / height
 
     def record(self) -> dict[str, Any]:
         """All that decides the results, for a file and for comparing studies."""
@@ -144,9 +176,12 @@ class EnvelopeStudy:
 
 
 def study_from(document: Mapping[str, Any], folder: Path = Path()) -> EnvelopeStudy:
-    """A study from its TOML document; `docs/envelope.md` has every key. A parameter file that it names lies in `folder`.
+    """A study from its TOML document; `docs/envelope.md` has every key.
 
-    Raises LandingError: unknown keys or names, wrong units, values out of bounds, no axes, an empty family.
+    A parameter file that it names lies in `folder`.
+
+    Raises LandingError: unknown keys or names, wrong units, values out of bounds, no axes, an empty
+        family.
     """
     toml_keys.only(document, TABLES, "table")
     told = toml_keys.table(document, "envelope")
@@ -160,7 +195,9 @@ def study_from(document: Mapping[str, Any], folder: Path = Path()) -> EnvelopeSt
     file = folder / toml_keys.text(told, "parameters", "") if "parameters" in told else None
     preset = toml_keys.text(told, "preset", "") if "preset" in told else None
     mode = toml_keys.text(told, "mode", "") if "mode" in told else None
-    parameters = choose_parameters(preset, file, mode, {n: v for n, v in fixed.items() if n in PARAMETER_QUANTITIES})
+    parameters = choose_parameters(
+        preset, file, mode, {n: v for n, v in fixed.items() if n in PARAMETER_QUANTITIES}
+    )
     limits = toml_keys.values(toml_keys.table(document, "limits"), LIMITS, "limit")
     numbers = {name: toml_keys.number(told, q) for name, q in NUMBERS.items()}
     return EnvelopeStudy(
@@ -179,7 +216,9 @@ def read_families(told: Mapping[str, Any]) -> tuple[dict[str, float | str], ...]
     columns: list[Sequence[float | str]] = []
     for name, values in told.items():
         if not isinstance(values, (list, tuple)) or not values:
-            raise LandingError(f'families: {name} = {values!r} must be a list of one value or more, for example ["0 deg", "5 deg"]')
+            raise LandingError(
+                f'families: {name} = {values!r} must be a list of one value or more, for example ["0 deg", "5 deg"]'
+            )
         column = [parse_value(VARIABLES[name], v) for v in values]
         if len(set(column)) < len(column):
             raise LandingError(f"families: {name} = {values} names a value twice")
@@ -198,10 +237,19 @@ def _axis(document: Mapping[str, Any], key: str) -> Axis:
     q = variable(toml_keys.text(told, "name", ""), "quantity for an axis")
     low, high = (_number(q, told[bound]) for bound in ("low", "high"))
     default = (high - low) / 128.0
-    return Axis(q.name, low, high, _number(replace(q, lo=0.0, hi=float("inf")), told["tolerance"]) if "tolerance" in told else default)
+    return Axis(
+        q.name,
+        low,
+        high,
+        _number(replace(q, lo=0.0, hi=float("inf")), told["tolerance"])
+        if "tolerance" in told
+        else default,
+    )
 
 
 def _number(q: Quantity, value: Any) -> float:
     if q.choices:
-        raise LandingError(f"{q.name} is one of {', '.join(q.choices)} and cannot be an axis; make it a family")
+        raise LandingError(
+            f"{q.name} is one of {', '.join(q.choices)} and cannot be an axis; make it a family"
+        )
     return float(parse_value(q, value))

@@ -1,6 +1,8 @@
-"""The tip-over of a rigid block on two feet whose contacts stick and do not rebound: the closed form beside which envelopes are set.
+"""The tip-over of a rigid block on two feet whose contacts stick and do not rebound: the closed
+form beside which envelopes are set.
 
-Plane motion: x horizontal, y up, pitch and rates clockwise positive, as everywhere. [derived; after Housner's rocking block]
+Plane motion: x horizontal, y up, pitch and rates clockwise positive, as everywhere. [derived; after
+    Housner's rocking block]
 """
 
 from __future__ import annotations
@@ -12,7 +14,8 @@ from ...parameters import Parameters, azimuth
 from ...quantities import MODES
 from ...touchdown import footpad_at_rest
 
-# The model in that limit: struts locked by their orifices and damped by their seals, feet that stick, an overdamped ground.
+# The model in that limit: struts locked by their orifices and damped by their seals, feet that
+# stick, an overdamped ground.
 LOCKED: dict[str, float | str] = {
     "vehicle.transverse_load_at": "footpad",
     "main_strut.area_upper": 1e-3, "main_strut.area_lower": 1e-3, "main_strut.volume_upper": 2e-6, "main_strut.volume_lower": 2e-6,
@@ -29,8 +32,10 @@ AT_REST = 1e-6
 
 @dataclass(frozen=True)
 class RigidBlock:
-    """A block of `mass` [kg] and `inertia` [kg m2] about its CG, which is `height` [m] above the plane of its feet; these are at
-    +-`half_track` [m], and in the `middle` as well where there is a foot below the CG; `gravity` [m/s2]."""
+    """A block of `mass` [kg] and `inertia` [kg m2] about its CG, which is `height` [m] above the
+    plane of its feet; these are at +-`half_track` [m], and in the `middle` as well where there is a
+    foot below the CG; `gravity` [m/s2].
+    """
 
     mass: float
     inertia: float
@@ -41,14 +46,27 @@ class RigidBlock:
 
     @classmethod
     def of(cls, parameters: Parameters) -> RigidBlock:
-        """The vehicle with its legs rigid at full length, footpads included; its outermost feet are the block's."""
+        """The vehicle with its legs rigid at full length, footpads included; its outermost feet are
+        the block's.
+        """
         vehicle, groups = parameters.vehicle, MODES[parameters.drop.mode]
         radius, foot = footpad_at_rest(parameters)
         along = [radius * azimuth(g.azimuth)[1] for g in groups for _ in g.legs]
         mass = vehicle.mass + len(along) * vehicle.footpad_mass
         cg = len(along) * vehicle.footpad_mass * foot / mass
-        inertia = vehicle.inertia + vehicle.mass * cg**2 + vehicle.footpad_mass * sum(x**2 + (foot - cg) ** 2 for x in along)
-        return cls(mass, inertia, max(along), cg - foot, parameters.ground.gravity, min(map(abs, along)) == 0.0)
+        inertia = (
+            vehicle.inertia
+            + vehicle.mass * cg**2
+            + vehicle.footpad_mass * sum(x**2 + (foot - cg) ** 2 for x in along)
+        )
+        return cls(
+            mass,
+            inertia,
+            max(along),
+            cg - foot,
+            parameters.ground.gravity,
+            min(map(abs, along)) == 0.0,
+        )
 
     @property
     def radius(self) -> float:
@@ -62,68 +80,94 @@ class RigidBlock:
 
     @property
     def tipping_slope(self) -> float:
-        """The slope [rad] on which a block at rest topples: its tangent is half track over height of the CG."""
+        """The slope [rad] on which a block at rest topples: its tangent is half track over height
+        of the CG.
+        """
         return atan2(self.half_track, self.height)
 
     @property
     def passed_on(self) -> float:
-        """Part of the pitch rate that is left when the block swings from one foot to the other; 0 where it stops on both.
+        """Part of the pitch rate that is left when the block swings from one foot to the other; 0
+        where it stops on both.
 
-        I + M (h2 - b2) over the pivot's inertia. With a foot in the middle it rolls over that one, which takes nothing, and keeps
-        I + M h2 of it.
+        I + M (h2 - b2) over the pivot's inertia. With a foot in the middle it rolls over that one,
+        which takes nothing, and keeps I + M h2 of it.
         """
         arms = self.height**2 - (0.0 if self.middle else self.half_track**2)
         return max(0.0, self.inertia + self.mass * arms) / self.pivot_inertia
 
     def lean(self, pitch: float) -> float:
-        """Angle [rad] from the vertical of the line from the foot at +x to the CG; above 0 the CG is beyond that foot."""
+        """Angle [rad] from the vertical of the line from the foot at +x to the CG; above 0 the CG
+        is beyond that foot.
+        """
         return pitch - self.tipping_slope
 
     def rate_after_contact(self, pitch: float, vx: float, vy: float, rate: float = 0.0) -> float:
-        """Pitch rate [rad/s] once the foot at +x has struck and sticks: angular momentum about it is conserved."""
+        """Pitch rate [rad/s] once the foot at +x has struck and sticks: angular momentum about it
+        is conserved.
+        """
         lean = self.lean(pitch)
         moment = self.mass * self.radius * (cos(lean) * vx - sin(lean) * vy)
         return (self.inertia * rate + moment) / self.pivot_inertia
 
     def tipping_rate(self, pitch: float) -> float:
-        """Pitch rate [rad/s] about the foot at +x above which the block goes over it: I w2/2 = m g R (1 - cos lean).
+        """Pitch rate [rad/s] about the foot at +x above which the block goes over it: I w2/2 = m g
+        R (1 - cos lean).
 
-        Negative where the CG is beyond the foot already: one that swings back faster than that does not go over.
+        Negative where the CG is beyond the foot already: one that swings back faster than that does
+            not go over.
         """
         lean = self.lean(pitch)
-        rate = sqrt(2.0 * self.mass * self.gravity * self.radius * (1.0 - cos(lean)) / self.pivot_inertia)
+        rate = sqrt(
+            2.0 * self.mass * self.gravity * self.radius * (1.0 - cos(lean)) / self.pivot_inertia
+        )
         return rate if lean < 0.0 else -rate
 
     def critical_speed(self, pitch: float, vy: float, rate: float = 0.0) -> float:
-        """Horizontal speed [m/s] along +x beyond which the block, the feet at +x first or all together, topples over them.
+        """Horizontal speed [m/s] along +x beyond which the block, the feet at +x first or all
+        together, topples over them.
 
-        `vy` [m/s] is the CG's velocity upward at contact. Whether a slower one swings back and topples the other way: `topples`.
+        `vy` [m/s] is the CG's velocity upward at contact. Whether a slower one swings back and
+        topples the other way: `topples`.
         """
         lean = self.lean(pitch)
         needed = self.pivot_inertia * self.tipping_rate(pitch) - self.inertia * rate
         return (needed / (self.mass * self.radius) + sin(lean) * vy) / cos(lean)
 
     def topples(self, pitch: float, slope: float, vx: float, vy: float, rate: float = 0.0) -> str:
-        """`+x` or `-x`, the side over which the block goes, or an empty text where it comes to rest on the slope.
+        """`+x` or `-x`, the side over which the block goes, or an empty text where it comes to rest
+        on the slope.
 
-        It turns about the foot that struck until it goes over it or the other foot strikes; then about that one, and so on. At each strike
-        the angular momentum about the striking foot is conserved and the other foot is free to lift. Where both strike together it turns
-        about the one from which the other lifts, and rests where there is none.
+        It turns about the foot that struck until it goes over it or the other foot strikes; then
+        about that one, and so on. At each strike the angular momentum about the striking foot is
+        conserved and the other foot is free to lift. Where both strike together it turns about the
+        one from which the other lifts, and rests where there is none.
         """
-        struck = {side: self.rate_after_contact(side * pitch, side * vx, vy, side * rate) for side in (1, -1)}
+        struck = {
+            side: self.rate_after_contact(side * pitch, side * vx, vy, side * rate)
+            for side in (1, -1)
+        }
         if pitch == slope:
             side = 1 if struck[1] > 0.0 else -1
             w = max(0.0, struck[side])
         else:
             side = 1 if pitch > slope else -1
             w = struck[side]
-        # as seen from the side of the pivot, w > 0 is over it, and the other foot strikes at the pitch side * slope
+        # as seen from the side of the pivot, w > 0 is over it, and the other foot strikes at the
+        # pitch side * slope
         seen = side * pitch
         while abs(w) > AT_REST:
             if w > self.tipping_rate(seen):
                 return "+x" if side == 1 else "-x"
             flush = side * slope
-            gained = 2.0 * self.mass * self.gravity * self.radius * (cos(self.lean(seen)) - cos(self.lean(flush))) / self.pivot_inertia
+            gained = (
+                2.0
+                * self.mass
+                * self.gravity
+                * self.radius
+                * (cos(self.lean(seen)) - cos(self.lean(flush)))
+                / self.pivot_inertia
+            )
             w = self.passed_on * sqrt(max(0.0, w * w + gained))
             side = -side
             seen = side * slope

@@ -1,4 +1,6 @@
-"""A study's landings on a Dask cluster: small tasks of some landings each; a worker that dies costs the tasks that it held, made anew."""
+"""A study's landings on a Dask cluster: small tasks of some landings each; a worker that dies costs
+the tasks that it held, made anew.
+"""
 
 from __future__ import annotations
 
@@ -46,10 +48,15 @@ class Cluster:
             raise self._gave_up(e) from None
 
     def _gave_up(self, error: BaseException) -> LostError:
-        return LostError(f"the cluster at {self._address} gave up: {type(error).__name__}: {' '.join(str(error).split())}")
+        return LostError(
+            f"the cluster at {self._address} gave up: {type(error).__name__}: {' '.join(str(error).split())}"
+        )
 
     def result(self, task: Any) -> Rows:
-        """Wait for a task's rows. Raises LostError where the scheduler is gone, or every worker for longer than the timeout."""
+        """Wait for a task's rows.
+
+        Raises LostError where the scheduler is gone, or every worker for longer than the timeout.
+        """
         distributed = dask()
         alone_since: float | None = None
         while True:
@@ -64,7 +71,9 @@ class Cluster:
                 elif alone_since is None:
                     alone_since = time.monotonic()
                 elif time.monotonic() - alone_since > self._timeout:
-                    raise LostError(f"the scheduler at {self._address} has had no worker for {self._timeout:g} s") from None
+                    raise LostError(
+                        f"the scheduler at {self._address} has had no worker for {self._timeout:g} s"
+                    ) from None
             except KeyboardInterrupt:
                 raise
             except BaseException as e:
@@ -75,7 +84,9 @@ class Cluster:
         return 4 * self._threads() + 8
 
     def _threads(self) -> int:
-        """How many threads the workers have, as of a second ago at most: asking the scheduler costs as much as a task."""
+        """How many threads the workers have, as of a second ago at most: asking the scheduler costs
+        as much as a task.
+        """
         if time.monotonic() - self._looked >= LOOK:
             workers: dict[str, dict[str, Any]] = self._client.scheduler_info().get("workers", {})
             self._found = sum(int(worker["nthreads"]) for worker in workers.values())
@@ -97,8 +108,8 @@ class Cluster:
 def cluster(plan: Plan, address: str, timeout: float) -> Iterator[Engine]:
     """The engine of the cluster whose scheduler is at `address`.
 
-    Raises LandingError: no scheduler answers, or no worker is there, within `timeout` [s]; a worker lacks rlv-landing or has another
-    version of it.
+    Raises LandingError: no scheduler answers, or no worker is there, within `timeout` [s]; a worker
+    lacks rlv-landing or has another version of it.
     """
     distributed = dask()
     # what goes wrong is told by our own errors, in a line
@@ -115,7 +126,9 @@ def cluster(plan: Plan, address: str, timeout: float) -> Iterator[Engine]:
         try:
             client.wait_for_workers(1, timeout=timeout)
         except (TimeoutError, distributed.TimeoutError):
-            raise LandingError(f"the scheduler at {address} has no worker after {timeout:g} s; start some: dask worker {address}") from None
+            raise LandingError(
+                f"the scheduler at {address} has no worker after {timeout:g} s; start some: dask worker {address}"
+            ) from None
         _check_versions(client)
         yield Cluster(plan, client, address, timeout)
     finally:
@@ -126,7 +139,11 @@ def _check_versions(client: Any) -> None:
     try:
         found = client.run(worker_version)
     except Exception as e:
-        raise LandingError(f"a worker cannot run rlv-landing ({type(e).__name__}: {e}); install it in the workers' Python") from None
+        raise LandingError(
+            f"a worker cannot run rlv-landing ({type(e).__name__}: {e}); install it in the workers' Python"
+        ) from None
     for worker, version in found.items():
         if version != __version__:
-            raise LandingError(f"worker {worker} has rlv-landing {version}, here is {__version__}; rows would differ: install the same")
+            raise LandingError(
+                f"worker {worker} has rlv-landing {version}, here is {__version__}; rows would differ: install the same"
+            )

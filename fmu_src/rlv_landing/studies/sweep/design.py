@@ -1,4 +1,6 @@
-"""A study's points: one row of values a landing, drawn by grid, Latin hypercube or Sobol sequence, the same for the same seed."""
+"""A study's points: one row of values a landing, drawn by grid, Latin hypercube or Sobol sequence,
+the same for the same seed.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,10 @@ LARGEST = 100_000_000
 
 
 class Design:
-    """Columns of values by quantity name, SI, one row a sample. A column holds floats, or objects where it has texts."""
+    """Columns of values by quantity name, SI, one row a sample.
+
+    A column holds floats, or objects where it has texts.
+    """
 
     def __init__(self, columns: Mapping[str, NDArray[Any]], count: int) -> None:
         self.columns = dict(columns)
@@ -30,26 +35,41 @@ class Design:
         """Values by name of the samples from `first` up to, not including, `last`."""
         names = list(self.columns)
         parts = [self.columns[name][first:last].tolist() for name in names]
-        return [dict(zip(names, values)) for values in zip(*parts)] if names else [{} for _ in range(first, last)]
+        return (
+            [dict(zip(names, values)) for values in zip(*parts)]
+            if names
+            else [{} for _ in range(first, last)]
+        )
 
     def digest(self) -> str:
         """A fingerprint of every value."""
         told = hashlib.sha256(str(self.count).encode())
         for name, values in self.columns.items():
             told.update(name.encode())
-            told.update(repr(values.tolist()).encode() if values.dtype == object else np.ascontiguousarray(values).tobytes())
+            told.update(
+                repr(values.tolist()).encode()
+                if values.dtype == object
+                else np.ascontiguousarray(values).tobytes()
+            )
         return told.hexdigest()
 
 
 def grid(factors: Sequence[Factor]) -> Design:
-    """Every level with every other; the last factor turns fastest. Raises LandingError for a factor without levels, or too many points."""
+    """Every level with every other; the last factor turns fastest.
+
+    Raises LandingError for a factor without levels, or too many points.
+    """
     levels = [f.levels() for f in factors]
     count = 1
     for values in levels:
         count *= len(values)
     if count > LARGEST:
-        raise LandingError(f'this grid has {count} points, more than {LARGEST}; take fewer levels, or method = "sobol" or "lhs"')
-    places = np.unravel_index(np.arange(count), [len(values) for values in levels]) if levels else ()
+        raise LandingError(
+            f'this grid has {count} points, more than {LARGEST}; take fewer levels, or method = "sobol" or "lhs"'
+        )
+    places = (
+        np.unravel_index(np.arange(count), [len(values) for values in levels]) if levels else ()
+    )
     return Design({f.name: values[i] for f, values, i in zip(factors, levels, places)}, count)
 
 
@@ -65,7 +85,11 @@ def unit_points(method: str, count: int, dimensions: int, seed: int) -> Array:
 
     if not dimensions:
         return np.empty((count, 0))
-    engine = qmc.LatinHypercube(dimensions, seed=seed) if method == "lhs" else qmc.Sobol(dimensions, seed=seed)
+    engine = (
+        qmc.LatinHypercube(dimensions, seed=seed)
+        if method == "lhs"
+        else qmc.Sobol(dimensions, seed=seed)
+    )
     with warnings.catch_warnings():
         # scipy warns where the count is no power of 2; the plan says so in our words
         warnings.simplefilter("ignore", UserWarning)

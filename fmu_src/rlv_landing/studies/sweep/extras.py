@@ -10,12 +10,17 @@ INSTALL = 'install it with pip install "rlv-landing[studies]"'
 
 
 def arrow() -> tuple[Any, Any]:
-    """pyarrow and pyarrow.parquet. Raises LandingError, with the extra to install, where it is missing."""
+    """pyarrow and pyarrow.parquet.
+
+    Raises LandingError, with the extra to install, where it is missing.
+    """
     try:
         import pyarrow
         from pyarrow import parquet
     except ImportError as e:
-        raise LandingError(f"studies keep their rows as Parquet, which needs pyarrow ({e}); {INSTALL}") from None
+        raise LandingError(
+            f"studies keep their rows as Parquet, which needs pyarrow ({e}); {INSTALL}"
+        ) from None
     return pyarrow, parquet
 
 

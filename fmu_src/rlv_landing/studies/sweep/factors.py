@@ -1,4 +1,6 @@
-"""A study's factors: what is varied, in which unit, and how a place between 0 and 1 becomes a value."""
+"""A study's factors: what is varied, in which unit, and how a place between 0 and 1 becomes a
+value.
+"""
 
 from __future__ import annotations
 
@@ -31,8 +33,8 @@ ALL_KEYS = ("name", "unit", "distribution", "low", "high", "count", "mean", "dev
 class Factor:
     """One factor, all numbers in SI. `unit` is the one that the study gave, for printing.
 
-    uniform: evenly between `low` and `high`, in a grid `count` levels, both ends included. normal: `mean` and `deviation`, cut off at `low`
-    and `high`. choice: each of `values` as often.
+    uniform: evenly between `low` and `high`, in a grid `count` levels, both ends included. normal:
+    `mean` and `deviation`, cut off at `low` and `high`. choice: each of `values` as often.
     """
 
     quantity: Quantity
@@ -59,7 +61,10 @@ class Factor:
         if self.distribution == "normal":
             from scipy.stats import truncnorm
 
-            low, high = (self.low - self.mean) / self.deviation, (self.high - self.mean) / self.deviation
+            low, high = (
+                (self.low - self.mean) / self.deviation,
+                (self.high - self.mean) / self.deviation,
+            )
             drawn: Array = truncnorm.ppf(places, low, high, self.mean, self.deviation)
             return np.clip(drawn, self.low, self.high)
         return np.clip(self.low + (self.high - self.low) * places, self.low, self.high)
@@ -70,12 +75,18 @@ class Factor:
             return column(self.values)
         if self.distribution == "uniform" and self.count:
             return np.linspace(self.low, self.high, self.count)
-        raise LandingError(f"factor {self.name}: a grid needs values = [...], or low, high and count")
+        raise LandingError(
+            f"factor {self.name}: a grid needs values = [...], or low, high and count"
+        )
 
     def record(self) -> dict[str, Any]:
         """All that decides the values, in SI, for the study's fingerprint and for JSON."""
         keys = DISTRIBUTIONS[self.distribution]
-        return {"name": self.name, "distribution": self.distribution, **{k: getattr(self, k) for k in keys}}
+        return {
+            "name": self.name,
+            "distribution": self.distribution,
+            **{k: getattr(self, k) for k in keys},
+        }
 
 
 def column(values: Any) -> NDArray[Any]:
@@ -85,7 +96,10 @@ def column(values: Any) -> NDArray[Any]:
 
 
 def variable(name: Any, what: str) -> Quantity:
-    """The quantity of this name. Raises LandingError, with the nearest name, where there is none that can be varied."""
+    """The quantity of this name.
+
+    Raises LandingError, with the nearest name, where there is none that can be varied.
+    """
     if not isinstance(name, str) or name not in VARIABLES:
         raise unknown(what, name, VARIABLES)
     return VARIABLES[name]
@@ -94,7 +108,8 @@ def variable(name: Any, what: str) -> Quantity:
 def read_factor(entry: Mapping[str, Any]) -> Factor:
     """A factor from a `[[factor]]` table.
 
-    Raises LandingError: no name or an unknown one, unknown keys, a wrong unit, missing or bad numbers, an empty range.
+    Raises LandingError: no name or an unknown one, unknown keys, a wrong unit, missing or bad
+        numbers, an empty range.
     """
     if "name" not in entry:
         raise LandingError('a [[factor]] has no name; write for example name = "drop.tilt"')
@@ -103,13 +118,17 @@ def read_factor(entry: Mapping[str, Any]) -> Factor:
     toml_keys.only(entry, ALL_KEYS, f"key of {where}")
     unit = entry.get("unit", q.unit)
     if not isinstance(unit, str):
-        raise LandingError(f'{where}: unit = {unit!r} must be a text, for example unit = "{q.display_unit or q.unit}"')
+        raise LandingError(
+            f'{where}: unit = {unit!r} must be a text, for example unit = "{q.display_unit or q.unit}"'
+        )
     distribution = entry.get("distribution", "choice" if "values" in entry else "uniform")
     if distribution not in DISTRIBUTIONS:
         raise unknown(f"distribution of {where}", distribution, DISTRIBUTIONS)
     for key in entry:
         if key not in ("name", "unit", "distribution", *DISTRIBUTIONS[distribution]):
-            raise LandingError(f"{where}: {key} does not belong to {distribution}, which takes {', '.join(DISTRIBUTIONS[distribution])}")
+            raise LandingError(
+                f"{where}: {key} does not belong to {distribution}, which takes {', '.join(DISTRIBUTIONS[distribution])}"
+            )
     if q.choices and distribution != "choice":
         raise LandingError(f"{where} is one of {', '.join(q.choices)}; give values = [...]")
     scale = 1.0 if q.choices else unit_scale(q, unit)
@@ -118,7 +137,9 @@ def read_factor(entry: Mapping[str, Any]) -> Factor:
         if isinstance(value, str):
             return parse_value(q, value)
         if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise LandingError(f"{where}: {key} = {value!r} is not a number; give it in {unit or 'plain numbers'}")
+            raise LandingError(
+                f"{where}: {key} = {value!r} is not a number; give it in {unit or 'plain numbers'}"
+            )
         return scale * value
 
     def number(key: str) -> float:
@@ -127,23 +148,35 @@ def read_factor(entry: Mapping[str, Any]) -> Factor:
         return float(in_si(key, entry[key]))
 
     if distribution == "choice":
-        return Factor(q, unit, distribution, values=_choices(q, [in_si("values", v) for v in _values(where, entry.get("values"))]))
+        return Factor(
+            q,
+            unit,
+            distribution,
+            values=_choices(q, [in_si("values", v) for v in _values(where, entry.get("values"))]),
+        )
     if distribution == "normal":
         mean, deviation = number("mean"), number("deviation")
-        low, high = (number(key) if key in entry else bound for key, bound in (("low", q.lo), ("high", q.hi)))
+        low, high = (
+            number(key) if key in entry else bound for key, bound in (("low", q.lo), ("high", q.hi))
+        )
         if not (isfinite(mean) and 0.0 < deviation < float("inf")):
-            raise LandingError(f"{where}: mean = {mean:g} and deviation = {deviation:g} {q.unit} must be finite, the deviation above 0")
+            raise LandingError(
+                f"{where}: mean = {mean:g} and deviation = {deviation:g} {q.unit} must be finite, the deviation above 0"
+            )
     else:
         mean = deviation = 0.0
         low, high = number("low"), number("high")
     if not low < high:
         raise LandingError(
-            f"{where}: the range from low = {low:g} to high = {high:g} {q.unit}".rstrip() + " is empty; low must be below high"
+            f"{where}: the range from low = {low:g} to high = {high:g} {q.unit}".rstrip()
+            + " is empty; low must be below high"
         )
     for bound in (low, high):
         if isfinite(bound) or distribution == "uniform":
             check_value(q, bound)
-    return Factor(q, unit, distribution, low, high, mean, deviation, _count(where, entry.get("count", 0)))
+    return Factor(
+        q, unit, distribution, low, high, mean, deviation, _count(where, entry.get("count", 0))
+    )
 
 
 def _values(where: str, values: Any) -> list[Any]:

@@ -33,11 +33,18 @@ OUTCOME = (
     Quantity("", "toppled, bottomed out, slid, moving or settled", name="outcome", kind="string"),
     Quantity("s", "when it was so", name="outcome.time"),
     Quantity("", "the leg that bottomed out first", name="outcome.leg", kind="integer"),
-    Quantity("", "the limit of [limits] that was passed first", name="outcome.first_limit", kind="string"),
+    Quantity(
+        "", "the limit of [limits] that was passed first", name="outcome.first_limit", kind="string"
+    ),
     Quantity("s", "when it was passed", name="outcome.first_limit_time"),
-    *(Quantity("m", f"{name.replace('_', ' ')}, see Outcome", name=f"margin.{name}") for name in MARGINS),
+    *(
+        Quantity("m", f"{name.replace('_', ' ')}, see Outcome", name=f"margin.{name}")
+        for name in MARGINS
+    ),
 )
-RHS_CALLS = Quantity("", "calls of the right-hand side that the landing took", name="rhs_calls", kind="integer")
+RHS_CALLS = Quantity(
+    "", "calls of the right-hand side that the landing took", name="rhs_calls", kind="integer"
+)
 DEFAULT = (
     "outcome", "outcome.*", "margin.*", "legs.main_strut.force.min", "legs.main_strut.stroke.max", "legs.auxiliary_strut.force.abs_max",
     "legs.contact.force_y.max", "legs.main_strut.absorbed", "legs.main_strut.dissipated", "leg[*].contact.time",
@@ -54,34 +61,47 @@ DEFAULT = (
 def known_responses() -> Mapping[str, Quantity]:
     """Every response there is, by name.
 
-    `OUTPUT.min`, `.max`, `.abs_max`, `.final`, `.min_time`, `.max_time` of every output; `legs.…` is the extreme over the four legs.
-    `leg[N].main_strut.absorbed`, `.dissipated`, `.efficiency` are of a damper's first compression and rebound, `legs.…` their sum over
-    the legs; `leg[N].contact.time` is when the ground first pushes on a footpad; `outcome`, `outcome.…` and `margin.…` are `Outcome`'s.
+    `OUTPUT.min`, `.max`, `.abs_max`, `.final`, `.min_time`, `.max_time` of every output; `legs.…`
+    is the extreme over the four legs. `leg[N].main_strut.absorbed`, `.dissipated`, `.efficiency`
+    are of a damper's first compression and rebound, `legs.…` their sum over the legs;
+    `leg[N].contact.time` is when the ground first pushes on a footpad; `outcome`, `outcome.…` and
+    `margin.…` are `Outcome`'s.
     """
     found = {q.name: q for q in OUTCOME}
     for q in OUTPUT_QUANTITIES:
         for name, (words, _) in REDUCTIONS.items():
             unit = "s" if name.endswith("time") else q.unit
-            found[f"{q.name}.{name}"] = Quantity(unit, f"{words} {q.meaning}", name=f"{q.name}.{name}")
+            found[f"{q.name}.{name}"] = Quantity(
+                unit, f"{words} {q.meaning}", name=f"{q.name}.{name}"
+            )
     for q in LEG_QUANTITIES:
         for name in OVER_LEGS:
             full = f"legs.{q.name}.{name}"
-            found[full] = Quantity(q.unit, f"{REDUCTIONS[name][0]} of all legs: {q.meaning}", name=full)
+            found[full] = Quantity(
+                q.unit, f"{REDUCTIONS[name][0]} of all legs: {q.meaning}", name=full
+            )
     for what, unit in WORK.items():
         for leg in LEGS:
             full = f"leg[{leg}].main_strut.{what}"
-            found[full] = Quantity(unit, f"leg {leg}'s damper, first compression and rebound: {what}", name=full)
+            found[full] = Quantity(
+                unit, f"leg {leg}'s damper, first compression and rebound: {what}", name=full
+            )
         if unit:
-            found[f"legs.main_strut.{what}"] = Quantity(unit, f"{what} by all dampers together", name=f"legs.main_strut.{what}")
+            found[f"legs.main_strut.{what}"] = Quantity(
+                unit, f"{what} by all dampers together", name=f"legs.main_strut.{what}"
+            )
     for leg in LEGS:
         full = f"leg[{leg}].contact.time"
-        found[full] = Quantity("s", f"leg {leg}: when the ground first pushes on the footpad", name=full)
+        found[full] = Quantity(
+            "s", f"leg {leg}: when the ground first pushes on the footpad", name=full
+        )
     found[RHS_CALLS.name] = RHS_CALLS
     return found
 
 
 def expand(names: Sequence[str] | None) -> tuple[str, ...]:
-    """Names of responses in the order given, `leg[*]` for each leg, a trailing `.*` for all below; None is the default set.
+    """Names of responses in the order given, `leg[*]` for each leg, a trailing `.*` for all below;
+    None is the default set.
 
     Raises LandingError for a response that does not exist, with the nearest, or one named twice.
     """
@@ -91,7 +111,9 @@ def expand(names: Sequence[str] | None) -> tuple[str, ...]:
         if name.endswith(".*"):
             matching = [k for k in known if k.startswith(name[:-1])]
         else:
-            matching = [name.replace("[*]", f"[{leg}]") for leg in LEGS] if "[*]" in name else [name]
+            matching = (
+                [name.replace("[*]", f"[{leg}]") for leg in LEGS] if "[*]" in name else [name]
+            )
         for one in matching or [name]:
             if one not in known:
                 raise unknown("response", one, known)
@@ -104,21 +126,34 @@ def expand(names: Sequence[str] | None) -> tuple[str, ...]:
 class Measure:
     """Takes the responses `names` off a history. `limits` and `slide` are those of `outcome`."""
 
-    def __init__(self, names: Sequence[str], limits: Mapping[str, float] | None = None, slide: float | None = None) -> None:
+    def __init__(
+        self,
+        names: Sequence[str],
+        limits: Mapping[str, float] | None = None,
+        slide: float | None = None,
+    ) -> None:
         self.names = tuple(names)
         self._how = {} if slide is None else {"slide": slide}
         self._limits = dict(limits or {})
         self._columns: dict[str, list[int]] = {}
         self._places: list[tuple[str, list[int]] | None] = [self._place(name) for name in names]
         self._with_outcome = any(name.partition(".")[0] in ("outcome", "margin") for name in names)
-        self._with_work = any(name.rpartition(".")[2] in WORK and "main_strut" in name for name in names)
+        self._with_work = any(
+            name.rpartition(".")[2] in WORK and "main_strut" in name for name in names
+        )
 
     def _place(self, name: str) -> tuple[str, list[int]] | None:
-        """The reduction and where its results hold this response, for one that is a reduction of outputs."""
+        """The reduction and where its results hold this response, for one that is a reduction of
+        outputs.
+        """
         output, _, how = name.rpartition(".")
         if how not in REDUCTIONS or output.partition(".")[0] in ("outcome", "margin"):
             return None
-        outputs = [output.replace("legs.", f"leg[{leg}].", 1) for leg in LEGS] if output.startswith("legs.") else [output]
+        outputs = (
+            [output.replace("legs.", f"leg[{leg}].", 1) for leg in LEGS]
+            if output.startswith("legs.")
+            else [output]
+        )
         columns = self._columns.setdefault(how, [])
         places = []
         for one in outputs:
@@ -129,7 +164,8 @@ class Measure:
         return how, places
 
     def __call__(self, history: History, rhs_calls: int) -> list[Any]:
-        """The responses in the order of `names`; None where a landing has none: an efficiency without compression, no limit passed.
+        """The responses in the order of `names`; None where a landing has none: an efficiency
+        without compression, no limit passed.
 
         What a vehicle does once it has toppled does not count, the stability margins apart.
         """
@@ -140,8 +176,13 @@ class Measure:
             others.update(_outcome_values(found))
             if toppled:
                 end = int(np.searchsorted(history.time, found.time, "right"))
-                history = History(history.time[:end], history.names, history.data[:end], history.parameters)
-        reduced = {how: REDUCTIONS[how][1](history.data[:, columns], history.time).tolist() for how, columns in self._columns.items()}
+                history = History(
+                    history.time[:end], history.names, history.data[:end], history.parameters
+                )
+        reduced = {
+            how: REDUCTIONS[how][1](history.data[:, columns], history.time).tolist()
+            for how, columns in self._columns.items()
+        }
         if self._with_work:
             others.update(_work_values(history))
         values: list[Any] = []
@@ -201,7 +242,10 @@ def _work(history: History, leg: int) -> DamperWork | None:
     first = _first_push(history, leg)
     if first is None:
         return None
-    force, stroke = history[f"leg[{leg}].main_strut.force"], history[f"leg[{leg}].main_strut.stroke"]
+    force, stroke = (
+        history[f"leg[{leg}].main_strut.force"],
+        history[f"leg[{leg}].main_strut.stroke"],
+    )
     try:
         return damper_work(history.time, force, stroke, float(history.time[max(first - 1, 0)]))
     except LandingError:

@@ -1,8 +1,10 @@
-"""The results folder of a study: rows in Parquet parts while it runs, one file at the end; nothing that is done is ever lost.
+"""The results folder of a study: rows in Parquet parts while it runs, one file at the end; nothing
+that is done is ever lost.
 
 study.json        what decides every row, and its fingerprint; study.toml, the study as it was read
-parts/            rows so far, each file renamed into place whole: after `kill -9` all but the last seconds are there
-results.parquet   every row in the order of its index, when all are done; the parts are removed then
+parts/            rows so far, each file renamed into place whole: after `kill -9` all but the last
+seconds are there results.parquet   every row in the order of its index, when all are done; the
+parts are removed then
 """
 
 from __future__ import annotations
@@ -31,7 +33,12 @@ from .extras import arrow
 STUDY, COPY, PARTS, RESULTS = "study.json", "study.toml", "parts", "results.parquet"
 LEADING = (
     Quantity("", "number of the landing, from 0", name="index", kind="integer"),
-    Quantity("", "number of the sample, from 0: landings of one sample differ in mode only", name="sample", kind="integer"),
+    Quantity(
+        "",
+        "number of the sample, from 0: landings of one sample differ in mode only",
+        name="sample",
+        kind="integer",
+    ),
     Quantity("", "the study's seed", name="seed", kind="integer"),
 )
 PART_ROWS = 1000
@@ -40,14 +47,23 @@ GROUP_ROWS = 10_000
 
 
 class Results:
-    """The rows of a study in `folder`, which is made, or taken up again by `resume`. Use it in a `with`; leaving it writes what it holds.
+    """The rows of a study in `folder`, which is made, or taken up again by `resume`.
 
-    `about` is what decides the rows; `quantities` their columns after index, sample and seed; `count` how many there will be. Raises
-    LandingError: the folder holds a study and `resume` is not asked for, or another study; it is in use, damaged or cannot be written.
+    Use it in a `with`; leaving it writes what it holds.
+
+    `about` is what decides the rows; `quantities` their columns after index, sample and seed;
+    `count` how many there will be. Raises LandingError: the folder holds a study and `resume` is
+    not asked for, or another study; it is in use, damaged or cannot be written.
     """
 
     def __init__(
-        self, folder: Path, about: Mapping[str, Any], text: str, quantities: Sequence[Quantity], count: int, resume: bool = False
+        self,
+        folder: Path,
+        about: Mapping[str, Any],
+        text: str,
+        quantities: Sequence[Quantity],
+        count: int,
+        resume: bool = False,
     ) -> None:
         self.folder = folder
         self.count = count
@@ -58,9 +74,13 @@ class Results:
         self._rows: list[list[Any]] = []
         self._since = time.monotonic()
         if (folder / STUDY).exists() and not resume:
-            raise LandingError(f"{folder} holds a study's results; --resume goes on with it, --results names another folder")
+            raise LandingError(
+                f"{folder} holds a study's results; --resume goes on with it, --results names another folder"
+            )
         if folder.exists() and not (folder / STUDY).exists() and any(folder.iterdir()):
-            raise LandingError(f"{folder} holds other files and no study; --results names another folder")
+            raise LandingError(
+                f"{folder} holds other files and no study; --results names another folder"
+            )
         if (folder / STUDY).exists():
             self._compare()
         try:
@@ -68,15 +88,24 @@ class Results:
             self._lock = (folder / ".lock").open("w")
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise LandingError(f"{folder} is in use by another sweep; wait for it, or name another folder by --results") from None
+            raise LandingError(
+                f"{folder} is in use by another sweep; wait for it, or name another folder by --results"
+            ) from None
         except OSError as e:
-            raise LandingError(f"{folder} cannot be written: {e.strerror or e}; name another folder by --results") from None
+            raise LandingError(
+                f"{folder} cannot be written: {e.strerror or e}; name another folder by --results"
+            ) from None
         self.done = self._take_up()
 
     def __enter__(self) -> Results:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
         try:
             self.flush()
         except OSError:
@@ -94,7 +123,11 @@ class Results:
             raise LandingError(f"{path} cannot be read ({e}); there is nothing to resume") from None
         if told == self._about["fingerprint"]:
             return
-        changed = [key for key in self._about if key != "fingerprint" and kept.get(key) != json.loads(json.dumps(self._about[key]))]
+        changed = [
+            key
+            for key in self._about
+            if key != "fingerprint" and kept.get(key) != json.loads(json.dumps(self._about[key]))
+        ]
         raise LandingError(
             f"{self.folder} holds rows of another study: {', '.join(changed)} changed since. Resume with the study as it was "
             f"({self.folder / COPY} is a copy of it), or name another folder by --results"
@@ -110,16 +143,22 @@ class Results:
                 write_durably(self.folder / COPY, self._text.encode())
                 write_durably(self.folder / STUDY, json.dumps(self._about, indent=1).encode())
         except OSError as e:
-            raise LandingError(f"{self.folder} cannot be written: {e.strerror or e}; make room, or name another folder") from None
+            raise LandingError(
+                f"{self.folder} cannot be written: {e.strerror or e}; make room, or name another folder"
+            ) from None
         ranges: list[tuple[int, int]] = []
         for path in self._parts():
             try:
                 rows = self._parquet.read_metadata(path).num_rows
             except Exception as e:
-                raise LandingError(f"{path} is damaged ({e}); remove it, and --resume makes its rows anew") from None
+                raise LandingError(
+                    f"{path} is damaged ({e}); remove it, and --resume makes its rows anew"
+                ) from None
             first = int(path.stem)
             if ranges and first < ranges[-1][1]:
-                raise LandingError(f"{path} has rows that the part before it has, too; remove it, and --resume makes its rows anew")
+                raise LandingError(
+                    f"{path} has rows that the part before it has, too; remove it, and --resume makes its rows anew"
+                )
             ranges.append((first, first + rows))
         return ranges
 
@@ -154,16 +193,30 @@ class Results:
         if self._rows:
             buffer = io.BytesIO()
             self._parquet.write_table(self._table(self._rows), buffer)
-            write_durably(self.folder / PARTS / f"{self._rows[0][0]:012d}.parquet", buffer.getvalue())
+            write_durably(
+                self.folder / PARTS / f"{self._rows[0][0]:012d}.parquet", buffer.getvalue()
+            )
             self.done = sorted({*self.done, (self._rows[0][0], self._rows[-1][0] + 1)})
             self._rows = []
         self._since = time.monotonic()
 
     def _schema(self) -> Any:
         pa = self._pyarrow
-        kinds = {"real": pa.float64(), "integer": pa.int64(), "boolean": pa.bool_(), "string": pa.string()}
-        fields = [pa.field(q.name, kinds[q.kind], metadata={"unit": q.unit, "meaning": q.meaning}) for q in self._quantities]
-        metadata = {"study.json": json.dumps(self._about), "study.toml": self._text, "versions": json.dumps(versions())}
+        kinds = {
+            "real": pa.float64(),
+            "integer": pa.int64(),
+            "boolean": pa.bool_(),
+            "string": pa.string(),
+        }
+        fields = [
+            pa.field(q.name, kinds[q.kind], metadata={"unit": q.unit, "meaning": q.meaning})
+            for q in self._quantities
+        ]
+        metadata = {
+            "study.json": json.dumps(self._about),
+            "study.toml": self._text,
+            "versions": json.dumps(versions()),
+        }
         return pa.schema(fields, metadata=metadata)
 
     def _table(self, rows: Sequence[Sequence[Any]]) -> Any:
@@ -175,14 +228,20 @@ class Results:
         return self._pyarrow.table(columns, schema=self._schema())
 
     def finish(self) -> Path:
-        """Join the parts to one file, in the order of the indices, and remove them. Raises OSError where the disk refuses: parts stay."""
+        """Join the parts to one file, in the order of the indices, and remove them.
+
+        Raises OSError where the disk refuses: parts stay.
+        """
         path = self.folder / RESULTS
         if path.exists():
             return path
         self.flush()
         temporary = path.with_name(path.name + ".part")
         try:
-            with temporary.open("wb") as file, self._parquet.ParquetWriter(file, self._schema()) as writer:
+            with (
+                temporary.open("wb") as file,
+                self._parquet.ParquetWriter(file, self._schema()) as writer,
+            ):
                 for table in self._groups():
                     writer.write_table(table, row_group_size=GROUP_ROWS)
             temporary.replace(path)
@@ -194,10 +253,14 @@ class Results:
         return path
 
     def _groups(self) -> Iterator[Any]:
-        """All rows in tables of GROUP_ROWS, whatever the parts were, so that the file does not depend on them."""
+        """All rows in tables of GROUP_ROWS, whatever the parts were, so that the file does not
+        depend on them.
+        """
         held = self._schema().empty_table()
         for part in self._parts():
-            held = self._pyarrow.concat_tables([held, self._parquet.read_table(part, schema=self._schema())])
+            held = self._pyarrow.concat_tables(
+                [held, self._parquet.read_table(part, schema=self._schema())]
+            )
             while held.num_rows >= GROUP_ROWS:
                 yield held.slice(0, GROUP_ROWS).combine_chunks()
                 held = held.slice(GROUP_ROWS)
@@ -218,4 +281,9 @@ def fingerprint(about: Mapping[str, Any]) -> str:
 
 def versions() -> dict[str, str]:
     """What the rows were made by."""
-    return {"rlv-landing": __version__, "python": platform.python_version(), "numpy": numpy.__version__, "scipy": scipy.__version__}
+    return {
+        "rlv-landing": __version__,
+        "python": platform.python_version(),
+        "numpy": numpy.__version__,
+        "scipy": scipy.__version__,
+    }

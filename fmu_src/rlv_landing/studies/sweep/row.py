@@ -1,4 +1,7 @@
-"""One landing of a study: from a row of values to a row of responses. What a worker runs, in a thread here or on a cluster."""
+"""One landing of a study: from a row of values to a row of responses.
+
+What a worker runs, in a thread here or on a cluster.
+"""
 
 from __future__ import annotations
 
@@ -47,18 +50,30 @@ class Plan:
         return Measure(self.responses, self.limits, self.slide)
 
     def landing(self, values: Mapping[str, Any]) -> Landing:
-        """The landing with these values, at its start. Raises LandingError where they do not fit."""
+        """The landing with these values, at its start.
+
+        Raises LandingError where they do not fit.
+        """
         mode = values.get(MODE, self.parameters.drop.mode)
         base = self.by_mode[mode] if mode in self.by_mode else self.parameters.for_mode(mode)
-        changes = {name: value for name, value in values.items() if name in PARAMETER_QUANTITIES and name != MODE}
+        changes = {
+            name: value
+            for name, value in values.items()
+            if name in PARAMETER_QUANTITIES and name != MODE
+        }
         landing = Landing(base.with_values(changes), rtol=self.rtol)
-        inputs = {**self.inputs, **{name: value for name, value in values.items() if name not in PARAMETER_QUANTITIES}}
+        inputs = {
+            **self.inputs,
+            **{name: value for name, value in values.items() if name not in PARAMETER_QUANTITIES},
+        }
         if inputs:
             landing.set_inputs(inputs)
         return landing
 
     def row(self, values: Mapping[str, Any]) -> list[Any]:
-        """Version, error text (None where there is none), then the responses (None with an error) of the landing with these values."""
+        """Version, error text (None where there is none), then the responses (None with an error)
+        of the landing with these values.
+        """
         try:
             landing = self.landing(values)
             history = landing.run(self.until, self.every)
@@ -74,12 +89,19 @@ def run_rows(plan: Plan, rows: Sequence[Mapping[str, Any]]) -> list[list[Any]]:
 
 
 class Task:
-    """All landings of a study in order: their number, values by index, and what comes back. A sample lands once in each mode."""
+    """All landings of a study in order: their number, values by index, and what comes back.
+
+    A sample lands once in each mode.
+    """
 
     def __init__(self, study: Study, design: Design) -> None:
         self.study = study
         self.design = design
-        inputs = {name: float(value) for name, value in study.fixed.items() if name not in PARAMETER_QUANTITIES}
+        inputs = {
+            name: float(value)
+            for name, value in study.fixed.items()
+            if name not in PARAMETER_QUANTITIES
+        }
         self.plan = Plan(
             study.parameters, inputs, study.until, study.every, study.rtol, study.responses, study.limits, study.slide
         )  # fmt: skip
@@ -95,11 +117,15 @@ class Task:
 
     def label(self, index: int) -> str:
         """How errors call a landing; the rows of a table are counted from 1."""
-        row = f" (row {self.sample(index) + 1} of the table)" if self.study.table is not None else ""
+        row = (
+            f" (row {self.sample(index) + 1} of the table)" if self.study.table is not None else ""
+        )
         return f"landing {index}{row}"
 
     def rows(self, first: int, last: int) -> list[dict[str, Any]]:
-        """Values by name, the mode first, of the landings from `first` up to, not including, `last`."""
+        """Values by name, the mode first, of the landings from `first` up to, not including,
+        `last`.
+        """
         if first >= last:
             return []
         count = max(1, len(self._modes))
@@ -110,7 +136,9 @@ class Task:
         for index in range(first, last):
             values = samples[index // count - start]
             mode = self._modes[index % count] if self._modes else values.get(MODE, default)
-            found.append({MODE: mode, **{name: value for name, value in values.items() if name != MODE}})
+            found.append(
+                {MODE: mode, **{name: value for name, value in values.items() if name != MODE}}
+            )
         return found
 
     def about(self) -> dict[str, Any]:
@@ -118,7 +146,13 @@ class Task:
         return {"version": __version__, **self.study.record(), "points": self.design.digest()}
 
     def quantities(self) -> list[Quantity]:
-        """The columns of a row after index, sample and seed: values, then version, error, responses."""
+        """The columns of a row after index, sample and seed: values, then version, error,
+        responses.
+        """
         told = [Quantity("", "version of rlv-landing", name="version", kind="string"),
                 Quantity("", "why there is no landing", name="error", kind="string")]  # fmt: skip
-        return [*(VARIABLES[name] for name in self.names), *told, *(known_responses()[name] for name in self.plan.responses)]
+        return [
+            *(VARIABLES[name] for name in self.names),
+            *told,
+            *(known_responses()[name] for name in self.plan.responses),
+        ]

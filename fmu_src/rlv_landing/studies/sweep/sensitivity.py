@@ -1,6 +1,8 @@
-"""Sobol indices of a study's responses: how much of their variance each factor brings, alone and with the others.
+"""Sobol indices of a study's responses: how much of their variance each factor brings, alone and
+with the others.
 
-The points are Saltelli's: two independent samples A and B of all factors, and for each factor a copy of A with B's column of it.
+The points are Saltelli's: two independent samples A and B of all factors, and for each factor a
+copy of A with B's column of it.
 """
 
 from __future__ import annotations
@@ -27,10 +29,12 @@ LEAST_WHOLE = 0.9
 
 @dataclass(frozen=True)
 class Indices:
-    """Sobol indices of one response over the landings of one mode: `first` and `total` (factors, 3), each index with its interval.
+    """Sobol indices of one response over the landings of one mode: `first` and `total` (factors,
+    3), each index with its interval.
 
-    `used` of `samples` had the response in all their landings; the place of another is taken by one of these, drawn at random. All are NaN
-    where that is more than a tenth of them, or the response does not vary.
+    `used` of `samples` had the response in all their landings; the place of another is taken by one
+    of these, drawn at random. All are NaN where that is more than a tenth of them, or the response
+    does not vary.
     """
 
     response: str
@@ -45,27 +49,49 @@ class Indices:
         """The same for JSON; null for NaN."""
 
         def plain(index: Array) -> dict[str, float | None]:
-            return {key: None if np.isnan(v) else float(v) for key, v in zip(("index", "low", "high"), index)}
+            return {
+                key: None if np.isnan(v) else float(v)
+                for key, v in zip(("index", "low", "high"), index)
+            }
 
-        indices = [{"factor": f, "first": plain(a), "total": plain(b)} for f, a, b in zip(self.factors, self.first, self.total)]
-        return {"response": self.response, "mode": self.mode, "used": self.used, "samples": self.samples, "indices": indices}
+        indices = [
+            {"factor": f, "first": plain(a), "total": plain(b)}
+            for f, a, b in zip(self.factors, self.first, self.total)
+        ]
+        return {
+            "response": self.response,
+            "mode": self.mode,
+            "used": self.used,
+            "samples": self.samples,
+            "indices": indices,
+        }
 
 
 def sobol_design(study: Study) -> Design:
-    """The points of `study.samples` (a power of 2) samples: A, then B, then for each factor A with B's column of it.
+    """The points of `study.samples` (a power of 2) samples: A, then B, then for each factor A with
+    B's column of it.
 
-    Raises LandingError: the study is a table, has fewer than two factors, or its samples are no power of 2.
+    Raises LandingError: the study is a table, has fewer than two factors, or its samples are no
+        power of 2.
     """
     if study.method == "table":
-        raise LandingError("the columns of a table are not independent of each other, which Sobol indices need; give factors with ranges")
+        raise LandingError(
+            "the columns of a table are not independent of each other, which Sobol indices need; give factors with ranges"
+        )
     if len(study.factors) < 2:
-        raise LandingError("Sobol indices share variance out between factors; the study needs two [[factor]] or more")
+        raise LandingError(
+            "Sobol indices share variance out between factors; the study needs two [[factor]] or more"
+        )
     n = study.samples
     if n < 2 or n & (n - 1):
         told = f"this {study.method} has samples = {n}" if n else f"a {study.method} has none"
-        raise LandingError(f'Sobol indices need samples = a power of 2, for example 256 or 1024, with method = "sobol" or "lhs"; {told}')
+        raise LandingError(
+            f'Sobol indices need samples = a power of 2, for example 256 or 1024, with method = "sobol" or "lhs"; {told}'
+        )
     places = unit_points("sobol", n, 2 * len(study.factors), study.seed)
-    a, b = ([f.at(half[:, i]) for i, f in enumerate(study.factors)] for half in np.hsplit(places, 2))
+    a, b = (
+        [f.at(half[:, i]) for i, f in enumerate(study.factors)] for half in np.hsplit(places, 2)
+    )
     blocks = len(study.factors) + 2
     columns = {}
     for i, f in enumerate(study.factors):
@@ -75,11 +101,15 @@ def sobol_design(study: Study) -> Design:
     return Design(columns, n * blocks)
 
 
-def sobol_indices(pages: Array, seed: int, level: float = LEVEL, resamples: int = RESAMPLES) -> tuple[Array, Array]:
-    """First-order and total indices with their bootstrap intervals, each (responses, factors, 3): index, low, high.
+def sobol_indices(
+    pages: Array, seed: int, level: float = LEVEL, resamples: int = RESAMPLES
+) -> tuple[Array, Array]:
+    """First-order and total indices with their bootstrap intervals, each (responses, factors, 3):
+    index, low, high.
 
-    `pages` (factors + 2, responses, samples) are responses in the order of `sobol_design`. By `scipy.stats`: Saltelli's estimators (2010),
-    percentile intervals of the confidence `level`. NaN for a response that does not vary.
+    `pages` (factors + 2, responses, samples) are responses in the order of `sobol_design`. By
+    `scipy.stats`: Saltelli's estimators (2010), percentile intervals of the confidence `level`. NaN
+    for a response that does not vary.
     """
     from scipy.stats import bootstrap
     from scipy.stats import sobol_indices as estimate
@@ -87,9 +117,18 @@ def sobol_indices(pages: Array, seed: int, level: float = LEVEL, resamples: int 
     factors, responses, n = pages.shape[0] - 2, pages.shape[1], pages.shape[2]
 
     def both(which: NDArray[np.intp]) -> Array:
-        told: Any = {"f_A": pages[0][:, which], "f_B": pages[1][:, which], "f_AB": pages[2:][:, :, which]}
+        told: Any = {
+            "f_A": pages[0][:, which],
+            "f_B": pages[1][:, which],
+            "f_AB": pages[2:][:, :, which],
+        }
         found = estimate(func=told, n=n)
-        return np.array([np.reshape(order, (responses, factors)) for order in (found.first_order, found.total_order)])
+        return np.array(
+            [
+                np.reshape(order, (responses, factors))
+                for order in (found.first_order, found.total_order)
+            ]
+        )
 
     drawn: Any = bootstrap(
         (np.arange(n),), both, vectorized=False, method="percentile", confidence_level=level, n_resamples=resamples,
@@ -101,24 +140,41 @@ def sobol_indices(pages: Array, seed: int, level: float = LEVEL, resamples: int 
     return indices[0], indices[1]
 
 
-def indices_of(path: Path, study: Study, responses: Sequence[str], level: float = LEVEL, resamples: int = RESAMPLES) -> list[Indices]:
-    """Indices of these responses, mode by mode, from a results file that was made of `sobol_design`."""
+def indices_of(
+    path: Path,
+    study: Study,
+    responses: Sequence[str],
+    level: float = LEVEL,
+    resamples: int = RESAMPLES,
+) -> list[Indices]:
+    """Indices of these responses, mode by mode, from a results file that was made of
+    `sobol_design`.
+    """
     _, parquet = arrow()
     modes = study.modes or ("all",)
     names = tuple(f.name for f in study.factors)
     table = parquet.read_table(path, columns=list(responses))
     found: list[Indices] = []
     for i, mode in enumerate(modes):
-        filled = [_filled(table[r].to_numpy()[i :: len(modes)].astype(float).reshape(len(names) + 2, -1), study.seed) for r in responses]
-        first, total = sobol_indices(np.stack([pages for pages, _ in filled], axis=1), study.seed, level, resamples)
+        filled = [
+            _filled(
+                table[r].to_numpy()[i :: len(modes)].astype(float).reshape(len(names) + 2, -1),
+                study.seed,
+            )
+            for r in responses
+        ]
+        first, total = sobol_indices(
+            np.stack([pages for pages, _ in filled], axis=1), study.seed, level, resamples
+        )
         for k, (response, (pages, used)) in enumerate(zip(responses, filled)):
             found.append(Indices(response, mode, names, first[k], total[k], used, pages.shape[1]))
     return found
 
 
 def _filled(pages: Array, seed: int) -> tuple[Array, int]:
-    """The responses (factors + 2, samples) with incomplete samples replaced by others, and how many were complete; the same number in all
-    where too few were."""
+    """The responses (factors + 2, samples) with incomplete samples replaced by others, and how many
+    were complete; the same number in all where too few were.
+    """
     whole = np.flatnonzero(np.isfinite(pages).all(axis=0))
     n = pages.shape[1]
     if len(whole) < LEAST_WHOLE * n:
@@ -130,19 +186,24 @@ def _filled(pages: Array, seed: int) -> tuple[Array, int]:
 
 
 def numeric_responses(study: Study, wanted: Sequence[str]) -> tuple[str, ...]:
-    """The responses to share out: those that are named; else all of the study's that say something of the whole vehicle, if there are any,
-    else all that are numbers.
+    """The responses to share out: those that are named; else all of the study's that say something
+    of the whole vehicle, if there are any, else all that are numbers.
 
-    Raises LandingError for one that the study does not take, with the nearest, or that is a text, and where there are none.
+    Raises LandingError for one that the study does not take, with the nearest, or that is a text,
+    and where there are none.
     """
     known = known_responses()
     for name in wanted:
         if name not in study.responses:
             raise unknown("response of this study", name, study.responses)
         if known[name].kind == "string":
-            raise LandingError(f"{name} is a text; Sobol indices are of numbers: take one of its margins")
+            raise LandingError(
+                f"{name} is a text; Sobol indices are of numbers: take one of its margins"
+            )
     numbers = [name for name in study.responses if known[name].kind == "real"]
-    whole = [name for name in numbers if not name.startswith(("leg[", "outcome.", "energy.balance"))]
+    whole = [
+        name for name in numbers if not name.startswith(("leg[", "outcome.", "energy.balance"))
+    ]
     if not numbers:
         raise LandingError("this study takes no response that is a number; add one to responses")
     return tuple(wanted or whole or numbers)

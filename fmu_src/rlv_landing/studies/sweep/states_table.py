@@ -1,4 +1,6 @@
-"""A table of touchdown states from elsewhere, a guidance simulation say: CSV or Parquet, columns by our names and units."""
+"""A table of touchdown states from elsewhere, a guidance simulation say: CSV or Parquet, columns by
+our names and units.
+"""
 
 from __future__ import annotations
 
@@ -23,11 +25,13 @@ HEADING = re.compile(r"\s*(\S+?)\s*(?:\[([^\]]*)\])?\s*")
 
 
 def read_states(path: Path, ignored: Collection[str], given: Collection[str]) -> Design:
-    """The table's rows as a design; headings are a name and, in brackets, a unit (default SI): `drop.tilt [deg]`. Columns named in
-    `ignored` are passed over; of a touchdown state's four quantities, those that are `given` elsewhere need no column.
+    """The table's rows as a design; headings are a name and, in brackets, a unit (default SI):
+    `drop.tilt [deg]`. Columns named in `ignored` are passed over; of a touchdown state's four
+    quantities, those that are `given` elsewhere need no column.
 
-    A value that is no number stays what it is, so that its row is refused when it is its turn. Raises LandingError: missing or unreadable
-    file, unknown or doubled columns, a wrong unit, missing columns, no rows.
+    A value that is no number stays what it is, so that its row is refused when it is its turn.
+    Raises LandingError: missing or unreadable file, unknown or doubled columns, a wrong unit,
+    missing columns, no rows.
     """
     if path.suffix not in (".csv", ".parquet"):
         raise LandingError(f"table {path} must be a .csv or .parquet file")
@@ -47,15 +51,21 @@ def read_states(path: Path, ignored: Collection[str], given: Collection[str]) ->
             unit = (found[2] if found else None) or unit
             scale = 1.0 if q.choices else unit_scale(q, unit)
         except LandingError as e:
-            raise LandingError(f"{path}, column {heading!r}: {e}; columns that are not ours go to ignore = [...]") from None
+            raise LandingError(
+                f"{path}, column {heading!r}: {e}; columns that are not ours go to ignore = [...]"
+            ) from None
         if q.name in columns:
             raise LandingError(f"{path} has two columns of {q.name}; leave one")
         if q.name in given:
-            raise LandingError(f"{path} has a column of {q.name}, which the study gives, too; leave one")
+            raise LandingError(
+                f"{path} has a column of {q.name}, which the study gives, too; leave one"
+            )
         columns[q.name] = column(v if isinstance(v, str) else scale * v for v in values)
     missing = [name for name in STATE if name not in columns and name not in given]
     if missing:
-        raise LandingError(f"{path} has no column {', '.join(missing)}; a touchdown state needs it: add it, or give it in [set]")
+        raise LandingError(
+            f"{path} has no column {', '.join(missing)}; a touchdown state needs it: add it, or give it in [set]"
+        )
     count = len(next(iter(columns.values()))) if columns else 0
     if not count:
         raise LandingError(f"{path} has no rows")
@@ -72,7 +82,9 @@ def _csv(path: Path) -> tuple[list[str], list[str], list[list[float | str]]]:
                 if not row:
                     continue
                 if len(row) != len(headings):
-                    raise LandingError(f"{path}, line {line}: {len(row)} values under {len(headings)} headings")
+                    raise LandingError(
+                        f"{path}, line {line}: {len(row)} values under {len(headings)} headings"
+                    )
                 for values, text in zip(cells, row):
                     values.append(_cell(text))
     except (OSError, UnicodeDecodeError, csv.Error) as e:
@@ -95,5 +107,8 @@ def _parquet(path: Path) -> tuple[list[str], list[str], list[list[float | str]]]
     except Exception as e:
         raise LandingError(f"table {path} cannot be read: {e}") from None
     units = [((field.metadata or {}).get(b"unit") or b"").decode() for field in table.schema]
-    cells = [[np.nan if v is None else v if isinstance(v, str) else float(v) for v in c.to_pylist()] for c in table.columns]
+    cells = [
+        [np.nan if v is None else v if isinstance(v, str) else float(v) for v in c.to_pylist()]
+        for c in table.columns
+    ]
     return list(table.column_names), units, cells

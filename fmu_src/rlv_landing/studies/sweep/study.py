@@ -1,4 +1,7 @@
-"""A study: which landings to make and what to take off each. Read from TOML, checked before anything runs."""
+"""A study: which landings to make and what to take off each.
+
+Read from TOML, checked before anything runs.
+"""
 
 from __future__ import annotations
 
@@ -25,21 +28,46 @@ TABLES = ("study", "set", "limits", "factor")
 NUMBERS = {
     q.name: q
     for q in (
-        Quantity("s", "end of each landing", 1e-6, 3600.0, name="until", default=1.0, display_unit="s"),
-        Quantity("s", "time between samples", 1e-6, 3600.0, name="every", default=1e-3, display_unit="s"),
-        Quantity("", "relative tolerance of the integrator", 1e-12, 1e-2, name="rtol", default=1e-4),
-        Quantity("m", "what a footpad may move and has not slid", 0.0, 1e3, name="slide", default=DEFAULT_SLIDE),
+        Quantity(
+            "s", "end of each landing", 1e-6, 3600.0, name="until", default=1.0, display_unit="s"
+        ),
+        Quantity(
+            "s", "time between samples", 1e-6, 3600.0, name="every", default=1e-3, display_unit="s"
+        ),
+        Quantity(
+            "", "relative tolerance of the integrator", 1e-12, 1e-2, name="rtol", default=1e-4
+        ),
+        Quantity(
+            "m",
+            "what a footpad may move and has not slid",
+            0.0,
+            1e3,
+            name="slide",
+            default=DEFAULT_SLIDE,
+        ),
     )
 }
-KEYS = ("name", "method", "samples", "seed", "table", "ignore", "preset", "parameters", "modes", "responses", *NUMBERS)
+KEYS = (
+    "name",
+    "method",
+    "samples",
+    "seed",
+    "table",
+    "ignore",
+    "preset",
+    "parameters",
+    "modes",
+    "responses",
+    *NUMBERS,
+)
 
 
 @dataclass(frozen=True)
 class Study:
     """A study as it is run; values in SI.
 
-    `fixed` are set in every landing, `factors` varied, `table` holds touchdown states. `modes` are landed for each sample; none where the
-    mode is varied.
+    `fixed` are set in every landing, `factors` varied, `table` holds touchdown states. `modes` are
+    landed for each sample; none where the mode is varied.
     """
 
     name: str
@@ -75,7 +103,9 @@ class Study:
         if self.method != "sobol" or self.samples & (self.samples - 1) == 0:
             return []
         below = 1 << (self.samples.bit_length() - 1)
-        return [f"Sobol points are balanced where their number is a power of 2: {below} or {2 * below}, not {self.samples}"]
+        return [
+            f"Sobol points are balanced where their number is a power of 2: {below} or {2 * below}, not {self.samples}"
+        ]
 
     def record(self) -> dict[str, Any]:
         """All that decides a row, the points apart: for the fingerprint."""
@@ -89,7 +119,8 @@ class Study:
 def read_study(path: Path) -> Study:
     """A study from a TOML file; `docs/studies.md` has every key. Files that it names lie beside it.
 
-    Raises LandingError: missing file, TOML syntax, unknown keys or names, values out of bounds, an empty range, a bad table.
+    Raises LandingError: missing file, TOML syntax, unknown keys or names, values out of bounds, an
+        empty range, a bad table.
     """
     document, text = toml_keys.read(path)
     try:
@@ -113,15 +144,24 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
             raise LandingError(f"{name} is given twice, in [set] or as a [[factor]]; leave one")
     table = _states(told, method, path, given)
     if table is None and not factors:
-        raise LandingError('the study varies nothing; add a [[factor]], or method = "table" with table = "FILE.csv"')
+        raise LandingError(
+            'the study varies nothing; add a [[factor]], or method = "table" with table = "FILE.csv"'
+        )
     samples = _samples(told, method)
     if method == "grid":
         grid(factors)
     parameters = _parameters(told, path, fixed)
     numbers = {name: toml_keys.number(told, q) for name, q in NUMBERS.items()}
     if numbers["every"] > numbers["until"]:
-        raise LandingError(f"every = {numbers['every']:g} s is above until = {numbers['until']:g} s; no landing would have a second sample")
-    limits = {name: float(v) for name, v in toml_keys.values(toml_keys.table(document, "limits"), LIMITS, "limit").items()}
+        raise LandingError(
+            f"every = {numbers['every']:g} s is above until = {numbers['until']:g} s; no landing would have a second sample"
+        )
+    limits = {
+        name: float(v)
+        for name, v in toml_keys.values(
+            toml_keys.table(document, "limits"), LIMITS, "limit"
+        ).items()
+    }
     name = toml_keys.text(told, "name", path.stem)
     if Path(name).name != name:
         raise LandingError(f"name = {name!r} names a folder; take one without '/'")
@@ -142,29 +182,45 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
     )
 
 
-def _states(told: Mapping[str, Any], method: str, path: Path, given: Collection[str]) -> Design | None:
+def _states(
+    told: Mapping[str, Any], method: str, path: Path, given: Collection[str]
+) -> Design | None:
     if method != "table":
         for key in ("table", "ignore"):
             if key in told:
-                raise LandingError(f'{key} = {told[key]!r} belongs to method = "table"; this study\'s is {method!r}')
+                raise LandingError(
+                    f'{key} = {told[key]!r} belongs to method = "table"; this study\'s is {method!r}'
+                )
         return None
     if "table" not in told:
         raise LandingError('method = "table" needs table = "FILE.csv", the touchdown states')
-    return read_states(path.parent / toml_keys.text(told, "table", ""), toml_keys.texts(told, "ignore") or (), given)
+    return read_states(
+        path.parent / toml_keys.text(told, "table", ""),
+        toml_keys.texts(told, "ignore") or (),
+        given,
+    )
 
 
-def _parameters(told: Mapping[str, Any], path: Path, fixed: Mapping[str, float | str]) -> Parameters:
+def _parameters(
+    told: Mapping[str, Any], path: Path, fixed: Mapping[str, float | str]
+) -> Parameters:
     preset = toml_keys.text(told, "preset", "") if "preset" in told else None
     file = path.parent / toml_keys.text(told, "parameters", "") if "parameters" in told else None
     parameters = choose_parameters(preset, file)
-    return parameters.with_values({name: value for name, value in fixed.items() if name in PARAMETER_QUANTITIES}, "study")
+    return parameters.with_values(
+        {name: value for name, value in fixed.items() if name in PARAMETER_QUANTITIES}, "study"
+    )
 
 
-def _modes(told: Mapping[str, Any], parameters: Parameters, given: Collection[str]) -> tuple[str, ...]:
+def _modes(
+    told: Mapping[str, Any], parameters: Parameters, given: Collection[str]
+) -> tuple[str, ...]:
     modes = toml_keys.texts(told, "modes")
     if "drop.mode" in given:
         if modes is not None:
-            raise LandingError("drop.mode is given as a factor, in [set] or in the table, and modes in [study]; leave one")
+            raise LandingError(
+                "drop.mode is given as a factor, in [set] or in the table, and modes in [study]; leave one"
+            )
         return ()
     for mode in modes or ():
         if mode not in MODES:
@@ -175,7 +231,9 @@ def _modes(told: Mapping[str, Any], parameters: Parameters, given: Collection[st
 def _samples(told: Mapping[str, Any], method: str) -> int:
     if method in ("grid", "table"):
         if "samples" in told:
-            raise LandingError(f'samples = {told["samples"]!r} belongs to "lhs" and "sobol"; a {method} has as many as its points are')
+            raise LandingError(
+                f'samples = {told["samples"]!r} belongs to "lhs" and "sobol"; a {method} has as many as its points are'
+            )
         return 0
     if "samples" not in told:
         raise LandingError(f"{method} needs samples = N, the number of points")

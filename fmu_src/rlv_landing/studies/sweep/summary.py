@@ -16,7 +16,9 @@ SHOWN_FAILURES = 5
 
 @dataclass(frozen=True)
 class Spread:
-    """A response over the landings that have it: how many, smallest, 5 %, median, 95 %, largest [SI]."""
+    """A response over the landings that have it: how many, smallest, 5 %, median, 95 %, largest
+    [SI].
+    """
 
     name: str
     unit: str
@@ -26,7 +28,9 @@ class Spread:
 
 @dataclass
 class Summary:
-    """A study's results: `outcomes` counts names, `failures` are the first few (index, reason) of `failed`."""
+    """A study's results: `outcomes` counts names, `failures` are the first few (index, reason) of
+    `failed`.
+    """
 
     landings: int
     failed: int = 0
@@ -37,9 +41,18 @@ class Summary:
     def record(self) -> dict[str, Any]:
         """The same for JSON."""
         names = ("min", "p5", "median", "p95", "max")
-        spreads = {s.name: {"unit": s.unit, "count": s.count, **dict(zip(names, s.quantiles))} for s in self.spreads}
+        spreads = {
+            s.name: {"unit": s.unit, "count": s.count, **dict(zip(names, s.quantiles))}
+            for s in self.spreads
+        }
         failures = [{"index": index, "error": reason} for index, reason in self.failures]
-        return {"landings": self.landings, "failed": self.failed, "failures": failures, "outcomes": self.outcomes, "responses": spreads}
+        return {
+            "landings": self.landings,
+            "failed": self.failed,
+            "failures": failures,
+            "outcomes": self.outcomes,
+            "responses": spreads,
+        }
 
 
 def summarise_results(path: Path) -> Summary:
@@ -65,6 +78,10 @@ def summarise_results(path: Path) -> Summary:
         elif name in known and known[name].kind == "real":
             numbers = np.array([v for v in values(name) if v is not None], dtype=float)
             if len(numbers):
-                low, p5, median, p95, high = map(float, np.quantile(numbers, (0.0, 0.05, 0.5, 0.95, 1.0)))
-                summary.spreads.append(Spread(name, known[name].unit, len(numbers), (low, p5, median, p95, high)))
+                low, p5, median, p95, high = map(
+                    float, np.quantile(numbers, (0.0, 0.05, 0.5, 0.95, 1.0))
+                )
+                summary.spreads.append(
+                    Spread(name, known[name].unit, len(numbers), (low, p5, median, p95, high))
+                )
     return summary

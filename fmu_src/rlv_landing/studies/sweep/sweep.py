@@ -1,4 +1,6 @@
-"""Runs a study's landings on all cores or a cluster, in any order, and keeps their rows in the order of their index."""
+"""Runs a study's landings on all cores or a cluster, in any order, and keeps their rows in the
+order of their index.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +41,10 @@ class Engine(Protocol):
         """How many tasks may wait at once."""
 
     def stop(self, tasks: Sequence[Any]) -> list[Rows]:
-        """Begin nothing more. The rows of those tasks, from the first on without a gap, that are there or were begun."""
+        """Begin nothing more.
+
+        The rows of those tasks, from the first on without a gap, that are there or were begun.
+        """
 
 
 class Threads:
@@ -103,9 +108,17 @@ def threads(plan: Plan, workers: int | None = None) -> Iterator[Engine]:
 
 
 class Sweep:
-    """One run of a study: `progress` is told how many more landings are done, and label and reason of those that failed."""
+    """One run of a study: `progress` is told how many more landings are done, and label and reason
+    of those that failed.
+    """
 
-    def __init__(self, task: Task, results: Results, progress: Callable[[int, Failed], object], strict: bool = False) -> None:
+    def __init__(
+        self,
+        task: Task,
+        results: Results,
+        progress: Callable[[int, Failed], object],
+        strict: bool = False,
+    ) -> None:
         self._task = task
         self._results = results
         self._progress = progress
@@ -115,8 +128,9 @@ class Sweep:
     def run(self, engine: Engine) -> None:
         """Make every landing that the results lack.
 
-        What is done is in the results whatever happens: KeyboardInterrupt, a lost cluster, a disk that refuses (OSError). Raises
-        LandingError, when strict, at the first landing that fails, and for a lost cluster.
+        What is done is in the results whatever happens: KeyboardInterrupt, a lost cluster, a disk
+        that refuses (OSError). Raises LandingError, when strict, at the first landing that fails,
+        and for a lost cluster.
         """
         waiting: deque[tuple[int, Any]] = deque()
         try:
@@ -135,7 +149,8 @@ class Sweep:
 
     def _keep_first(self, waiting: deque[tuple[int, Any]], engine: Engine) -> None:
         made = engine.result(waiting[0][1])
-        # interrupted from here on, rows may be missing, for `--resume` to make, but none is kept twice
+        # interrupted from here on, rows may be missing, for `--resume` to make, but none is kept
+        # twice
         first, _ = waiting.popleft()
         self._keep(first, made)
 
@@ -143,7 +158,10 @@ class Sweep:
         """Put the landings from `first` on into the results."""
         task = self._task
         values = task.rows(first, first + len(made))
-        rows = [[first + i, task.sample(first + i), task.study.seed, *v.values(), *row] for i, (v, row) in enumerate(zip(values, made))]
+        rows = [
+            [first + i, task.sample(first + i), task.study.seed, *v.values(), *row]
+            for i, (v, row) in enumerate(zip(values, made))
+        ]
         failed = [i for i, row in enumerate(rows) if row[self._error] is not None]
         told = [(task.label(first + i), str(rows[i][self._error])) for i in failed]
         if self._strict and failed:
@@ -154,7 +172,10 @@ class Sweep:
 
 
 def check_all(task: Task) -> None:
-    """Set up every landing of a study without running it. Raises LandingError naming the first rows that are refused."""
+    """Set up every landing of a study without running it.
+
+    Raises LandingError naming the first rows that are refused.
+    """
     refused: Failed = []
     for index in range(len(task)):
         try:
@@ -163,4 +184,7 @@ def check_all(task: Task) -> None:
             refused.append((task.label(index), str(e)))
     if refused:
         told = "; ".join(f"{label}: {reason}" for label, reason in refused[:5])
-        raise LandingError(f"{len(refused)} of {len(task)} landings are refused: {told}" + ("; ..." if len(refused) > 5 else ""))
+        raise LandingError(
+            f"{len(refused)} of {len(task)} landings are refused: {told}"
+            + ("; ..." if len(refused) > 5 else "")
+        )
