@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from math import cos, radians, sin
-from typing import Annotated, Any, get_args, get_type_hints
+from typing import Annotated, Any, Literal, get_args, get_type_hints
 
 from .errors import LandingError, unknown
 from .quantities import MODES, Quantity
@@ -124,9 +124,9 @@ def _table() -> dict[str, Quantity]:
         for f in fields(owner):
             q: Quantity = get_args(hints[f.name])[1]
             name = f"{group}.{f.name}"
-            table[name] = replace(
-                q, name=name, default=f.default, kind="string" if q.choices else "real"
-            )  # type: ignore[arg-type]
+            default: Any = f.default
+            kind: Literal["string", "real"] = "string" if q.choices else "real"
+            table[name] = replace(q, name=name, default=default, kind=kind)
     return table
 
 
