@@ -35,6 +35,10 @@ BODY_RELATIVE = BodyState(x=0.0, y=0.0, pitch=0.0, vx=0.0, vy=0.0, pitch_rate=0.
 LEG_RELATIVE = LegState(r=0.0, h=0.0, vr=0.0, vh=0.0, z1=1.0, z2=1.0, q1=0.0, q2=0.0)
 
 
+# the names of parameters by their symbols, which are the models' names for them
+BY_SYMBOL = {q.symbol: name for name, q in PARAMETER_QUANTITIES.items() if q.symbol}
+
+
 def flat_state(body: BodyState, legs: Iterable[LegState], accounts: Accounts) -> array[float]:
     """The numbers of a state: the body's, each leg group's, the accounts."""
     return array("d", [*body, *(number for leg in legs for number in leg), *accounts])
@@ -144,5 +148,7 @@ def _by_symbol(
     parameters: Parameters, fields: Iterable[str], own: Mapping[str, float]
 ) -> dict[str, float]:
     """The `fields` of a model: its `own`, and by their symbols those of the parameters."""
-    symbols = {q.symbol: parameters[name] for name, q in PARAMETER_QUANTITIES.items() if q.symbol}
-    return {field: float(own[field] if field in own else symbols[field]) for field in fields}
+    return {
+        field: float(own[field] if field in own else parameters[BY_SYMBOL[field]])
+        for field in fields
+    }

@@ -7,11 +7,9 @@ axes turned by the pitch, which is clockwise positive; the origin is the body's 
 (CG). Leg: r radially out and h up from the CG in a plane fixed in the body, t across it. Ground: n
 out of the ground, 1 and 2 along it, 1 down the slope and 2 along inertial z.
 
-Records are handed on by value; those named `...Model`, which are long and never change, by address.
-All fields are numbers.
+All fields are numbers. Compiled, a record that stands in an array is handed on by its address, one
+that was just made by value.
 """
-
-from __future__ import annotations
 
 from enum import IntEnum
 from typing import NamedTuple
