@@ -11,14 +11,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rclpy.serialization import deserialize_message, serialize_message
 from scipy.spatial.transform import Rotation
+from sensor_msgs.msg import JointState
 
 from rlv_landing import Landing, load_preset
+from rlv_landing.errors import LandingError
 from rlv_landing.quantities import OUTPUT_NAMES
 from rlv_ros_bridge.messages.axes import from_ros, pitch_quaternion, to_ros, world_to_body
 from rlv_ros_bridge.messages.columns import COLUMN_NAMES, sample_columns
+from rlv_ros_bridge.messages.fields import FIELDS
 from rlv_ros_bridge.messages.markers import Wireframe
 from rlv_ros_bridge.messages.samples import SampleMessages
-from rlv_ros_bridge.messages.topics import CLOCK, ODOM
+from rlv_ros_bridge.messages.topics import CLOCK, JOINTS, ODOM, SAMPLED, STRUTS
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 # The paper's x forward, y up, z right, each in ROS's x forward, y left, z up.
@@ -94,6 +97,28 @@ def test_columns_from_messages_are_the_sample_bit_for_bit(numbers: list[float]) 
     assert {name: bits(value) for name, value in back.items()} == {
         name: bits(value) for name, value in values.items()
     }
+
+
+def test_a_message_field_is_written_once_and_an_output_read_back_once() -> None:
+    paths = [(field.topic, path) for field in FIELDS for path in field.paths]
+    assert len(set(paths)) == len(paths)
+    assert len(set(COLUMN_NAMES)) == len(COLUMN_NAMES)
+    assert {field.topic for field in FIELDS} == set(SAMPLED)
+
+
+@pytest.mark.parametrize(
+    ("name", "strokes", "reason"),
+    [
+        (JOINTS[::-1], 8, "the log's struts are called leg_4_auxiliary_strut, "),
+        (JOINTS, 7, "has 7 elements of position; a landing's has position\\[7\\]"),
+    ],
+)
+def test_struts_of_another_vehicle_are_not_read(
+    name: tuple[str, ...], strokes: int, reason: str
+) -> None:
+    message = JointState(name=list(name), position=[0.0] * strokes)
+    with pytest.raises(LandingError, match=reason):
+        sample_columns({STRUTS.name: message})
 
 
 def test_message_objects_are_filled_again_without_leftovers() -> None:
