@@ -144,10 +144,10 @@ class SampleBytes:
             values: all outputs in the order of `OUTPUT_NAMES`, SI, the paper's axes.
             sequence: the number that follows each prefix.
         """
-        numbers = [*values]
+        computed: list[float] = []
         for compute, pick in self._computations:
-            numbers += compute(*pick(values))
-        return self._layout.pack(nanoseconds, numbers, sequence)
+            computed += compute(*pick(values))
+        return self._layout.pack(nanoseconds, values, sequence, computed)
 
 
 def _picker(positions: tuple[int, ...]) -> Callable[[Sequence[float]], Any]:

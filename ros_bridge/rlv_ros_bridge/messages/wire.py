@@ -21,6 +21,9 @@ SENTINEL_STAMP = 305_419_896 * NANOSECONDS + 591_751_049
 # CDR: four bytes of encapsulation, which tell the byte order, then the fields; a float64 begins at
 # a multiple of eight from there.
 ENCAPSULATION = 4
+# A message's stamp: seconds, nanoseconds. What follows a prefix: sequence number, stamp twice [ns].
+STAMP = struct.Struct("<iI")
+TIMES = struct.Struct("<IQQ")
 
 
 def padded(data: bytes) -> bytes:
@@ -35,12 +38,13 @@ def sentinel_numbers(count: int) -> list[float]:
 
 
 class Slots(NamedTuple):
-    """Positions in the list that `MessageLayout.pack` picks from, after the caller's numbers."""
+    """Positions in the list that `MessageLayout.pack` picks from, after the caller's numbers.
 
-    seconds: int
-    nanosec: int
+    `stamp` and `times` are what `STAMP` and `TIMES` pack, `constants` is the first of the constants.
+    """
+
     stamp: int
-    sequence: int
+    times: int
     constants: int
 
 
@@ -73,7 +77,7 @@ class MessageLayout:
                 "messages are not serialised as little-endian CDR here; "
                 "choose RMW_IMPLEMENTATION=rmw_fastrtps_cpp"
             )
-        self._slots = Slots(*range(len(sentinels), len(sentinels) + 5))
+        self._slots = Slots(*range(len(sentinels), len(sentinels) + 3))
         self._numbers = {struct.pack("<d", s): i for i, s in enumerate(sentinels) if s != 0.0}
         self._format = ["<"]
         self._constants: list[bytes] = []
@@ -95,10 +99,10 @@ class MessageLayout:
         self._pack = struct.Struct("".join(self._format)).pack
 
     def _prefix(self, prefix: bytes) -> list[int]:
-        """Adds a prefix, the sequence number and both stamps; the positions of what they are packed from."""
+        """Adds a prefix and `TIMES`; the positions of what they are packed from."""
         position = self._constant(prefix)
-        self._format.append("IQQ")
-        return [position, self._slots.sequence, self._slots.stamp, self._slots.stamp]
+        self._format.append(f"{TIMES.size}s")
+        return [position, self._slots.times]
 
     def _constant(self, data: bytes) -> int:
         """Adds constant bytes; their position in the list to pick from."""
@@ -108,44 +112,50 @@ class MessageLayout:
 
     def _learn(self, data: bytes) -> list[int]:
         """Adds a message; the positions of what each part of it is packed from."""
-        sentinel_stamp = struct.pack("<iI", *divmod(SENTINEL_STAMP, NANOSECONDS))
+        sentinel_stamp = STAMP.pack(*divmod(SENTINEL_STAMP, NANOSECONDS))
         picked: list[int] = []
         at = constant_from = 0
         while at < len(data):
             word = data[at : at + 8]
             aligned = (at - ENCAPSULATION) % 8 == 0
             if word == sentinel_stamp:
-                part, positions = "iI", [self._slots.seconds, self._slots.nanosec]
+                part, position = f"{STAMP.size}s", self._slots.stamp
             elif aligned and word in self._numbers:
-                part, positions = "d", [self._numbers[word]]
+                part, position = "d", self._numbers[word]
             else:
                 at += 4
                 continue
             if at > constant_from:
                 picked.append(self._constant(data[constant_from:at]))
             self._format.append(part)
-            picked += positions
+            picked.append(position)
             at += 8
             constant_from = at
         if constant_from < len(data):
             picked.append(self._constant(data[constant_from:]))
         return picked
 
-    def pack(self, nanoseconds: int, numbers: Sequence[float], sequence: int = 0) -> bytes:
+    def pack(
+        self,
+        nanoseconds: int,
+        numbers: Sequence[float],
+        sequence: int = 0,
+        more: Sequence[float] = (),
+    ) -> bytes:
         """The messages, one after the other.
 
         Args:
             nanoseconds: their stamp [ns].
             numbers: in the order of the sentinels.
             sequence: the number that follows each prefix.
+            more: the last of the numbers, where the caller has them apart.
         """
         # In the order of `Slots`.
         values = [
             *numbers,
-            nanoseconds // NANOSECONDS,
-            nanoseconds % NANOSECONDS,
-            nanoseconds,
-            sequence,
+            *more,
+            STAMP.pack(nanoseconds // NANOSECONDS, nanoseconds % NANOSECONDS),
+            TIMES.pack(sequence, nanoseconds, nanoseconds),
             *self._constants,
         ]
         return self._pack(*self._pick(values))
