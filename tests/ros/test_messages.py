@@ -104,6 +104,10 @@ def test_a_message_field_is_written_once_and_an_output_read_back_once() -> None:
     assert len(set(paths)) == len(paths)
     assert len(set(COLUMN_NAMES)) == len(COLUMN_NAMES)
     assert {field.topic for field in FIELDS} == set(SAMPLED)
+    for field in FIELDS:
+        written = field.write(*(0.5 for _ in field.outputs))
+        assert len(written) == len(field.paths)
+        assert field.read is None or len(field.read(*written)) == len(field.outputs)
 
 
 @pytest.mark.parametrize(

@@ -40,6 +40,7 @@ from .topics import (
     WORLD_FRAME,
     Topic,
 )
+from .wire import NANOSECONDS
 
 Conversion = Callable[..., Sequence[float]]
 INDEX = {name: i for i, name in enumerate(OUTPUT_NAMES)}
@@ -87,8 +88,8 @@ def _contact(leg: int, topic: Topic) -> Field:
     return Field(topic, xyz("wrench.force"), force, write=to_ros, read=from_ros)
 
 
-# Columns of logs stand in this order. Odometry repeats what other topics tell, so it is not read
-# back; its twist is in the body's frame, by nav_msgs/Odometry's definition.
+# Columns of logs stand in this order. Odometry repeats what other topics carry, so it is not read
+# back. Its twist is in the body's frame, by nav_msgs/Odometry's definition.
 FIELDS: tuple[Field, ...] = (
     Field(STRUTS, _elements("position"), strut_outputs("stroke")),
     Field(STRUTS, _elements("velocity"), strut_outputs("stroke_rate")),
@@ -169,7 +170,7 @@ def expected_fields(topic: str, values: Mapping[str, float], nanoseconds: int) -
     Returns:
         Path -> number or text. A field that is not named is 0, or empty.
     """
-    seconds, rest = divmod(nanoseconds, 1_000_000_000)
+    seconds, rest = divmod(nanoseconds, NANOSECONDS)
     stamp = {"header.stamp.sec": seconds, "header.stamp.nanosec": rest}
     return {**expected_numbers(topic, values), **TOPIC_TEXTS[topic], **stamp}
 

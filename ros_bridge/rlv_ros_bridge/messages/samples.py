@@ -85,7 +85,7 @@ class SampleMessages:
     def put(self, nanoseconds: int, numbers: Iterable[float]) -> None:
         """Puts `numbers` into the messages, one for each path of `FIELDS` in the table's order."""
         set_stamp(self._stamp, nanoseconds)
-        for set_number, number in zip(self._setters, numbers):
+        for set_number, number in zip(self._setters, numbers, strict=True):
             set_number(float(number))
 
 

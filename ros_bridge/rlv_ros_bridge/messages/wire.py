@@ -40,7 +40,8 @@ def sentinel_numbers(count: int) -> list[float]:
 class Slots(NamedTuple):
     """Positions in the list that `MessageLayout.pack` picks from, after the caller's numbers.
 
-    `stamp` and `times` are what `STAMP` and `TIMES` pack, `constants` is the first of the constants.
+    `stamp` and `times` are the bytes that `STAMP` and `TIMES` pack; from `constants` on stand the
+    constant bytes.
     """
 
     stamp: int
@@ -56,8 +57,8 @@ class MessageLayout:
             numbers `sentinels`.
         sentinels: float64 values, all different; 0 for a number that no message carries.
         prefixes: what comes before each message, if anything. After a prefix that is not empty
-            follow a sequence number (uint32) and the stamp [ns] (uint64) twice, and then the message: a
-            record of MCAP.
+            follow a sequence number (uint32) and the stamp [ns] (uint64) twice, and then the
+            message: a record of MCAP.
 
     `slices` tell where each message is in what `pack` gives, without its prefix.
 
