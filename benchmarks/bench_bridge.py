@@ -176,12 +176,12 @@ def parts(folder: Path) -> dict[str, float]:
     plain = SampleBytes()
     recorder = Recorder(folder, [RecordedTopic(t.name, t.type_name, TELEMETRY) for t in SAMPLED])
     sizes = {
-        t.name: place.stop - place.start
-        for t, place in zip(plain.topics, plain.places)
+        t.name: part.stop - part.start
+        for t, part in zip(plain.topics, plain.slices)
         if t in SAMPLED
     }
     packer = SampleBytes(dict(zip(plain.topics[1:], recorder.begin_samples(sizes))))
-    records = slice(packer.places[0].stop, None)
+    records = slice(packer.slices[0].stop, None)
     packed: list[bytes] = []
     pack = cost(
         lambda: [

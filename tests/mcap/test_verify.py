@@ -234,12 +234,12 @@ def steer(whole: Path, folder: Path) -> LogReader:
         RecordedTopic(f"/landing/{t.name}", t.type_name, TELEMETRY) for t in (*SAMPLED, *APPLIED)
     ]
     recorder = Recorder(folder, entries, reader.metadata, reader.attachments)
-    recorded = [(t, place) for t, place in zip(packer.topics, packer.places) if t in SAMPLED]
+    recorded = [(t, part) for t, part in zip(packer.topics, packer.slices) if t in SAMPLED]
     for k in range(1001):
         landing.advance_to(k * 1e-3)
         messages = packer.pack(k * 1_000_000, tuple(landing.outputs().values()))
-        for topic, place in recorded:
-            recorder.write(f"/landing/{topic.name}", k * 1_000_000, messages[place])
+        for topic, part in recorded:
+            recorder.write(f"/landing/{topic.name}", k * 1_000_000, messages[part])
         for topic, names, sizes in (
             (APPLIED_WRENCH, WRENCH, (900.0, 400.0, 60.0)),
             (APPLIED_GROUND, GROUND, (1e-3, 0.1, 1e-3, 0.02)),

@@ -11,13 +11,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rclpy.serialization import deserialize_message, serialize_message
 from scipy.spatial.transform import Rotation
+from sensor_msgs.msg import JointState
 
 from rlv_landing import Landing, load_preset
+from rlv_landing.errors import LandingError
 from rlv_landing.quantities import OUTPUT_NAMES
 from rlv_ros_bridge.messages.axes import from_ros, pitch_quaternion, to_ros, world_to_body
 from rlv_ros_bridge.messages.columns import COLUMN_NAMES, sample_columns
+from rlv_ros_bridge.messages.fields import FIELDS
 from rlv_ros_bridge.messages.markers import Wireframe
 from rlv_ros_bridge.messages.samples import SampleMessages
+from rlv_ros_bridge.messages.topics import CLOCK, JOINTS, ODOM, SAMPLED, STRUTS
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 # The paper's x forward, y up, z right, each in ROS's x forward, y left, z up.
@@ -66,7 +70,7 @@ def test_pitch_is_a_turn_about_ros_y_that_takes_the_nose_forward_and_down(pitch:
 @given(st.floats(-3.0, 3.0), st.floats(-10.0, 10.0), st.floats(-10.0, 10.0))
 def test_odometry_tells_the_velocity_in_the_body(pitch: float, vx: float, vy: float) -> None:
     messages = filled(sample({"body.pitch": pitch, "body.vx": vx, "body.vy": vy}))
-    seen = messages.odom.twist.twist.linear
+    seen = messages.messages[ODOM].twist.twist.linear
     expected = Rotation.from_quat(pitch_quaternion(pitch)).inv().apply(to_ros(vx, vy, 0.0))
     assert np.allclose([seen.x, seen.y, seen.z], expected, atol=1e-12)
     assert np.allclose(world_to_body(vx, vy, pitch), (expected[0], expected[2]), atol=1e-12)
@@ -75,10 +79,9 @@ def test_odometry_tells_the_velocity_in_the_body(pitch: float, vx: float, vy: fl
 @given(st.integers(0, 2**31 * 10**9 - 1))
 def test_stamps_are_exact_to_the_nanosecond(nanoseconds: int) -> None:
     messages = filled([0.0] * len(OUTPUT_NAMES), nanoseconds)
-    for message in (*(m for _, m in messages.messages),):
-        stamp = message.header.stamp
+    for topic, message in messages.messages.items():
+        stamp = message.clock if topic is CLOCK else message.header.stamp
         assert stamp.sec * 10**9 + stamp.nanosec == nanoseconds
-    assert messages.clock.clock.sec * 10**9 + messages.clock.clock.nanosec == nanoseconds
 
 
 @settings(max_examples=50)
@@ -88,12 +91,38 @@ def test_columns_from_messages_are_the_sample_bit_for_bit(numbers: list[float]) 
     messages = filled(sample(values))
     sent: dict[str, Any] = {
         topic.name: deserialize_message(serialize_message(message), type(message))
-        for topic, message in messages.messages
+        for topic, message in messages.messages.items()
     }
     back = sample_columns(sent)
     assert {name: bits(value) for name, value in back.items()} == {
         name: bits(value) for name, value in values.items()
     }
+
+
+def test_a_message_field_is_written_once_and_an_output_read_back_once() -> None:
+    paths = [(field.topic, path) for field in FIELDS for path in field.paths]
+    assert len(set(paths)) == len(paths)
+    assert len(set(COLUMN_NAMES)) == len(COLUMN_NAMES)
+    assert {field.topic for field in FIELDS} == set(SAMPLED)
+    for field in FIELDS:
+        written = field.write(*(0.5 for _ in field.outputs))
+        assert len(written) == len(field.paths)
+        assert field.read is None or len(field.read(*written)) == len(field.outputs)
+
+
+@pytest.mark.parametrize(
+    ("name", "strokes", "reason"),
+    [
+        (JOINTS[::-1], 8, "the log's struts are called leg_4_auxiliary_strut, "),
+        (JOINTS, 7, "has 7 elements of position; a landing's has position\\[7\\]"),
+    ],
+)
+def test_struts_of_another_vehicle_are_not_read(
+    name: tuple[str, ...], strokes: int, reason: str
+) -> None:
+    message = JointState(name=list(name), position=[0.0] * strokes)
+    with pytest.raises(LandingError, match=reason):
+        sample_columns({STRUTS.name: message})
 
 
 def test_message_objects_are_filled_again_without_leftovers() -> None:
@@ -105,7 +134,7 @@ def test_message_objects_are_filled_again_without_leftovers() -> None:
     reused.fill(5, first)
     reused.fill(7, second)
     fresh = filled(second, 7)
-    for (_, a), (_, b) in zip(reused.messages, fresh.messages):
+    for a, b in zip(reused.messages.values(), fresh.messages.values()):
         assert serialize_message(a) == serialize_message(b)
 
 

@@ -6,17 +6,19 @@ import importlib
 from typing import Any
 
 import pytest
+from geometry_msgs.msg import Vector3Stamped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rclpy.serialization import deserialize_message, serialize_message
 from rosbags.typesys import Stores, get_typestore
 
 from rlv_landing import load_preset
+from rlv_landing.errors import LandingError
 from rlv_landing.quantities import OUTPUT_NAMES
 from rlv_ros_bridge.messages.markers import Wireframe
 from rlv_ros_bridge.messages.samples import SampleBytes, SampleMessages
-from rlv_ros_bridge.messages.topics import CLOCK, MARKERS
-from rlv_ros_bridge.messages.wire import padded
+from rlv_ros_bridge.messages.topics import MARKERS
+from rlv_ros_bridge.messages.wire import MessageLayout, padded, sentinel_numbers
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 SAMPLES = st.lists(FINITE, min_size=len(OUTPUT_NAMES), max_size=len(OUTPUT_NAMES))
@@ -48,7 +50,7 @@ def assert_same(ours: bytes, theirs: bytes, type_name: str) -> None:
 
 
 def split(packer: SampleBytes, whole: bytes) -> list[bytes]:
-    return [whole[place] for place in packer.places]
+    return [whole[part] for part in packer.slices]
 
 
 def message_class(name: str) -> Any:
@@ -61,7 +63,7 @@ def message_class(name: str) -> Any:
 def test_packed_samples_are_rclpys_own_bytes(nanoseconds: int, values: list[float]) -> None:
     packer, messages = SampleBytes(), SampleMessages()
     messages.fill(nanoseconds, values)
-    expected = {CLOCK: messages.clock, **dict(messages.messages)}
+    expected = messages.messages
     packed = dict(zip(packer.topics, split(packer, packer.pack(nanoseconds, values))))
     assert packed.keys() == expected.keys()
     for topic, data in packed.items():
@@ -84,6 +86,21 @@ def test_packed_markers_are_rclpys_own_bytes(mode: str) -> None:
         )
 
     holds()
+
+
+def test_a_number_that_stands_in_no_field_is_refused() -> None:
+    sentinels = sentinel_numbers(2)
+    stamped = Vector3Stamped()
+    stamped.vector.x = sentinels[0]
+    MessageLayout([serialize_message(stamped)], [sentinels[0], 0.0])
+    with pytest.raises(LandingError, match="1 of 2 numbers are not found"):
+        MessageLayout([serialize_message(stamped)], sentinels)
+
+
+def test_other_byte_orders_are_refused_with_what_helps() -> None:
+    big_endian = b"\x00\x00" + serialize_message(Vector3Stamped())[2:]
+    with pytest.raises(LandingError, match="choose RMW_IMPLEMENTATION=rmw_fastrtps_cpp"):
+        MessageLayout([big_endian], [])
 
 
 def test_a_packer_keeps_nothing_of_the_sample_before() -> None:

@@ -14,7 +14,7 @@ from typing import Any
 from rlv_landing.errors import LandingError
 
 from ..fmu.builds import why_not_exact
-from ..messages.fields import FIELDS, expected_fields, leaves
+from ..messages.fields import TOPIC_FIELDS, expected_fields, expected_numbers, leaves
 from ..messages.topics import resolve
 from .reader import Decoder, LogMessage, LogReader
 from .repeat import Run
@@ -143,7 +143,7 @@ class _Comparison:
         self._run = run
         self._found = found
         self._most_instants = most_instants
-        self._topics = {resolve(reader.namespace, name): name for name in FIELDS}
+        self._topics = {resolve(reader.namespace, name): name for name in TOPIC_FIELDS}
         self._decode = Decoder(reader)
         self._recovered = "recovered_from" in reader.metadata
         self._scales: Mapping[tuple[str, str], float] | None = None
@@ -231,8 +231,7 @@ def _largest(run: Run, count: int) -> dict[tuple[str, str], float]:
     scales: dict[tuple[str, str], float] = {}
     with closing(run.samples()) as samples:
         for values in islice(samples, count):
-            for topic, fields in FIELDS.items():
-                for path, value in fields(values).items():
-                    if isinstance(value, float):
-                        scales[topic, path] = max(scales.get((topic, path), 0.0), abs(value))
+            for topic in TOPIC_FIELDS:
+                for path, value in expected_numbers(topic, values).items():
+                    scales[topic, path] = max(scales.get((topic, path), 0.0), abs(value))
     return scales

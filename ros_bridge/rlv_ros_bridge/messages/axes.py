@@ -1,4 +1,8 @@
-"""The one place where the paper's axes are turned into ROS's, and back."""
+"""The one place where the paper's axes are turned into ROS's, and back.
+
+The paper: x forward, y up, z right, pitch clockwise positive in the x-y plane. ROS (REP-103): x
+forward, y left, z up. So the paper's pitch is a positive turn about ROS +y: nose down.
+"""
 
 from __future__ import annotations
 
@@ -9,28 +13,50 @@ IN_PLANE = -0.0
 
 
 def to_ros(x: float, y: float, z: float) -> tuple[float, float, float]:
-    """A vector of the paper's axes (x forward, y up, z right) in REP-103 axes (x forward, y left, z
-    up). Exact: no digit changes.
-    """
+    """A vector of the paper's axes in ROS axes; exact: no digit changes."""
     return x, -z, y
 
 
 def from_ros(x: float, y: float, z: float) -> tuple[float, float, float]:
-    """The inverse of `to_ros`."""
+    """A vector of ROS axes in the paper's axes: the inverse of `to_ros`."""
     return x, z, -y
 
 
 def pitch_quaternion(pitch: float) -> tuple[float, float, float, float]:
-    """(x, y, z, w) of the attitude.
-
-    The paper's pitch, clockwise positive [rad], is a positive turn about ROS +y: nose down.
-    """
+    """The attitude (x, y, z, w) in ROS axes of a body at the paper's `pitch` [rad]."""
     return 0.0, sin(0.5 * pitch), 0.0, cos(0.5 * pitch)
 
 
 def world_to_body(x: float, z: float, pitch: float) -> tuple[float, float]:
-    """The in-plane vector (x, z) of the map, ROS axes, seen from the body that is turned by `pitch`
-    [rad].
+    """A vector in the body's plane, from the frame of the map to that of the body.
+
+    Args:
+        x: forward in the map, ROS axes.
+        z: up in the map, ROS axes.
+        pitch: the body's, clockwise positive [rad].
+
+    Returns:
+        The vector's x and z in the body's frame, ROS axes, in the unit of `x` and `z`.
     """
     s, c = sin(pitch), cos(pitch)
     return c * x - s * z, s * x + c * z
+
+
+def xyz(path: str) -> tuple[str, str, str]:
+    """The fields of the vector at `path` of a message, in the order of `to_ros`."""
+    return f"{path}.x", f"{path}.y", f"{path}.z"
+
+
+def xyzw(path: str) -> tuple[str, str, str, str]:
+    """The fields of the quaternion at `path` of a message, in the order of `pitch_quaternion`."""
+    return f"{path}.x", f"{path}.y", f"{path}.z", f"{path}.w"
+
+
+def in_plane(path: str) -> tuple[str, str]:
+    """The fields that the paper's x and y (up) are in the vector at `path` of a message."""
+    return f"{path}.x", f"{path}.z"
+
+
+def about_pitch(path: str) -> tuple[str]:
+    """The field that a turn or moment in the pitch's sense is in the vector at `path`."""
+    return (f"{path}.y",)

@@ -1,74 +1,91 @@
-"""Messages back to the model's outputs: the inverse of `messages.py`, digit for digit.
+"""Reads the model's outputs back from messages, digit for digit: the inverse of `samples.py`.
 
-Needs no ROS 2.
-
-A message here is anything with the fields of the ROS message: rclpy's own object or one decoded
-    from a log.
+Made from `fields.FIELDS`. Needs no ROS 2: a message is anything with the fields of the ROS message,
+rclpy's own object or one decoded from a log.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from operator import attrgetter
 from typing import Any
 
 from rlv_landing.errors import LandingError
-from rlv_landing.quantities import LEGS
 
-from .axes import from_ros
-from .topics import ACCEL, CONTACTS, JOINTS, POSE, RPY, STRUTS, TOP_ACCEL, TWIST
+from .fields import TOPIC_FIELDS, Conversion, Field, split
+from .topics import JOINTS, STRUTS
 
 Reading = Callable[[Any], Sequence[float]]
 
 
-def _struts(message: Any) -> list[float]:
+def _getter(path: str) -> Callable[[Any], float]:
+    owner, key = split(path)
+    if not isinstance(key, int):
+        return attrgetter(path)
+    elements, index = attrgetter(owner), key
+
+    def element(message: Any) -> float:
+        try:
+            return float(elements(message)[index])
+        except IndexError:
+            raise LandingError(
+                f"a message has {len(elements(message))} elements of {owner}; "
+                f"a landing's has {path}: the log was made by another program"
+            ) from None
+
+    return element
+
+
+def _check_joints(message: Any) -> None:
     if tuple(message.name) != JOINTS:
         raise LandingError(
-            f"the log's struts are called {', '.join(message.name)}; a landing's are {', '.join(JOINTS)}"
+            f"the log's struts are called {', '.join(message.name)}; "
+            f"a landing's are {', '.join(JOINTS)}"
         )
-    return [*message.position, *message.velocity, *message.effort]
 
 
-def _strut_names() -> list[str]:
-    struts = [f"leg[{leg}].{strut}" for leg in LEGS for strut in ("main_strut", "auxiliary_strut")]
-    return [f"{strut}.{what}" for what in ("stroke", "stroke_rate", "force") for strut in struts]
+def _reading(topic: str, fields: Sequence[Field]) -> tuple[tuple[str, ...], Reading]:
+    """The outputs that are read back from the messages of `topic`, and how."""
+    reads: list[tuple[Conversion, list[Callable[[Any], float]]]] = [
+        (f.read, [_getter(path) for path in f.paths]) for f in fields if f.read is not None
+    ]
+    outputs = tuple(name for f in fields if f.read is not None for name in f.outputs)
+
+    def read(message: Any) -> list[float]:
+        if topic == STRUTS.name:
+            _check_joints(message)
+        return [
+            number
+            for convert, getters in reads
+            for number in convert(*[get(message) for get in getters])
+        ]
+
+    return outputs, read
 
 
-def _in_plane(vector: Any) -> tuple[float, float]:
-    x, y, _ = from_ros(vector.x, vector.y, vector.z)
-    return x, y
-
-
-# topic -> the outputs that its messages carry, and how to read them
-READINGS: dict[str, tuple[Sequence[str], Reading]] = {
-    STRUTS.name: (_strut_names(), _struts),
-    POSE.name: (("body.x", "body.y"), lambda m: _in_plane(m.pose.position)),
-    RPY.name: (("body.pitch",), lambda m: (m.vector.y,)),
-    TWIST.name: (
-        ("body.vx", "body.vy", "body.pitch_rate"),
-        lambda m: (*_in_plane(m.twist.linear), m.twist.angular.y),
-    ),
-    ACCEL.name: (
-        ("body.ax", "body.ay", "body.pitch_acceleration"),
-        lambda m: (*_in_plane(m.accel.linear), m.accel.angular.y),
-    ),
-    TOP_ACCEL.name: (("body.top_axial_acceleration",), lambda m: (m.accel.linear.z,)),
-    **{
-        topic.name: (
-            tuple(f"leg[{leg}].contact.force_{axis}" for axis in "xyz"),
-            lambda m: from_ros(m.wrench.force.x, m.wrench.force.y, m.wrench.force.z),
-        )
-        for leg, topic in zip(LEGS, CONTACTS)
-    },
+# Relative topic name -> the outputs that are read back from its messages, and how. A reading raises
+# LandingError for struts of another vehicle.
+READINGS: dict[str, tuple[tuple[str, ...], Reading]] = {
+    topic: _reading(topic, fields)
+    for topic, fields in TOPIC_FIELDS.items()
+    if any(f.read is not None for f in fields)
 }
 
 COLUMN_NAMES: tuple[str, ...] = tuple(name for names, _ in READINGS.values() for name in names)
 
 
 def sample_columns(messages: Mapping[str, Any]) -> dict[str, float]:
-    """The outputs that `messages` (relative topic name -> message, of one instant) carry, by name."""
+    """The outputs that the messages of one instant carry.
+
+    Args:
+        messages: relative topic name -> message. Topics without outputs are passed over.
+
+    Returns:
+        Output name -> value, SI, the paper's axes.
+    """
     values: dict[str, float] = {}
     for topic, message in messages.items():
         if topic in READINGS:
-            names, reading = READINGS[topic]
-            values.update(zip(names, reading(message)))
+            names, read = READINGS[topic]
+            values.update(zip(names, read(message)))
     return values

@@ -1,6 +1,4 @@
-"""Message definitions as a log needs them: the `.msg` texts of a type and of all it is made of, and
-its hash.
-"""
+"""Message definitions as a log needs them: a type's hash, and the `.msg` texts of all its parts."""
 
 from __future__ import annotations
 
@@ -34,8 +32,12 @@ WITHOUT_WHEEL = {
 
 @dataclass(frozen=True)
 class Definition:
-    """A message type `pkg/msg/Type`: its text in the form of MCAP's `ros2msg` schema, and its hash
-    (`RIHS01_...`).
+    """A message type.
+
+    Args:
+        name: `pkg/msg/Type`.
+        text: its `.msg` text and those of its parts, in the form of MCAP's `ros2msg` schema.
+        type_hash: `RIHS01_...`; empty where the package does not tell it.
     """
 
     name: str

@@ -1,16 +1,29 @@
-"""What the fields of a landing's messages must hold, by their names: what `messages.py` publishes,
-told without ROS 2.
+"""The table of which output of the model stands in which field of which message: `FIELDS`.
+
+Messages are filled and packed by it (`samples.py`) and read back (`columns.py`), and `log verify`
+compares logs with it (`expected_fields`). A line here adds an output to a message. Needs no ROS 2.
 """
 
 from __future__ import annotations
 
+import re
 from array import array
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from rlv_landing.quantities import LEGS
+from rlv_landing.quantities import LEGS, OUTPUT_NAMES
 
-from .axes import IN_PLANE, pitch_quaternion, to_ros, world_to_body
+from .axes import (
+    about_pitch,
+    from_ros,
+    in_plane,
+    pitch_quaternion,
+    to_ros,
+    world_to_body,
+    xyz,
+    xyzw,
+)
 from .topics import (
     ACCEL,
     BODY_FRAME,
@@ -19,102 +32,147 @@ from .topics import (
     ODOM,
     POSE,
     RPY,
+    SAMPLED,
     STRUTS,
     TOP_ACCEL,
     TOP_FRAME,
     TWIST,
     WORLD_FRAME,
+    Topic,
+)
+from .wire import NANOSECONDS
+
+Conversion = Callable[..., Sequence[float]]
+INDEX = {name: i for i, name in enumerate(OUTPUT_NAMES)}
+ELEMENT = re.compile(r"(.+)\[(\d+)\]")
+
+
+def copied(*numbers: float) -> tuple[float, ...]:
+    """The conversion that changes nothing: each field is the output at the same position."""
+    return numbers
+
+
+@dataclass(frozen=True)
+class Field:
+    """Fields of one message that are made of some outputs.
+
+    Args:
+        topic: one of `topics.SAMPLED`.
+        paths: the fields, all float64: `pose.position.x`, or `position[3]` of an array.
+        outputs: the outputs that the fields are made of, SI, the paper's axes.
+        write: gives a number for each of `paths` from the values of `outputs`; SI, ROS axes. Its
+            result must follow from its arguments alone.
+        read: the inverse of `write`, digit for digit. None: the outputs are not read back from
+            these fields. Each output is read back from one field only.
+    """
+
+    topic: Topic
+    paths: tuple[str, ...]
+    outputs: tuple[str, ...]
+    write: Conversion = copied
+    read: Conversion | None = copied
+
+
+def strut_outputs(quantity: str) -> tuple[str, ...]:
+    """The outputs that are the struts' `quantity`, in the order of `JOINTS`."""
+    struts = ("main_strut", "auxiliary_strut")
+    return tuple(f"leg[{leg}].{strut}.{quantity}" for leg in LEGS for strut in struts)
+
+
+def _elements(path: str) -> tuple[str, ...]:
+    return tuple(f"{path}[{i}]" for i in range(len(JOINTS)))
+
+
+def _contact(leg: int, topic: Topic) -> Field:
+    force = tuple(f"leg[{leg}].contact.force_{axis}" for axis in "xyz")
+    return Field(topic, xyz("wrench.force"), force, write=to_ros, read=from_ros)
+
+
+# Columns of logs stand in this order. Odometry repeats what other topics carry, so it is not read
+# back. Its twist is in the body's frame, by nav_msgs/Odometry's definition.
+FIELDS: tuple[Field, ...] = (
+    Field(STRUTS, _elements("position"), strut_outputs("stroke")),
+    Field(STRUTS, _elements("velocity"), strut_outputs("stroke_rate")),
+    Field(STRUTS, _elements("effort"), strut_outputs("force")),
+    Field(POSE, in_plane("pose.position"), ("body.x", "body.y")),
+    Field(POSE, xyzw("pose.orientation"), ("body.pitch",), write=pitch_quaternion, read=None),
+    Field(RPY, about_pitch("vector"), ("body.pitch",)),
+    Field(TWIST, in_plane("twist.linear"), ("body.vx", "body.vy")),
+    Field(TWIST, about_pitch("twist.angular"), ("body.pitch_rate",)),
+    Field(ACCEL, in_plane("accel.linear"), ("body.ax", "body.ay")),
+    Field(ACCEL, about_pitch("accel.angular"), ("body.pitch_acceleration",)),
+    Field(TOP_ACCEL, ("accel.linear.z",), ("body.top_axial_acceleration",)),
+    *(_contact(leg, topic) for leg, topic in zip(LEGS, CONTACTS)),
+    Field(ODOM, in_plane("pose.pose.position"), ("body.x", "body.y"), read=None),
+    Field(ODOM, xyzw("pose.pose.orientation"), ("body.pitch",), write=pitch_quaternion, read=None),
+    Field(
+        ODOM,
+        in_plane("twist.twist.linear"),
+        ("body.vx", "body.vy", "body.pitch"),
+        write=world_to_body,
+        read=None,
+    ),
+    Field(ODOM, about_pitch("twist.twist.angular"), ("body.pitch_rate",), read=None),
 )
 
-Values = Mapping[str, float]
-Fields = dict[str, Any]
-QUANTITIES = {"position": "stroke", "velocity": "stroke_rate", "effort": "force"}
-
-
-def _vector(at: str, vector: tuple[float, float, float]) -> Fields:
-    return dict(zip((f"{at}.x", f"{at}.y", f"{at}.z"), vector))
-
-
-def _struts(v: Values) -> Fields:
-    columns = [f"leg[{leg}].{strut}" for leg in LEGS for strut in ("main_strut", "auxiliary_strut")]
-    values = {
-        f"{field}[{i}]": v[f"{c}.{what}"]
-        for field, what in QUANTITIES.items()
-        for i, c in enumerate(columns)
-    }
-    return {
-        **values,
-        **{f"name[{i}]": joint for i, joint in enumerate(JOINTS)},
-        "header.frame_id": BODY_FRAME,
-    }
-
-
-def _pose(v: Values, at: str = "pose") -> Fields:
-    turn = dict(zip((f"{at}.orientation.{c}" for c in "xyzw"), pitch_quaternion(v["body.pitch"])))
-    return {
-        **_vector(f"{at}.position", to_ros(v["body.x"], v["body.y"], IN_PLANE)),
-        **turn,
-        "header.frame_id": WORLD_FRAME,
-    }
-
-
-def _twist(v: Values) -> Fields:
-    linear = _vector("twist.linear", to_ros(v["body.vx"], v["body.vy"], IN_PLANE))
-    return {**linear, "twist.angular.y": v["body.pitch_rate"], "header.frame_id": WORLD_FRAME}
-
-
-def _accel(v: Values) -> Fields:
-    linear = _vector("accel.linear", to_ros(v["body.ax"], v["body.ay"], IN_PLANE))
-    return {
-        **linear,
-        "accel.angular.y": v["body.pitch_acceleration"],
-        "header.frame_id": WORLD_FRAME,
-    }
-
-
-def _odom(v: Values) -> Fields:
-    x, _, z = to_ros(v["body.vx"], v["body.vy"], IN_PLANE)
-    forward, up = world_to_body(x, z, v["body.pitch"])
-    twist = {
-        "twist.twist.linear.x": forward,
-        "twist.twist.linear.z": up,
-        "twist.twist.angular.y": v["body.pitch_rate"],
-    }
-    return {**_pose(v, "pose.pose"), **twist, "child_frame_id": BODY_FRAME}
-
-
-def _contact(leg: int) -> Callable[[Values], Fields]:
-    names = [f"leg[{leg}].contact.force_{axis}" for axis in "xyz"]
-
-    def contact(v: Values) -> Fields:
-        x, y, z = (v[name] for name in names)
-        return {**_vector("wrench.force", to_ros(x, y, z)), "header.frame_id": WORLD_FRAME}
-
-    return contact
-
-
-# relative topic -> what its fields must hold at a sample; a field that is not named is 0, or empty
-FIELDS: dict[str, Callable[[Values], Fields]] = {
-    STRUTS.name: _struts,
-    POSE.name: _pose,
-    RPY.name: lambda v: {"vector.y": v["body.pitch"], "header.frame_id": WORLD_FRAME},
-    TWIST.name: _twist,
-    ACCEL.name: _accel,
-    TOP_ACCEL.name: lambda v: {
-        "accel.linear.z": v["body.top_axial_acceleration"],
-        "header.frame_id": TOP_FRAME,
-    },
-    **{topic.name: _contact(leg) for leg, topic in zip(LEGS, CONTACTS)},
-    ODOM.name: _odom,
+# The fields that hold the same text in every sample.
+TEXTS: dict[Topic, dict[str, str]] = {
+    STRUTS: {"header.frame_id": BODY_FRAME, **dict(zip(_elements("name"), JOINTS))},
+    **{t: {"header.frame_id": WORLD_FRAME} for t in (POSE, RPY, TWIST, ACCEL, *CONTACTS)},
+    TOP_ACCEL: {"header.frame_id": TOP_FRAME},
+    ODOM: {"header.frame_id": WORLD_FRAME, "child_frame_id": BODY_FRAME},
 }
 
+# Relative topic name -> its fields, and its texts.
+TOPIC_FIELDS = {t.name: tuple(f for f in FIELDS if f.topic == t) for t in SAMPLED}
+TOPIC_TEXTS = {t.name: TEXTS.get(t, {}) for t in SAMPLED}
 
-def expected_fields(topic: str, values: Values, nanoseconds: int) -> Fields:
-    """The fields of the message of `topic` (relative) at the sample `values` (outputs by name) and
-    the time `nanoseconds`.
+
+def indices(*outputs: str) -> tuple[int, ...]:
+    """The positions of `outputs` in a sample, which is in the order of `OUTPUT_NAMES`."""
+    return tuple(INDEX[name] for name in outputs)
+
+
+def split(path: str) -> tuple[str, str | int]:
+    """The path of what holds a field ("" for the message), and the field's name or index in it."""
+    element = ELEMENT.fullmatch(path)
+    if element:
+        return element[1], int(element[2])
+    owner, _, name = path.rpartition(".")
+    return owner, name
+
+
+def expected_numbers(topic: str, values: Mapping[str, float]) -> dict[str, float]:
+    """The numbers of the message of `topic` (relative), by path, at the sample `values`.
+
+    Args:
+        topic: one of `TOPIC_FIELDS`.
+        values: outputs by name, SI, the paper's axes.
+
+    Returns:
+        Path -> number, SI, ROS axes. A field that is not named is 0.
     """
-    seconds, rest = divmod(nanoseconds, 1_000_000_000)
-    return {**FIELDS[topic](values), "header.stamp.sec": seconds, "header.stamp.nanosec": rest}
+    return {
+        path: number
+        for field in TOPIC_FIELDS[topic]
+        for path, number in zip(field.paths, field.write(*(values[o] for o in field.outputs)))
+    }
+
+
+def expected_fields(topic: str, values: Mapping[str, float], nanoseconds: int) -> dict[str, Any]:
+    """All fields of the message of `topic` (relative), by path, at the sample `values`.
+
+    Args:
+        topic: one of `TOPIC_FIELDS`.
+        values: outputs by name, SI, the paper's axes.
+        nanoseconds: simulation time of the sample [ns].
+
+    Returns:
+        Path -> number or text. A field that is not named is 0, or empty.
+    """
+    seconds, rest = divmod(nanoseconds, NANOSECONDS)
+    stamp = {"header.stamp.sec": seconds, "header.stamp.nanosec": rest}
+    return {**expected_numbers(topic, values), **TOPIC_TEXTS[topic], **stamp}
 
 
 def leaves(message: Any, at: str = "") -> Iterator[tuple[str, Any]]:

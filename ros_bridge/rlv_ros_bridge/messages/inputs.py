@@ -31,12 +31,14 @@ QUANTITIES = {q.name: q for q in INPUT_QUANTITIES}
 def read_wrench(message: Any) -> dict[str, float]:
     """The inputs that a WrenchStamped asks for.
 
-    Raises LandingError: another frame than the world's, not finite, out of bounds.
+    Raises:
+        LandingError: another frame than the world's, not finite, out of bounds.
     """
     frame = message.header.frame_id
     if frame not in ("", WORLD_FRAME):
         raise LandingError(
-            f"external_wrench is given in the frame {frame!r}; give it in {WORLD_FRAME!r}, at the CG"
+            f"external_wrench is given in the frame {frame!r}; "
+            f"give it in {WORLD_FRAME!r}, at the CG"
         )
     force, torque = message.wrench.force, message.wrench.torque
     x, y, _ = from_ros(force.x, force.y, force.z)
@@ -44,19 +46,23 @@ def read_wrench(message: Any) -> dict[str, float]:
 
 
 def out_of_plane(message: Any) -> bool:
-    """Whether a WrenchStamped has parts that the planar body cannot follow: force y, torques x and
-    z. They are left out.
+    """Whether a WrenchStamped has parts that act across the body's plane.
+
+    These are force y and torques x and z; the planar body cannot follow them, so `read_wrench`
+    leaves them out.
     """
     force, torque = message.wrench.force, message.wrench.torque
     return bool(force.y or torque.x or torque.z)
 
 
 def read_ground(message: Any) -> dict[str, float]:
-    """The inputs that a JointState of `ground` asks for; a joint that it does not name stays as it
-    is, no velocity is standstill.
+    """The inputs that a JointState of `ground` asks for.
 
-    Raises LandingError: an unknown joint, positions or velocities that do not fit the names, not
-        finite, out of bounds.
+    A joint that it does not name stays as it is; without velocities the ground stands still.
+
+    Raises:
+        LandingError: an unknown joint, positions or velocities that do not fit the names, not
+            finite, out of bounds.
     """
     names, positions, velocities = (
         list(message.name),
@@ -65,8 +71,9 @@ def read_ground(message: Any) -> dict[str, float]:
     )
     if not names or len(positions) != len(names) or len(velocities) not in (0, len(names)):
         raise LandingError(
-            f"ground has {len(names)} names, {len(positions)} positions and {len(velocities)} velocities; "
-            f"give a position, and a velocity or none, for each of {' and '.join(JOINTS)}"
+            f"ground has {len(names)} names, {len(positions)} positions and {len(velocities)} "
+            "velocities; give a position, and a velocity or none, for each of "
+            f"{' and '.join(JOINTS)}"
         )
     values: dict[str, float] = {}
     for i, name in enumerate(names):

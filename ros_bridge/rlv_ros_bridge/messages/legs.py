@@ -11,17 +11,24 @@ from .axes import to_ros
 
 
 def around(mode: str, radius: float, height: float) -> list[tuple[float, float, float]]:
-    """For each leg, by its number, the point at `radius` from the axis and `height` above the CG
-    [m]: x forward, y left, z up.
+    """A point of each leg, in the order of `LEGS`, in the body's frame.
+
+    Args:
+        mode: the landing mode, one of `MODES`.
+        radius: of the points from the body's axis [m].
+        height: of the points above the CG [m].
+
+    Returns:
+        x forward, y left, z up [m] for each leg.
     """
-    turns = dict(_turns(mode))
+    azimuths = dict(_azimuths(mode))
     return [
         to_ros(radius * cosine, height, side * radius * sine)
-        for sine, cosine, side in (turns[leg] for leg in LEGS)
+        for sine, cosine, side in (azimuths[leg] for leg in LEGS)
     ]
 
 
-def _turns(mode: str) -> Iterator[tuple[int, tuple[float, float, int]]]:
+def _azimuths(mode: str) -> Iterator[tuple[int, tuple[float, float, int]]]:
     for group in MODES[mode]:
         for leg, side in group.legs:
             yield leg, (*azimuth(group.azimuth), side)

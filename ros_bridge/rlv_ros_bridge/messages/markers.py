@@ -13,13 +13,14 @@ from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import LEGS, OUTPUT_NAMES
+from rlv_landing.quantities import LEGS
 
 from .axes import from_ros, to_ros
+from .fields import indices
 from .legs import around
-from .samples import columns, set_stamp, set_vector
+from .samples import set_stamp, set_vector
 from .topics import WORLD_FRAME
-from .wire import PROBE_STAMP, WireFrame, probe_numbers
+from .wire import SENTINEL_STAMP, MessageLayout, sentinel_numbers
 
 # name, marker type, width [m], colour
 STYLES = (
@@ -49,11 +50,11 @@ class Wireframe:
             from_ros(*j)
             for j in around(parameters.drop.mode, auxiliary.joint_radius, -auxiliary.joint_depth)
         ]
-        self._body = columns("body.x", "body.y", "body.pitch")
-        self._feet = [columns(*(f"leg[{leg}].footpad.{axis}" for axis in "xyz")) for leg in LEGS]
+        self._body = indices("body.x", "body.y", "body.pitch")
+        self._feet = [indices(*(f"leg[{leg}].footpad.{axis}" for axis in "xyz")) for leg in LEGS]
         self._stamp = Time()
         self._points: list[list[Point]] = []
-        self._frame: WireFrame | None = None
+        self._layout: MessageLayout | None = None
         self.message = MarkerArray()
         for i, (name, kind, width, colour) in enumerate(STYLES):
             self.message.markers.append(self._marker(i, name, kind, width, colour))
@@ -80,8 +81,14 @@ class Wireframe:
         return marker
 
     def numbers(self, values: Sequence[float]) -> list[float]:
-        """The points of the sample `values` in the frame `map`, x, y, z after each other: body,
-        main and auxiliary joints, footpads.
+        """The points of a sample in the frame `map`.
+
+        Args:
+            values: all outputs in the order of `OUTPUT_NAMES`, SI, the paper's axes.
+
+        Returns:
+            x, y, z [m], ROS axes, one point after the other: the body's lower and upper end, the
+            main struts' joints, the auxiliary struts' joints, the footpads; each by leg.
         """
         x, y, pitch = (values[i] for i in self._body)
         s, c = sin(pitch), cos(pitch)
@@ -93,15 +100,22 @@ class Wireframe:
         return found
 
     def fill(self, nanoseconds: int, values: Sequence[float]) -> MarkerArray:
-        """The markers of the sample `values` at the simulation time `nanoseconds`."""
+        """The markers of a sample.
+
+        Args:
+            nanoseconds: simulation time of the sample [ns].
+            values: all outputs in the order of `OUTPUT_NAMES`, SI, the paper's axes.
+        """
+        return self._put(nanoseconds, self.numbers(values))
+
+    def _put(self, nanoseconds: int, numbers: Sequence[float]) -> MarkerArray:
         set_stamp(self._stamp, nanoseconds)
-        numbers = iter(self.numbers(values))
-        points = list(zip(numbers, numbers, numbers))
+        points = list(zip(numbers[::3], numbers[1::3], numbers[2::3]))
         legs = len(LEGS)
         body, main, auxiliary, feet = self._points
         joints, footpads = points[len(body) :], points[-legs:]
-        for point, place in zip(body, points):
-            set_vector(point, place)
+        for point, end in zip(body, points):
+            set_vector(point, end)
         for leg, foot in enumerate(footpads):
             set_vector(main[2 * leg], joints[leg])
             set_vector(auxiliary[2 * leg], joints[legs + leg])
@@ -111,9 +125,9 @@ class Wireframe:
 
     def pack(self, nanoseconds: int, values: Sequence[float]) -> bytes:
         """The message of `fill`, serialised: the same bytes, at a fraction of the cost."""
-        if self._frame is None:
-            probe = probe_numbers(len(OUTPUT_NAMES))
-            self._frame = WireFrame(
-                [serialize_message(self.fill(PROBE_STAMP, probe))], self.numbers(probe)
-            )
-        return self._frame.pack(nanoseconds, self.numbers(values))
+        numbers = self.numbers(values)
+        if self._layout is None:
+            sentinels = sentinel_numbers(len(numbers))
+            message = self._put(SENTINEL_STAMP, sentinels)
+            self._layout = MessageLayout([serialize_message(message)], sentinels)
+        return self._layout.pack(nanoseconds, numbers)

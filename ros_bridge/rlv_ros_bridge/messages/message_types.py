@@ -19,7 +19,8 @@ def is_installed(name: str) -> bool:
 def message_class(name: str) -> Any:
     """The class of the type `pkg/msg/Type`.
 
-    Raises LandingError where its package is not installed.
+    Raises:
+        LandingError: its package is not installed.
     """
     try:
         package, kind, short = name.split("/")
@@ -27,5 +28,6 @@ def message_class(name: str) -> Any:
     except (ValueError, ImportError, AttributeError):
         package = name.split("/")[0]
         raise LandingError(
-            f"message type {name!r} is not installed; install the ROS 2 package {package!r}, or source your ROS 2"
+            f"message type {name!r} is not installed; "
+            f"install the ROS 2 package {package!r}, or source your ROS 2"
         ) from None

@@ -1,11 +1,11 @@
-"""Quality of service (QoS) of topics, in the words of rosbag2."""
+"""Quality of service (QoS) of topics, in rosbag2's terms."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
 
-# rosbag2's way to say "no deadline, no lifespan, infinite lease".
+# rosbag2's values for "no deadline, no lifespan, infinite lease".
 INFINITE = {"sec": 9223372036, "nsec": 854775807}
 # Logs older than metadata version 9 hold rmw's enumeration values.
 HISTORY = {1: "keep_last", 2: "keep_all"}
@@ -15,8 +15,12 @@ DURABILITY = {1: "transient_local", 2: "volatile"}
 
 @dataclass(frozen=True)
 class Qos:
-    """What a publisher offers: `reliable` or `best_effort`, `volatile` or `transient_local`, the
-    last `depth` samples kept.
+    """The quality of service that a publisher offers.
+
+    Args:
+        reliability: `reliable` or `best_effort`.
+        durability: `volatile` or `transient_local`.
+        depth: number of last samples that are kept.
     """
 
     reliability: str = "reliable"
@@ -41,17 +45,22 @@ class Qos:
 # The last second is kept for a slow subscriber, never everything: a writer that keeps all waits for
 # its slowest reader.
 TELEMETRY = Qos()
-# ROS's own profile for sensors: what is late is not sent again.
+# ROS's own profile for sensors: lost messages are not sent again.
 SENSOR_DATA = Qos(reliability="best_effort", depth=5)
 CLOCK = Qos(depth=1)
-# For what is said once and holds: who comes later gets it as well.
+# For what is published once: later subscribers get it as well.
 LATCHED = Qos(durability="transient_local", depth=1)
 PROFILES = {"telemetry": TELEMETRY, "sensor_data": SENSOR_DATA}
 
 
 def parse_qos(text: str) -> Qos:
-    """The first of the `offered_qos_profiles` that a channel carries; the telemetry's where there
-    is none that can be read.
+    """The first of the `offered_qos_profiles` of a log's channel.
+
+    Args:
+        text: the profiles as YAML.
+
+    Returns:
+        The profile, or `TELEMETRY` where the text has none that can be read.
     """
     import yaml
 

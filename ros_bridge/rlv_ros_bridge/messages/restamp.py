@@ -1,5 +1,6 @@
-"""Moves the stamps inside serialised messages on, so that a looped replay's time never runs
-backwards.
+"""Adds a shift to the stamps inside serialised messages.
+
+A looped replay needs it, so that its time never runs backwards.
 """
 
 from __future__ import annotations
@@ -10,19 +11,20 @@ from collections.abc import Mapping
 from rclpy.serialization import deserialize_message, serialize_message
 
 from .message_types import message_class
-from .samples import NANOSECONDS, set_stamp
+from .samples import set_stamp
+from .wire import ENCAPSULATION, NANOSECONDS
 
 HEADER = "std_msgs/Header"
 # Types that are lists of what carries a header: the list's name.
 LISTS = {"visualization_msgs/msg/MarkerArray": "markers", "tf2_msgs/msg/TFMessage": "transforms"}
-# CDR: four bytes of encapsulation, the second of which tells the byte order; then the header's
-# stamp, a message's first field.
-AT = 4
 
 
 class Restamper:
-    """Adds `shift` [ns] to the stamps of messages whose first field is a header, of markers and of
-    transforms. `types` is type by topic.
+    """Adds a shift to the stamps of messages with a header, of markers and of transforms.
+
+    Args:
+        types: type by topic. A header must be the message's first field.
+        shift: what is added [ns].
     """
 
     def __init__(self, types: Mapping[str, str], shift: int) -> None:
@@ -35,28 +37,26 @@ class Restamper:
         self._lists = {topic: name for topic, name in types.items() if name in LISTS}
 
     def __call__(self, topic: str, data: bytes) -> bytes:
-        """The message `data` of `topic`, moved on; unchanged where it carries no stamp that we know
-        of.
+        """The serialised message `data` of `topic` with its stamps shifted.
+
+        It is unchanged where its type has neither a header nor a list of what has headers.
         """
         if topic in self._stamped:
+            # The encapsulation's second byte tells the byte order; the stamp comes right after it.
             form = "<iI" if data[1] & 1 else ">iI"
-            seconds, nanoseconds = struct.unpack_from(form, data, AT)
-            moved = bytearray(data)
-            struct.pack_into(
-                form,
-                moved,
-                AT,
-                *divmod(seconds * NANOSECONDS + nanoseconds + self._shift, NANOSECONDS),
-            )
-            return bytes(moved)
+            seconds, nanoseconds = struct.unpack_from(form, data, ENCAPSULATION)
+            stamp = divmod(seconds * NANOSECONDS + nanoseconds + self._shift, NANOSECONDS)
+            shifted = bytearray(data)
+            struct.pack_into(form, shifted, ENCAPSULATION, *stamp)
+            return bytes(shifted)
         if topic in self._lists:
             name = self._lists[topic]
             message = deserialize_message(data, message_class(name))
             for element in getattr(message, LISTS[name]):
                 stamp = element.header.stamp
                 set_stamp(stamp, stamp.sec * NANOSECONDS + stamp.nanosec + self._shift)
-            moved_message: bytes = serialize_message(message)
-            return moved_message
+            serialised: bytes = serialize_message(message)
+            return serialised
         return data
 
 

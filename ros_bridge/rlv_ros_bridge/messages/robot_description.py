@@ -39,12 +39,11 @@ def variables() -> str:
 
 
 def robot_description(parameters: Parameters) -> str:
-    """The vehicle as URDF, its root `base_link` at the CG: body, top sensor, and for each leg two
-    struts.
+    """The vehicle as URDF: body, top sensor, and two struts for each leg.
 
-    A strut is a prismatic joint of the name that it has in `struts`, at 0 fully extended
-    (auxiliary: unloaded), positive in compression. Struts keep the direction that they have with
-    all of them extended: turning with the strokes is left to the markers, which are exact.
+    Its root is `base_link`, at the CG. A strut is a prismatic joint of the name that it has in
+    `struts`, at 0 fully extended (auxiliary: unloaded), positive in compression. Struts keep the
+    direction that they have with all of them extended. Only the markers turn them with the strokes.
     """
     p = parameters
     robot = Element("robot", name="rlv_landing")
@@ -55,7 +54,8 @@ def robot_description(parameters: Parameters) -> str:
     body = SubElement(robot, "link", name=BODY_FRAME)
     _cylinder(body, (0.0, 0.0, 0.5 * (top + bottom)), BODY_RADIUS, top - bottom)
     SubElement(robot, "link", name=TOP_FRAME)
-    _joint(robot, f"{TOP_FRAME}_mount", "fixed", BODY_FRAME, TOP_FRAME, (0.0, 0.0, top))
+    mount = _joint(robot, f"{TOP_FRAME}_mount", "fixed", BODY_FRAME, TOP_FRAME)
+    _origin(mount, (0.0, 0.0, top))
     radius, height = footpad_at_rest(p)
     feet = around(p.drop.mode, radius, height)
     for strut, own, width, travel in (
@@ -77,8 +77,9 @@ def robot_description(parameters: Parameters) -> str:
 def _strut(
     robot: Element, name: str, joint: Point, foot: Point, radius: float, travel: tuple[float, float]
 ) -> None:
-    """A cylinder at the body and a rod that goes into it; z of both runs along the strut, down to
-    the foot.
+    """Adds a cylinder at the body and a rod that goes into it.
+
+    z of both runs along the strut, down to the foot.
     """
     length = dist(joint, foot)
     x, y, z = ((b - a) / length for a, b in zip(joint, foot))
@@ -88,27 +89,18 @@ def _strut(
     _cylinder(rod, (0.0, 0.0, -0.3 * length), radius, 0.6 * length)
     foot_visual = SubElement(rod, "visual")
     SubElement(SubElement(foot_visual, "geometry"), "sphere", radius=repr(FOOTPAD_RADIUS))
-    _joint(
-        robot,
-        f"{name}_mount",
-        "fixed",
-        BODY_FRAME,
-        f"{name}_cylinder",
-        joint,
-        (0.0, acos(z), atan2(y, x)),
-    )
-    moving = _joint(robot, name, "prismatic", f"{name}_cylinder", f"{name}_rod", (0.0, 0.0, length))
+    mount = _joint(robot, f"{name}_mount", "fixed", BODY_FRAME, f"{name}_cylinder")
+    _origin(mount, joint, (0.0, acos(z), atan2(y, x)))
+    moving = _joint(robot, name, "prismatic", f"{name}_cylinder", f"{name}_rod")
+    _origin(moving, (0.0, 0.0, length))
     SubElement(moving, "axis", xyz="0 0 -1")
     SubElement(moving, "limit", {"lower": repr(travel[0]), "upper": repr(travel[1]), **NO_LIMIT})
 
 
-def _joint(
-    robot: Element, name: str, kind: str, parent: str, child: str, xyz: Point, rpy: Point = ORIGIN
-) -> Element:
+def _joint(robot: Element, name: str, kind: str, parent: str, child: str) -> Element:
     joint = SubElement(robot, "joint", name=name, type=kind)
     SubElement(joint, "parent", link=parent)
     SubElement(joint, "child", link=child)
-    _origin(joint, xyz, rpy)
     return joint
 
 

@@ -1,26 +1,24 @@
-"""A sample of the landing as ROS messages: SI units, REP-103 axes, stamps in simulation time."""
+"""A sample of the landing as ROS messages: SI units, REP-103 axes, stamps in simulation time.
+
+Made from `fields.FIELDS`, once as message objects and once, for speed, as serialised bytes.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from operator import attrgetter, itemgetter, setitem
 from typing import Any
 
 from builtin_interfaces.msg import Time
-from geometry_msgs.msg import AccelStamped, PoseStamped, TwistStamped, Vector3Stamped, WrenchStamped
-from nav_msgs.msg import Odometry
 from rclpy.serialization import serialize_message
-from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import JointState
 
-from rlv_landing.quantities import LEGS, OUTPUT_NAMES
+from rlv_landing.quantities import OUTPUT_NAMES
 
-from . import topics
-from .axes import IN_PLANE, pitch_quaternion, to_ros, world_to_body
-from .topics import BODY_FRAME, JOINTS, TOP_FRAME, WORLD_FRAME, Topic
-from .wire import NANOSECONDS as NANOSECONDS
-from .wire import PROBE_STAMP, WireFrame, probe_numbers
-
-INDEX = {name: i for i, name in enumerate(OUTPUT_NAMES)}
+from .fields import FIELDS, TEXTS, Conversion, copied, indices, split
+from .message_types import message_class
+from .topics import CLOCK, SAMPLED, Topic
+from .wire import NANOSECONDS, SENTINEL_STAMP, MessageLayout, sentinel_numbers
 
 
 def set_stamp(stamp: Time, nanoseconds: int) -> None:
@@ -33,140 +31,127 @@ def set_vector(target: Any, vector: tuple[float, float, float]) -> None:
     target.x, target.y, target.z = vector
 
 
-def columns(*names: str) -> tuple[int, ...]:
-    """Where the outputs `names` stand in a sample."""
-    return tuple(INDEX[name] for name in names)
-
-
-def strut_columns(what: str) -> tuple[int, ...]:
-    """Where the eight struts' `what` stands in a sample, in the order of `JOINTS`."""
-    return columns(
-        *(
-            f"leg[{leg}].{strut}.{what}"
-            for leg in LEGS
-            for strut in ("main_strut", "auxiliary_strut")
-        )
-    )
+def _setter(message: Any, path: str, default: Any) -> Callable[[Any], None]:
+    """Sets the field at `path` of `message`; an array is lengthened by `default` to hold it."""
+    owner_path, key = split(path)
+    owner = attrgetter(owner_path)(message) if owner_path else message
+    if isinstance(key, str):
+        return partial(setattr, owner, key)
+    if key >= len(owner):
+        owner.extend([default] * (key + 1 - len(owner)))
+    return partial(setitem, owner, key)
 
 
 class SampleMessages:
-    """The messages that go out at every step.
+    """The messages that go out at every step, by topic, in the order of publication.
 
     The message objects are made once and filled again for each sample.
     """
 
     def __init__(self) -> None:
-        self._position = strut_columns("stroke")
-        self._velocity = strut_columns("stroke_rate")
-        self._effort = strut_columns("force")
-        self._body = columns(
-            "body.x", "body.y", "body.pitch", "body.vx", "body.vy", "body.pitch_rate"
-        )
-        self._acceleration = columns(
-            "body.ax", "body.ay", "body.pitch_acceleration", "body.top_axial_acceleration"
-        )
-        self._contact = [
-            columns(*(f"leg[{leg}].contact.force_{axis}" for axis in "xyz")) for leg in LEGS
-        ]
-        self.struts = JointState(name=list(JOINTS))
-        self.pose = PoseStamped()
-        self.rpy = Vector3Stamped()
-        self.twist = TwistStamped()
-        self.accel = AccelStamped()
-        self.top_accel = AccelStamped()
-        self.contacts = [WrenchStamped() for _ in LEGS]
-        self.odom = Odometry(child_frame_id=BODY_FRAME)
-        self.clock = Clock()
-        self.struts.header.frame_id = BODY_FRAME
-        self.top_accel.header.frame_id = TOP_FRAME
-        for message in (self.pose, self.rpy, self.twist, self.accel, self.odom, *self.contacts):
-            message.header.frame_id = WORLD_FRAME
-        self.messages: tuple[tuple[Topic, Any], ...] = (
-            (topics.STRUTS, self.struts),
-            (topics.POSE, self.pose),
-            (topics.RPY, self.rpy),
-            (topics.TWIST, self.twist),
-            (topics.ACCEL, self.accel),
-            (topics.TOP_ACCEL, self.top_accel),
-            *zip(topics.CONTACTS, self.contacts),
-            (topics.ODOM, self.odom),
-        )
+        self.messages: dict[Topic, Any] = {
+            topic: message_class(topic.type_name)() for topic in (CLOCK, *SAMPLED)
+        }
         # One stamp object for all: setting it stamps every message.
         self._stamp = Time()
-        self.clock.clock = self._stamp
-        for _, message in self.messages:
+        self.messages[CLOCK].clock = self._stamp
+        for topic in SAMPLED:
+            message = self.messages[topic]
             message.header.stamp = self._stamp
+            for path, text in TEXTS.get(topic, {}).items():
+                _setter(message, path, "")(text)
+        self._setters = [
+            _setter(self.messages[field.topic], path, 0.0)
+            for field in FIELDS
+            for path in field.paths
+        ]
 
     def fill(self, nanoseconds: int, values: Sequence[float]) -> None:
-        """Take the sample `values` (in the order of `OUTPUT_NAMES`) at the simulation time
-        `nanoseconds`.
-        """
-        set_stamp(self._stamp, nanoseconds)
-        struts = self.struts
-        struts.position = [values[i] for i in self._position]
-        struts.velocity = [values[i] for i in self._velocity]
-        struts.effort = [values[i] for i in self._effort]
-        self._fill_motion(*(values[i] for i in self._body))
-        ax, ay, pitch_acceleration, top = (values[i] for i in self._acceleration)
-        set_vector(self.accel.accel.linear, to_ros(ax, ay, IN_PLANE))
-        self.accel.accel.angular.y = pitch_acceleration
-        self.top_accel.accel.linear.z = top
-        for contact, (x, y, z) in zip(self.contacts, self._contact):
-            set_vector(contact.wrench.force, to_ros(values[x], values[y], values[z]))
+        """Puts a sample into the messages.
 
-    def _fill_motion(
-        self, x: float, y: float, pitch: float, vx: float, vy: float, pitch_rate: float
-    ) -> None:
-        position, velocity = to_ros(x, y, IN_PLANE), to_ros(vx, vy, IN_PLANE)
-        qx, qy, qz, qw = pitch_quaternion(pitch)
-        for pose in (self.pose.pose, self.odom.pose.pose):
-            set_vector(pose.position, position)
-            q = pose.orientation
-            q.x, q.y, q.z, q.w = qx, qy, qz, qw
-        self.rpy.vector.y = pitch
-        set_vector(self.twist.twist.linear, velocity)
-        self.twist.twist.angular.y = pitch_rate
-        # Odometry's twist is in the child frame, by its own definition.
-        twist = self.odom.twist.twist
-        twist.linear.x, twist.linear.z = world_to_body(velocity[0], velocity[2], pitch)
-        twist.angular.y = pitch_rate
+        Args:
+            nanoseconds: simulation time of the sample [ns].
+            values: all outputs in the order of `OUTPUT_NAMES`, SI, the paper's axes.
+        """
+        self.put(
+            nanoseconds,
+            (
+                number
+                for field in FIELDS
+                for number in field.write(*(values[i] for i in indices(*field.outputs)))
+            ),
+        )
+
+    def put(self, nanoseconds: int, numbers: Iterable[float]) -> None:
+        """Puts `numbers` into the messages, one for each path of `FIELDS` in the table's order."""
+        set_stamp(self._stamp, nanoseconds)
+        for set_number, number in zip(self._setters, numbers, strict=True):
+            set_number(float(number))
 
 
 class SampleBytes:
-    """The serialised messages of `SampleMessages` without the message objects: the same bytes, at a
-    fraction of the cost.
+    """The serialised messages of `SampleMessages`: the same bytes, at a fraction of the cost.
 
-    `topics` are in the order of the messages; `places` tell where each one's message stands in what
-    `pack` gives, `heads`, by topic, what comes before it (see `WireFrame`).
+    Args:
+        prefixes: by topic, what comes before its message in what `pack` gives; see `MessageLayout`.
+
+    `topics` are in the order of the messages; `slices` tell where each one's message is in what
+    `pack` gives.
     """
 
-    def __init__(self, heads: Mapping[Topic, bytes] | None = None) -> None:
+    def __init__(self, prefixes: Mapping[Topic, bytes] | None = None) -> None:
         messages = SampleMessages()
-        probe = probe_numbers(len(OUTPUT_NAMES))
-        messages.fill(PROBE_STAMP, probe)
-        self._pitch, self._vx, self._vy = columns("body.pitch", "body.vx", "body.vy")
-        self._turned = columns(*(f"leg[{leg}].contact.force_z" for leg in LEGS))
-        self.topics: tuple[Topic, ...] = (topics.CLOCK, *(topic for topic, _ in messages.messages))
-        sent = (messages.clock, *(message for _, message in messages.messages))
-        begun = [(heads or {}).get(topic, b"") for topic in self.topics]
-        self._frame = WireFrame([serialize_message(m) for m in sent], self._numbers(probe), begun)
-        self.places = self._frame.places
+        self.topics: tuple[Topic, ...] = tuple(messages.messages)
+        # What is packed: the sample, and after it what the messages carry that is not in it.
+        self._computations: list[tuple[Conversion, Callable[[Sequence[float]], Any]]] = []
+        positions, count = self._assign_positions()
+        sentinels = sentinel_numbers(count)
+        messages.put(SENTINEL_STAMP, (sentinels[i] for i in positions))
+        carried = set(positions)
+        self._layout = MessageLayout(
+            [serialize_message(message) for message in messages.messages.values()],
+            [number if i in carried else 0.0 for i, number in enumerate(sentinels)],
+            [(prefixes or {}).get(topic, b"") for topic in self.topics],
+        )
+        self.slices = self._layout.slices
 
-    def _numbers(self, values: Sequence[float]) -> list[float]:
-        """The sample, and after it what the messages carry that is not in it."""
-        pitch = values[self._pitch]
-        _, qy, _, qw = pitch_quaternion(pitch)
-        vx, _, vz = to_ros(values[self._vx], values[self._vy], IN_PLANE)
-        return [
-            *values,
-            qy,
-            qw,
-            *world_to_body(vx, vz, pitch),
-            *[to_ros(0.0, 0.0, values[i])[1] for i in self._turned],
-        ]
+    def _assign_positions(self) -> tuple[list[int], int]:
+        """Which of the packed numbers each path of `FIELDS` holds, and how many are packed.
 
-    def pack(self, nanoseconds: int, values: Sequence[float], count: int = 0) -> bytes:
-        """The messages of the sample `values` at the simulation time `nanoseconds`; `count` is for
-        their heads.
+        Fields that copy outputs hold numbers of the sample; what fields compute alike is packed
+        once.
         """
-        return self._frame.pack(nanoseconds, self._numbers(values), count)
+        positions: list[int] = []
+        count = len(OUTPUT_NAMES)
+        computed: dict[tuple[Conversion, tuple[str, ...]], range] = {}
+        for field in FIELDS:
+            if field.write is copied:
+                positions += indices(*field.outputs)
+                continue
+            key = field.write, field.outputs
+            if key not in computed:
+                computed[key] = range(count, count + len(field.paths))
+                count += len(field.paths)
+                self._computations.append((field.write, _picker(indices(*field.outputs))))
+            positions += computed[key]
+        return positions, count
+
+    def pack(self, nanoseconds: int, values: Sequence[float], sequence: int = 0) -> bytes:
+        """The messages of a sample, one after the other.
+
+        Args:
+            nanoseconds: simulation time of the sample [ns].
+            values: all outputs in the order of `OUTPUT_NAMES`, SI, the paper's axes.
+            sequence: the number that follows each prefix.
+        """
+        computed: list[float] = []
+        for compute, pick in self._computations:
+            computed += compute(*pick(values))
+        return self._layout.pack(nanoseconds, values, sequence, computed)
+
+
+def _picker(positions: tuple[int, ...]) -> Callable[[Sequence[float]], Any]:
+    """Picks the numbers at `positions` of a sequence, as a sequence even where it is one."""
+    if len(positions) == 1:
+        return itemgetter(slice(positions[0], positions[0] + 1))
+    return itemgetter(*positions)

@@ -1,7 +1,6 @@
-"""The topics of a landing: names, types, how often, and which field of which message carries which
-output.
+"""The topics of a landing: their names, types and periods.
 
-Both directions are made from here: `messages.py` fills messages, `columns.py` reads them back.
+Which field of a message carries which output is told by the table in `fields.py`.
 """
 
 from __future__ import annotations
@@ -21,10 +20,12 @@ JOINTS: tuple[str, ...] = tuple(
 
 @dataclass(frozen=True)
 class Topic:
-    """A topic: `name` (relative to the node's namespace unless it starts with a slash), message
-    type, and its period.
+    """A topic.
 
-    `period` is in seconds of simulation time; 0 means every step.
+    Args:
+        name: relative to the node's namespace, unless it starts with a slash.
+        type_name: message type `pkg/msg/Type`.
+        period: between two messages [s of simulation time]; 0: every step.
     """
 
     name: str
@@ -52,11 +53,11 @@ APPLIED_GROUND = Topic("applied/ground", "sensor_msgs/msg/JointState")
 ROBOT_DESCRIPTION = Topic("robot_description", "std_msgs/msg/String")
 VARIABLES = Topic("variables", "std_msgs/msg/String")
 
-# What goes out at every step, and what is made now and then.
+# Published at every step, and published at a period of their own.
 SAMPLED: tuple[Topic, ...] = (STRUTS, POSE, RPY, TWIST, ACCEL, TOP_ACCEL, *CONTACTS, ODOM)
 OCCASIONAL: tuple[Topic, ...] = (MARKERS, TF, DIAGNOSTICS)
 APPLIED: tuple[Topic, ...] = (APPLIED_WRENCH, APPLIED_GROUND)
-# Said once, and kept for those who come later.
+# Published once, and kept for subscribers that come later.
 LATCHED: tuple[Topic, ...] = (ROBOT_DESCRIPTION, VARIABLES)
 
 # What is recorded, in the order it is published at one instant. The clock is not: a replay makes

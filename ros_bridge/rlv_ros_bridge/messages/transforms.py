@@ -1,5 +1,6 @@
-"""The frames of the vehicle for `/tf`: the body in the map, and what hangs on it, as the URDF has
-it. Needs no ROS 2.
+"""The vehicle's frames for `/tf`: the body in the map, and the links on it as in the URDF.
+
+Needs no ROS 2.
 """
 
 from __future__ import annotations
@@ -11,15 +12,15 @@ from math import cos, sin
 from xml.etree import ElementTree
 
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import OUTPUT_NAMES
 
 from .axes import IN_PLANE, pitch_quaternion, to_ros
+from .fields import indices, strut_outputs
 from .robot_description import robot_description
 from .topics import BODY_FRAME, JOINTS, WORLD_FRAME
-from .wire import NANOSECONDS, PROBE_STAMP, WireFrame, padded, probe_numbers
+from .wire import NANOSECONDS, SENTINEL_STAMP, MessageLayout, padded, sentinel_numbers
 
-# CDR, little-endian.
-HEAD = b"\x00\x01\x00\x00"
+# Encapsulation of plain CDR, little-endian.
+LITTLE_ENDIAN_CDR = b"\x00\x01\x00\x00"
 
 
 @dataclass(frozen=True)
@@ -33,36 +34,39 @@ class Transform:
 
 
 class Transforms:
-    """Makes the messages of `/tf`: `map` to `base_link`, and every joint of the URDF, moved by its
-    strut's stroke.
+    """Makes the messages of `/tf`: `map` to `base_link`, and every joint of the URDF.
+
+    A strut's joint is moved by its stroke.
     """
 
     def __init__(self, parameters: Parameters) -> None:
         joints = list(ElementTree.fromstring(robot_description(parameters)).iter("joint"))
-        index = {name: i for i, name in enumerate(OUTPUT_NAMES)}
-        self._body = [index[f"body.{name}"] for name in ("x", "y", "pitch")]
-        self._strokes = [index[f"leg[{name[4]}].{name[6:]}.stroke"] for name in JOINTS]
+        self._body = indices("body.x", "body.y", "body.pitch")
+        self._strokes = indices(*strut_outputs("stroke"))
         self._lengths = [
             _vector(j, "xyz")[2] for name in JOINTS for j in joints if j.get("name") == name
         ]
-        probe = probe_numbers(4 + len(JOINTS))
-        x, z, qy, qw = probe[:4]
-        moved = dict(zip(JOINTS, probe[4:]))
+        sentinels = sentinel_numbers(4 + len(JOINTS))
+        x, z, qy, qw = sentinels[:4]
+        moved = dict(zip(JOINTS, sentinels[4:]))
         frames = [
             Transform(WORLD_FRAME, BODY_FRAME, (x, 0.0, z), (0.0, qy, 0.0, qw)),
             *(_transform(joint, moved) for joint in joints),
         ]
-        self._frame = WireFrame([serialised(frames, PROBE_STAMP)], probe)
+        self._layout = MessageLayout([serialised(frames, SENTINEL_STAMP)], sentinels)
 
     def pack(self, nanoseconds: int, values: Sequence[float]) -> bytes:
-        """The message of the sample `values` (in the order of `OUTPUT_NAMES`) at the simulation
-        time `nanoseconds`, serialised.
+        """The message of a sample, serialised.
+
+        Args:
+            nanoseconds: simulation time of the sample [ns].
+            values: all outputs in the order of `OUTPUT_NAMES`, SI, the paper's axes.
         """
         x, y, pitch = (values[i] for i in self._body)
         forward, _, up = to_ros(x, y, IN_PLANE)
         _, qy, _, qw = pitch_quaternion(pitch)
         struts = [length - values[i] for length, i in zip(self._lengths, self._strokes)]
-        return self._frame.pack(nanoseconds, [forward, up, qy, qw, *struts])
+        return self._layout.pack(nanoseconds, [forward, up, qy, qw, *struts])
 
 
 def serialised(transforms: Sequence[Transform], nanoseconds: int) -> bytes:
@@ -73,7 +77,7 @@ def serialised(transforms: Sequence[Transform], nanoseconds: int) -> bytes:
         for text in (t.parent.encode(), t.child.encode()):
             data += bytes(-len(data) % 4) + struct.pack("<I", len(text) + 1) + text + b"\0"
         data += bytes(-len(data) % 8) + struct.pack("<7d", *t.translation, *t.rotation)
-    return padded(HEAD + bytes(data))
+    return padded(LITTLE_ENDIAN_CDR + bytes(data))
 
 
 def _transform(joint: ElementTree.Element, moved: dict[str, float]) -> Transform:
@@ -81,10 +85,9 @@ def _transform(joint: ElementTree.Element, moved: dict[str, float]) -> Transform
     assert parent is not None
     assert child is not None
     x, y, z = _vector(joint, "xyz")
-    place = (x, y, moved.get(joint.attrib["name"], z))
-    return Transform(
-        parent.attrib["link"], child.attrib["link"], place, _turned(*_vector(joint, "rpy"))
-    )
+    translation = (x, y, moved.get(joint.attrib["name"], z))
+    rotation = _quaternion(*_vector(joint, "rpy"))
+    return Transform(parent.attrib["link"], child.attrib["link"], translation, rotation)
 
 
 def _vector(joint: ElementTree.Element, name: str) -> tuple[float, float, float]:
@@ -94,7 +97,7 @@ def _vector(joint: ElementTree.Element, name: str) -> tuple[float, float, float]
     return x, y, z
 
 
-def _turned(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
+def _quaternion(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
     """The rotation (x, y, z, w) by URDF's angles: about the parent's x, then its y, then its z."""
     (sr, cr), (sp, cp), (sy, cy) = (
         (sin(0.5 * angle), cos(0.5 * angle)) for angle in (roll, pitch, yaw)

@@ -127,22 +127,22 @@ class LandingRun:
         self.recorder.write(self._names[topics.ROBOT_DESCRIPTION], 0, padded(self.description))
         packer = self._packer
         sizes = {
-            t: place.stop - place.start
-            for t, place in zip(packer.topics, packer.places)
+            t: part.stop - part.start
+            for t, part in zip(packer.topics, packer.slices)
             if t in topics.RECORDED
         }
-        heads = self.recorder.begin_samples({self._names[t]: size for t, size in sizes.items()})
-        self._take_packer(SampleBytes(dict(zip(sizes, heads))))
+        prefixes = self.recorder.begin_samples({self._names[t]: size for t, size in sizes.items()})
+        self._take_packer(SampleBytes(dict(zip(sizes, prefixes))))
 
     def _take_packer(self, packer: SampleBytes) -> None:
         self._packer = packer
-        self._places = [
-            (self._outlets[t], place)
-            for t, place in zip(packer.topics, packer.places)
+        self._slices = [
+            (self._outlets[t], part)
+            for t, part in zip(packer.topics, packer.slices)
             if t in self._outlets
         ]
         # The clock comes first, and is not recorded.
-        self._records = slice(packer.places[0].stop, None)
+        self._records = slice(packer.slices[0].stop, None)
 
     def go_on(self, interrupted: Callable[[], bool]) -> None:
         """Lands on in its own pace until the end, or until `interrupted` gets true.
@@ -167,7 +167,7 @@ class LandingRun:
                 values, messages = self._next(k)
                 self._work += MEMORY * (time.perf_counter() - started - self._work)
                 pacer.hold(k, interrupted)
-                live.offer_sample(self._places, messages, k, pacer.due(k))
+                live.offer_sample(self._slices, messages, k, pacer.due(k))
                 self.samples = k + 1
                 latest = pacer.due(k + 1) - 1.5 * self._work
                 # The sample goes out before what is made now and then.
@@ -190,7 +190,7 @@ class LandingRun:
         while not self.end and self.samples <= goal:
             k = self.samples
             values, messages = self._next(k)
-            self._live.offer_sample(self._places, messages, k, time.perf_counter())
+            self._live.offer_sample(self._slices, messages, k, time.perf_counter())
             self._occasional(k, values)
             self.samples = k + 1
             self._live.publish(0.0)

@@ -15,6 +15,7 @@ from rclpy.parameter_client import AsyncParameterClient
 from rlv_landing.errors import LandingError
 from rlv_landing.quantities import LEGS, MODES
 
+from ..messages.axes import to_ros
 from ..messages.columns import READINGS
 from ..messages.legs import around
 from ..messages.message_types import message_class
@@ -34,8 +35,6 @@ PATIENCE = 100_000_000
 NANOSECONDS = 1_000_000_000
 # How often what was heard is shown [s], and how often signals are looked after.
 SHOW_SECONDS, LOOK_ROUND_SECONDS = 0.05, 0.1
-# ROS's x, y, z of a vector as columns of the paper's axes, and their signs.
-AXES = (("x", 1.0), ("z", -1.0), ("y", 1.0))
 STILL = dict.fromkeys((f"leg[{leg}].contact.force_{axis}" for leg in LEGS for axis in "xyz"), 0.0)
 
 
@@ -132,7 +131,7 @@ class LiveScenes:
         scene.footpads(time, feet)
         forces = [complete.get(at, self._forces) for at, _ in self._marked]
         columns = [
-            [[row[f"leg[{leg}].contact.force_{a}"] * sign for a, sign in AXES] for leg in LEGS]
+            [to_ros(*(row[f"leg[{leg}].contact.force_{axis}"] for axis in "xyz")) for leg in LEGS]
             for row in forces
         ]
         scene.contacts(time, feet, np.array(columns))

@@ -1,0 +1,444 @@
+"""One sample of every topic, written out by hand and decoded by a reader that is not ours.
+
+The model: SI, x forward, y up, z right, pitch clockwise positive (nose down). ROS, REP-103: x
+forward, y left, z up, positive turns by the right hand. So a vector (x, y, z) of the model is
+(x, -z, y) in ROS, and the pitch is a positive turn about ROS +y. No number below is computed by the
+package.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+from mcap.records import Schema
+from mcap_ros2.decoder import DecoderFactory
+from rclpy.serialization import serialize_message
+from rosbags.typesys import Stores, get_typestore
+
+from rlv_landing import load_preset
+from rlv_landing.quantities import OUTPUT_NAMES
+from rlv_ros_bridge.messages.columns import READINGS
+from rlv_ros_bridge.messages.definitions import definition
+from rlv_ros_bridge.messages.fields import expected_fields
+from rlv_ros_bridge.messages.inputs import READINGS as INPUT_READINGS
+from rlv_ros_bridge.messages.markers import Wireframe
+from rlv_ros_bridge.messages.samples import SampleBytes, SampleMessages
+from rlv_ros_bridge.messages.topics import (
+    APPLIED,
+    APPLIED_GROUND,
+    APPLIED_WRENCH,
+    CLOCK,
+    MARKERS,
+    SAMPLED,
+    TF,
+    Topic,
+)
+from rlv_ros_bridge.messages.transforms import Transforms
+from rlv_ros_bridge.node.input_queue import Applied
+
+STORE = get_typestore(Stores.ROS2_KILTED)
+# 12 s and 345 000 006 ns.
+NANOSECONDS = 12_345_000_006
+HEADER = {"header.stamp.sec": 12, "header.stamp.nanosec": 345_000_006}
+
+# cos(pitch) = 0.6, sin(pitch) = 0.8; cos(pitch / 2) = 2 / sqrt(5), sin(pitch / 2) = 1 / sqrt(5).
+PITCH = 0.9272952180016122
+HALF_COS, HALF_SIN = 0.8944271909999159, 0.4472135954999579
+
+SAMPLE = {
+    "body.x": 2.0,
+    "body.y": 3.0,
+    "body.pitch": PITCH,
+    "body.vx": 5.0,
+    "body.vy": -10.0,
+    "body.pitch_rate": 0.25,
+    "body.ax": 7.0,
+    "body.ay": -8.0,
+    "body.pitch_acceleration": 9.0,
+    "body.top_axial_acceleration": -9.75,
+    "leg[1].main_strut.stroke": 0.011,
+    "leg[1].auxiliary_strut.stroke": -0.012,
+    "leg[2].main_strut.stroke": 0.021,
+    "leg[2].auxiliary_strut.stroke": -0.022,
+    "leg[3].main_strut.stroke": 0.031,
+    "leg[3].auxiliary_strut.stroke": -0.032,
+    "leg[4].main_strut.stroke": 0.041,
+    "leg[4].auxiliary_strut.stroke": -0.042,
+    "leg[1].main_strut.stroke_rate": 1.1,
+    "leg[1].auxiliary_strut.stroke_rate": -1.2,
+    "leg[2].main_strut.stroke_rate": 2.1,
+    "leg[2].auxiliary_strut.stroke_rate": -2.2,
+    "leg[3].main_strut.stroke_rate": 3.1,
+    "leg[3].auxiliary_strut.stroke_rate": -3.2,
+    "leg[4].main_strut.stroke_rate": 4.1,
+    "leg[4].auxiliary_strut.stroke_rate": -4.2,
+    "leg[1].main_strut.force": -1100.0,
+    "leg[1].auxiliary_strut.force": 1200.0,
+    "leg[2].main_strut.force": -2100.0,
+    "leg[2].auxiliary_strut.force": 2200.0,
+    "leg[3].main_strut.force": -3100.0,
+    "leg[3].auxiliary_strut.force": 3200.0,
+    "leg[4].main_strut.force": -4100.0,
+    "leg[4].auxiliary_strut.force": 4200.0,
+    "leg[1].contact.force_x": 11.0,
+    "leg[1].contact.force_y": 102.0,
+    "leg[1].contact.force_z": 1.5,
+    "leg[2].contact.force_x": 21.0,
+    "leg[2].contact.force_y": 202.0,
+    "leg[2].contact.force_z": -2.5,
+    "leg[3].contact.force_x": -31.0,
+    "leg[3].contact.force_y": 302.0,
+    "leg[3].contact.force_z": 3.5,
+    "leg[4].contact.force_x": 41.0,
+    "leg[4].contact.force_y": -402.0,
+    "leg[4].contact.force_z": 4.5,
+    "leg[1].footpad.x": 1.25,
+    "leg[1].footpad.y": 0.125,
+    "leg[1].footpad.z": -0.5,
+    "leg[2].footpad.x": 2.25,
+    "leg[2].footpad.y": 0.225,
+    "leg[2].footpad.z": -1.5,
+    "leg[3].footpad.x": 3.25,
+    "leg[3].footpad.y": 0.325,
+    "leg[3].footpad.z": 0.75,
+    "leg[4].footpad.x": 2.75,
+    "leg[4].footpad.y": 0.425,
+    "leg[4].footpad.z": 1.75,
+}
+# An output that no message should carry is 777, so that it shows where it does not belong.
+VALUES = [SAMPLE.get(name, 777.0) for name in OUTPUT_NAMES]
+
+# Topic -> what is not 0 and not empty in its message.
+GOLDEN: dict[str, dict[str, Any]] = {
+    "/clock": {"clock.sec": 12, "clock.nanosec": 345_000_006},
+    "struts": {
+        **HEADER,
+        "header.frame_id": "base_link",
+        "name[0]": "leg_1_main_strut",
+        "name[1]": "leg_1_auxiliary_strut",
+        "name[2]": "leg_2_main_strut",
+        "name[3]": "leg_2_auxiliary_strut",
+        "name[4]": "leg_3_main_strut",
+        "name[5]": "leg_3_auxiliary_strut",
+        "name[6]": "leg_4_main_strut",
+        "name[7]": "leg_4_auxiliary_strut",
+        "position[0]": 0.011,
+        "position[1]": -0.012,
+        "position[2]": 0.021,
+        "position[3]": -0.022,
+        "position[4]": 0.031,
+        "position[5]": -0.032,
+        "position[6]": 0.041,
+        "position[7]": -0.042,
+        "velocity[0]": 1.1,
+        "velocity[1]": -1.2,
+        "velocity[2]": 2.1,
+        "velocity[3]": -2.2,
+        "velocity[4]": 3.1,
+        "velocity[5]": -3.2,
+        "velocity[6]": 4.1,
+        "velocity[7]": -4.2,
+        "effort[0]": -1100.0,
+        "effort[1]": 1200.0,
+        "effort[2]": -2100.0,
+        "effort[3]": 2200.0,
+        "effort[4]": -3100.0,
+        "effort[5]": 3200.0,
+        "effort[6]": -4100.0,
+        "effort[7]": 4200.0,
+    },
+    "pose": {
+        **HEADER,
+        "header.frame_id": "map",
+        "pose.position.x": 2.0,
+        "pose.position.z": 3.0,
+        "pose.orientation.y": HALF_SIN,
+        "pose.orientation.w": HALF_COS,
+    },
+    "rpy": {**HEADER, "header.frame_id": "map", "vector.y": PITCH},
+    "twist": {
+        **HEADER,
+        "header.frame_id": "map",
+        "twist.linear.x": 5.0,
+        "twist.linear.z": -10.0,
+        "twist.angular.y": 0.25,
+    },
+    "accel": {
+        **HEADER,
+        "header.frame_id": "map",
+        "accel.linear.x": 7.0,
+        "accel.linear.z": -8.0,
+        "accel.angular.y": 9.0,
+    },
+    "top/accel": {**HEADER, "header.frame_id": "top_sensor", "accel.linear.z": -9.75},
+    "leg_1/contact": {
+        **HEADER,
+        "header.frame_id": "map",
+        "wrench.force.x": 11.0,
+        "wrench.force.y": -1.5,
+        "wrench.force.z": 102.0,
+    },
+    "leg_2/contact": {
+        **HEADER,
+        "header.frame_id": "map",
+        "wrench.force.x": 21.0,
+        "wrench.force.y": 2.5,
+        "wrench.force.z": 202.0,
+    },
+    "leg_3/contact": {
+        **HEADER,
+        "header.frame_id": "map",
+        "wrench.force.x": -31.0,
+        "wrench.force.y": -3.5,
+        "wrench.force.z": 302.0,
+    },
+    "leg_4/contact": {
+        **HEADER,
+        "header.frame_id": "map",
+        "wrench.force.x": 41.0,
+        "wrench.force.y": -4.5,
+        "wrench.force.z": -402.0,
+    },
+    "odom": {
+        **HEADER,
+        "header.frame_id": "map",
+        "child_frame_id": "base_link",
+        "pose.pose.position.x": 2.0,
+        "pose.pose.position.z": 3.0,
+        "pose.pose.orientation.y": HALF_SIN,
+        "pose.pose.orientation.w": HALF_COS,
+        # In the body's frame. Its forward axis is (0.6, -0.8) in the map's forward and up, its up
+        # axis (0.8, 0.6): 5 * 0.6 + 10 * 0.8 and 5 * 0.8 - 10 * 0.6.
+        "twist.twist.linear.x": 11.0,
+        "twist.twist.linear.z": -2.0,
+        "twist.twist.angular.y": 0.25,
+    },
+}
+# Topic -> the outputs that are read back from it.
+CARRIED = {
+    "struts": [n for n in SAMPLE if "_strut." in n],
+    "pose": ["body.x", "body.y"],
+    "rpy": ["body.pitch"],
+    "twist": ["body.vx", "body.vy", "body.pitch_rate"],
+    "accel": ["body.ax", "body.ay", "body.pitch_acceleration"],
+    "top/accel": ["body.top_axial_acceleration"],
+    "leg_1/contact": [n for n in SAMPLE if n.startswith("leg[1].contact")],
+    "leg_2/contact": [n for n in SAMPLE if n.startswith("leg[2].contact")],
+    "leg_3/contact": [n for n in SAMPLE if n.startswith("leg[3].contact")],
+    "leg_4/contact": [n for n in SAMPLE if n.startswith("leg[4].contact")],
+}
+TOPICS = pytest.mark.parametrize("topic", [CLOCK, *SAMPLED], ids=lambda topic: topic.name)
+
+
+def decoded(data: bytes, topic: Topic) -> Any:
+    return STORE.deserialize_cdr(data, topic.type_name)
+
+
+def decoded_by_mcap(data: bytes, topic: Topic) -> Any:
+    """For messages that end in an empty array of numbers: rclpy adds the gap before its first
+    element, which rosbags refuses.
+    """
+    text = definition(topic.type_name).text.encode()
+    decode = DecoderFactory().decoder_for("cdr", Schema(1, text, "ros2msg", topic.type_name))
+    assert decode is not None
+    return decode(data)
+
+
+def flat(value: Any, path: str = "") -> dict[str, Any]:
+    """Every number and text of a message decoded by rosbags or mcap_ros2, by path."""
+    if is_dataclass(value):
+        names = [f.name for f in fields(value) if f.name != "__msgtype__"]
+        parts = {f"{path}.{name}" if path else name: getattr(value, name) for name in names}
+    elif hasattr(value, "__slots__"):
+        parts = {f"{path}.{n}" if path else n: getattr(value, n) for n in value.__slots__}
+    elif isinstance(value, (list, np.ndarray)):
+        parts = {f"{path}[{i}]": element for i, element in enumerate(value)}
+    else:
+        return {path: value}
+    return {p: leaf for name, part in parts.items() for p, leaf in flat(part, name).items()}
+
+
+def close_to(golden: Any) -> Any:
+    return pytest.approx(golden, rel=1e-15, abs=1e-15) if isinstance(golden, float) else golden
+
+
+def assert_golden(message: Any, golden: dict[str, Any]) -> None:
+    found = flat(message)
+    assert golden.keys() <= found.keys()
+    for path, value in found.items():
+        if path not in golden:
+            # Not -0.0 either.
+            assert str(value) in ("0", "0.0", ""), path
+        else:
+            assert value == close_to(golden[path]), path
+
+
+def packed_message(topic: Topic) -> bytes:
+    packer = SampleBytes()
+    return packer.pack(NANOSECONDS, VALUES)[packer.slices[packer.topics.index(topic)]]
+
+
+def test_every_sampled_topic_has_a_golden_message() -> None:
+    assert GOLDEN.keys() == {CLOCK.name, *(topic.name for topic in SAMPLED)}
+
+
+@TOPICS
+def test_packed_messages_are_golden(topic: Topic) -> None:
+    assert_golden(decoded(packed_message(topic), topic), GOLDEN[topic.name])
+
+
+@TOPICS
+def test_packed_messages_behind_prefixes_are_golden(topic: Topic) -> None:
+    packer = SampleBytes({topic: b"prefix"})
+    part = packer.slices[packer.topics.index(topic)]
+    packed = packer.pack(NANOSECONDS, VALUES, 3)
+    head = b"prefix" + (3).to_bytes(4, "little") + 2 * NANOSECONDS.to_bytes(8, "little")
+    assert packed[part.start - len(head) : part.start] == head
+    assert_golden(decoded(packed[part], topic), GOLDEN[topic.name])
+
+
+@TOPICS
+def test_filled_messages_are_golden(topic: Topic) -> None:
+    messages = SampleMessages()
+    messages.fill(NANOSECONDS, VALUES)
+    data = serialize_message(messages.messages[topic])
+    assert_golden(decoded(data, topic), GOLDEN[topic.name])
+
+
+@pytest.mark.parametrize("topic", SAMPLED, ids=lambda topic: topic.name)
+def test_what_verify_expects_is_golden(topic: Topic) -> None:
+    expected = expected_fields(topic.name, dict(zip(OUTPUT_NAMES, VALUES)), NANOSECONDS)
+    golden = GOLDEN[topic.name]
+    assert golden.keys() <= expected.keys()
+    for path, value in expected.items():
+        assert value == close_to(golden.get(path, 0.0)), path
+
+
+@pytest.mark.parametrize("topic", SAMPLED, ids=lambda topic: topic.name)
+def test_the_outputs_are_read_back_from_the_independent_readers_message(topic: Topic) -> None:
+    carried = CARRIED.get(topic.name, [])
+    assert (topic.name in READINGS) == bool(carried)
+    if carried:
+        names, read = READINGS[topic.name]
+        found = dict(zip(names, read(decoded(packed_message(topic), topic))))
+        assert found == {name: SAMPLE[name] for name in carried}
+
+
+@pytest.mark.parametrize(
+    ("topic", "values", "golden"),
+    [
+        (
+            APPLIED_WRENCH,
+            {"external.force_x": 100.0, "external.force_y": 200.0, "external.moment": 30.0},
+            {"wrench.force.x": 100.0, "wrench.force.z": 200.0, "wrench.torque.y": 30.0},
+        ),
+        (
+            APPLIED_GROUND,
+            {
+                "ground.heave": 0.1,
+                "ground.heave_rate": -0.2,
+                "ground.tilt": 0.03,
+                "ground.tilt_rate": -0.04,
+            },
+            {
+                "name[0]": "ground_heave",
+                "name[1]": "ground_tilt",
+                "position[0]": 0.1,
+                "position[1]": 0.03,
+                "velocity[0]": -0.2,
+                "velocity[1]": -0.04,
+            },
+        ),
+    ],
+    ids=[topic.name for topic in APPLIED],
+)
+def test_applied_inputs_are_golden_and_read_back(
+    topic: Topic, values: dict[str, float], golden: dict[str, Any]
+) -> None:
+    data = serialize_message(Applied(topic, NANOSECONDS, values).message())
+    message = decoded_by_mcap(data, topic)
+    assert_golden(message, {**HEADER, "header.frame_id": "map", **golden})
+    assert INPUT_READINGS[topic.name](message) == values
+
+
+@pytest.fixture(scope="module")
+def vehicle() -> Any:
+    """A vehicle of round numbers, in the mode whose legs lie in the body's plane and beside it."""
+    round_numbers = {
+        "vehicle.top_height": 0.5,
+        "main_strut.joint_radius": 0.5,
+        "main_strut.joint_depth": 1.0,
+        "main_strut.length": 1.5,
+        "auxiliary_strut.joint_radius": 0.5,
+        "auxiliary_strut.joint_depth": 1.5,
+        "auxiliary_strut.length": 1.25,
+    }
+    return load_preset("yue2022-figures", "1-2-1").with_values(round_numbers)
+
+
+def test_markers_are_golden(vehicle: Any) -> None:
+    message = decoded(Wireframe(vehicle).pack(NANOSECONDS, VALUES), MARKERS)
+    points = {m.ns: [(p.x, p.y, p.z) for p in m.points] for m in message.markers}
+    # A point (a, b) of the body, forward and up, is at 2 + 0.6 a + 0.8 b forward and
+    # 3 - 0.8 a + 0.6 b up.
+    footpads = [(1.25, 0.5, 0.125), (2.25, 1.5, 0.225), (3.25, -0.75, 0.325), (2.75, -1.75, 0.425)]
+    # Leg 1 behind the axis, leg 2 to its left, leg 3 before it, leg 4 to its right.
+    main = [(0.9, 0.0, 2.8), (1.2, 0.5, 2.4), (1.5, 0.0, 2.0), (1.2, -0.5, 2.4)]
+    auxiliary = [(0.5, 0.0, 2.5), (0.8, 0.5, 2.1), (1.1, 0.0, 1.7), (0.8, -0.5, 2.1)]
+    expected = {
+        "body": [(0.8, 0.0, 2.1), (2.4, 0.0, 3.3)],
+        "main_struts": [p for pair in zip(main, footpads) for p in pair],
+        "auxiliary_struts": [p for pair in zip(auxiliary, footpads) for p in pair],
+        "footpads": footpads,
+    }
+    assert points.keys() == expected.keys()
+    for name, found in points.items():
+        assert np.array(found) == pytest.approx(np.array(expected[name]), abs=1e-12), name
+    for m in message.markers:
+        assert (m.header.frame_id, m.header.stamp.sec, m.header.stamp.nanosec) == (
+            "map",
+            12,
+            345_000_006,
+        )
+
+
+def test_transforms_are_golden(vehicle: Any) -> None:
+    message = decoded(Transforms(vehicle).pack(NANOSECONDS, VALUES), TF)
+    found = {t.child_frame_id: t for t in message.transforms}
+    for t in message.transforms:
+        assert (t.header.stamp.sec, t.header.stamp.nanosec) == (12, 345_000_006)
+    body = flat(found["base_link"].transform)
+    assert found["base_link"].header.frame_id == "map"
+    assert body == pytest.approx(
+        {
+            "translation.x": 2.0,
+            "translation.y": 0.0,
+            "translation.z": 3.0,
+            "rotation.x": 0.0,
+            "rotation.y": HALF_SIN,
+            "rotation.z": 0.0,
+            "rotation.w": HALF_COS,
+        },
+        abs=1e-15,
+    )
+    top = found["top_sensor"]
+    assert (top.header.frame_id, top.transform.translation.z) == ("base_link", 0.5)
+    # A rod stands at the strut's length less its stroke, along the cylinder's z.
+    rods = {
+        "leg_1_main_strut": 1.489,
+        "leg_1_auxiliary_strut": 1.262,
+        "leg_2_main_strut": 1.479,
+        "leg_2_auxiliary_strut": 1.272,
+        "leg_3_main_strut": 1.469,
+        "leg_3_auxiliary_strut": 1.282,
+        "leg_4_main_strut": 1.459,
+        "leg_4_auxiliary_strut": 1.292,
+    }
+    for strut, z in rods.items():
+        rod = found[f"{strut}_rod"]
+        assert rod.header.frame_id == f"{strut}_cylinder"
+        assert flat(rod.transform)["translation.z"] == pytest.approx(z, abs=1e-12)
+        assert flat(rod.transform)["rotation.w"] == 1.0
