@@ -1,10 +1,9 @@
-"""Joins the kernels of `rlv_landing/core` to one Cython module, so that one small binary holds the
-compiled core.
+"""Joins the kernels of `rlv_landing/core` to one Cython module, the source of the compiled core.
 
 The kernels are plain Python and import each other and `math`. Compiled, they call each other and
-libm directly: this drops their imports, puts the files in the order of their imports, and turns the
-names of `layout.py` into C constants, an array that kernels pass to each other into its address.
-Nothing else of the text changes, so compiled and pure core compute the same digits.
+libm directly. So this removes their imports and puts the files in the order of their imports. The
+names of `layout.py` become C constants, and an array that one kernel passes to another becomes its
+address. Nothing else of the text changes: compiled and pure core compute the same digits.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ DIRECTIVES = {
     "infer_types": True,
     "embedsignature": False,
 }
-# these become C: constants, and the address of an array
+# modules that become C: constants, and the address of an array
 TRANSLATED = ("layout", "pointer")
 POINTER = """cdef inline double* data(double[::1] numbers) noexcept nogil:
     return &numbers[0]
@@ -68,9 +67,7 @@ def layout_constants(core: Path = CORE) -> dict[str, int]:
 
 
 def digest(core: Path = CORE) -> str:
-    """A fingerprint of the kernels' texts; the compiled core carries that of the texts that it was
-    made from.
-    """
+    """SHA-256 of the kernels' texts; the compiled core carries that of its own sources."""
     texts = [
         p.read_bytes()
         for p in sorted([*core.glob("*.py"), *core.glob("*.pxd")])
@@ -85,12 +82,14 @@ def package_name(core: Path = CORE) -> str:
 
 
 def write_source(folder: Path, core: Path = CORE) -> Path:
-    """Write `compiled.py` and `compiled.pxd` below `folder`, only where they change; return the
-    former.
+    """Write `compiled.py` and `compiled.pxd` below `folder` if they change.
 
     Their package is named after their digest. A compiled module enters itself in `sys.modules`
-    under the name it was compiled with, and an FMU's core must never be found there by another
-    version of the package in the same process.
+    under the name it was compiled with. Another version of the package in the same process must
+    not find an FMU's core there.
+
+    Returns:
+        Path of `compiled.py`.
     """
     sources = kernels(core)
     enum = "".join(f"    {name} = {value}\n" for name, value in layout_constants(core).items())
