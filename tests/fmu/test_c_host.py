@@ -46,8 +46,9 @@ def land(host, unpacked, description):
 def assert_landed_or_said_what_it_lacks(
     done: subprocess.CompletedProcess[str], steps: int = STEPS
 ) -> None:
-    """The host's numbers are `Landing`'s; on a machine without any libpython, the host lives and
-    its log names what was tried.
+    """The host's numbers are `Landing`'s.
+
+    On a machine without any libpython the host does not crash, and its log names what was tried.
     """
     if not python_libraries() and done.returncode == 1:
         assert MISSING in done.stdout
@@ -67,8 +68,9 @@ def assert_landed_or_said_what_it_lacks(
 
 @pytest.mark.parametrize("library", python_libraries() or ["/nowhere/libpython3.13.so.1.0"])
 def test_a_c_host_lands_like_landing_with_every_python_of_the_machine(land, library):
-    """With the compiled core where the FMU has one for it: built by Python 3.11 or newer, for all
-    from 3.11 on.
+    """With the compiled core where the FMU has one for that Python.
+
+    An FMU that Python 3.11 or newer built has one for all versions from 3.11 on.
     """
     done = land(RLV_LANDING_LIBPYTHON=library)
     if library.startswith("/nowhere/"):
@@ -113,7 +115,10 @@ def test_the_resources_may_be_named_in_every_usual_form(land, unpacked, form):
 def test_wrong_resources_are_an_error_that_names_them(land):
     done = land(uri="file:///nowhere/resources")
     assert done.returncode == 1
-    reason = "fmuResourceLocation does not name the FMU's resources (no slavemodule.txt there): file:///nowhere/resources"
+    reason = (
+        "fmuResourceLocation does not name the FMU's resources (no slavemodule.txt there): "
+        "file:///nowhere/resources"
+    )
     assert f"log 3 logStatusError land: {reason}" in done.stdout
 
 
@@ -129,8 +134,8 @@ def test_a_bad_library_is_an_error_that_names_it_and_the_remedy(land, library, f
     done = land(RLV_LANDING_LIBPYTHON=library)
     assert done.returncode == 1
     assert (
-        f"{MISSING}; RLV_LANDING_LIBPYTHON = {library}: {fault}; set RLV_LANDING_LIBPYTHON to the path of one"
-        in done.stdout
+        f"{MISSING}; RLV_LANDING_LIBPYTHON = {library}: {fault}; "
+        "set RLV_LANDING_LIBPYTHON to the path of one" in done.stdout
     )
 
 
@@ -149,8 +154,9 @@ def test_the_hosts_environment_does_not_reach_the_fmus_python(land, environment)
 
 @pytest.fixture
 def dying_venv(tmp_path) -> Path:
-    """A venv whose site-packages end every Python that reads them: what a `.pth` that starts Python
-    anew does to an embedded Python.
+    """A venv whose site-packages end every Python that reads them.
+
+    A `.pth` file that starts Python anew does that to an embedded Python.
     """
     venv = tmp_path / "venv"
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(venv)], check=True)
@@ -169,8 +175,9 @@ def test_a_pth_that_ends_or_restarts_python_does_not_reach_the_host(land, dying_
 
 
 def test_the_library_of_python3_on_path_is_the_last_resort(land, unpacked, tmp_path):
-    """Where the FMU was not built, and the loader knows no usable libpython: pyenv's and conda's
-    are not where it looks.
+    """Without a recorded libpython, and without one that the loader finds.
+
+    The loader does not look where pyenv and conda put theirs.
     """
     folder, empty, shims = tmp_path / "fmu", tmp_path / "empty", tmp_path / "shims"
     shutil.copytree(unpacked, folder)
