@@ -1,5 +1,6 @@
-"""The landing by hand in C (`yardstick.c`), compiled here by gcc: how fast the machine does what
-the compiled core does.
+"""The landing in hand-written C (`c_landing.c`), compiled here by gcc.
+
+It shows how fast the machine can do what the compiled core does.
 """
 
 from __future__ import annotations
@@ -24,22 +25,23 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent / "fmu_src"))
 from fmu_build.core_source import COMPILE_ARGS  # noqa: E402
 
-# of `rlv_landing.core.model.Model`, in the order of the C struct that is made from them
+# fields of `rlv_landing.core.model.Model`, in the order of the C struct that is made from them
 PARAMETERS = (
-    "m_u", "I_u", "m_d", "at_joint", "La", "Lb", "Lm0", "A1", "A2", "V10", "V20", "Pa", "rho0", "x_air", "n_air", "B0", "kB",
-    "CdAo_c", "CdAo_r", "dP_lam", "Fc", "kp", "Fs", "v_str", "v_sm", "s_max", "K_stop", "c_stop", "Lc", "Ld", "Ls0", "Ka", "ek", "Ca",
-    "alpha", "Kg", "en", "Cgmax", "d_ramp", "mu", "s_r0", "ar", "b_strib", "Cr", "v_dir", "tau_sr", "g",
+    "m_u", "I_u", "m_d", "at_joint", "La", "Lb", "Lm0", "A1", "A2", "V10", "V20", "Pa", "rho0",
+    "x_air", "n_air", "B0", "kB", "CdAo_c", "CdAo_r", "dP_lam", "Fc", "kp", "Fs", "v_str", "v_sm",
+    "s_max", "K_stop", "c_stop", "Lc", "Ld", "Ls0", "Ka", "ek", "Ca", "alpha", "Kg", "en", "Cgmax",
+    "d_ramp", "mu", "s_r0", "ar", "b_strib", "Cr", "v_dir", "tau_sr", "g",
 )  # fmt: skip
-# the core's own options, and what the machine could do with the digits' equality given up
+# the core's own options, and options that may change the digits
 EXACT: tuple[str, ...] = tuple(COMPILE_ARGS)
 FAST: tuple[str, ...] = ("-O3", "-march=native", "-ffast-math")
 
 
 @cache
 def library(options: tuple[str, ...]) -> CDLL:
-    """`yardstick.c` compiled with `options`."""
+    """`c_landing.c` compiled with `options`."""
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as folder:
-        target = Path(folder) / "yardstick.so"
+        target = Path(folder) / "c_landing.so"
         names = f"-DPARAMETERS={','.join(PARAMETERS)}"
         command = [
             "gcc",
@@ -54,7 +56,7 @@ def library(options: tuple[str, ...]) -> CDLL:
             "-o",
             str(target),
         ]
-        subprocess.run([*command, str(HERE / "yardstick.c"), "-lm"], check=True)
+        subprocess.run([*command, str(HERE / "c_landing.c"), "-lm"], check=True)
         loaded = CDLL(str(target))
     doubles = POINTER(c_double)
     for name, result, arguments in (
@@ -74,11 +76,19 @@ def doubles(values: Any) -> Any:
     return (c_double * len(values))(*values)
 
 
-class Yardstick:
-    """One landing in C, from the start of the same `Landing`; `inputs` by name go on at the rates
-    `rates` [unit/s].
+class CLanding:
+    """One landing in C, from the start of a `Landing`.
 
-    Raises MemoryError without memory, ArithmeticError where the step size has collapsed.
+    Args:
+        landing: The landing with the same model and start.
+        rtol: Relative tolerance.
+        options: Options of gcc.
+        inputs: Inputs at time 0, by name [SI].
+        rates: Rates at which the inputs change, by name [SI/s].
+
+    Raises:
+        MemoryError: No memory for the landing.
+        ArithmeticError: The step size has collapsed.
     """
 
     def __init__(
@@ -120,7 +130,7 @@ class Yardstick:
             raise ArithmeticError("the step size of the landing in C has collapsed")
 
     def states(self, times: Any) -> np.ndarray:
-        """The states at `times` [s], one a row."""
+        """The states at `times` [s], one row each."""
         rows, one = np.empty((len(times), self.n)), (c_double * self.n)()
         for row, t in zip(rows, times):
             self.advance(t)
@@ -129,14 +139,14 @@ class Yardstick:
         return rows
 
     def statistics(self) -> dict[str, int]:
-        """As `Landing.statistics`."""
+        """Counts as in `Landing.statistics`."""
         three = (c_double * 3)()
         self._library.counts(self._landing, three)
         return dict(zip(("steps", "rejected", "rhs_calls"), map(int, three)))
 
 
 def core_states(landing: Landing, times: Any) -> np.ndarray:
-    """The states of the core at `times` [s], one a row."""
+    """The core's states at `times` [s], one row each."""
     solver, one = landing._solver, array("d", bytes(8 * landing._solver.n))
     rows = np.empty((len(times), solver.n))
     for row, t in zip(rows, times):
@@ -146,15 +156,22 @@ def core_states(landing: Landing, times: Any) -> np.ndarray:
     return rows
 
 
-def disagreement(landing: Landing, yardstick: Yardstick, until: float) -> float:
-    """Largest difference of any state, less the energy integrals, every millisecond up to `until`
-    [s], relative to that state's largest value; infinite where the two have not taken the same
-    numbers of steps, rejected steps and right-hand sides.
+def disagreement(landing: Landing, c_landing: CLanding, until: float) -> float:
+    """Largest relative difference of any state between core and C, without the energy integrals.
+
+    Args:
+        landing: The core's landing.
+        c_landing: The landing in C from the same start.
+        until: End [s]; states are compared every millisecond.
+
+    Returns:
+        The difference in parts of the state's largest value. Infinite if the numbers of steps,
+        rejected steps or right-hand sides differ.
     """
     times = 1e-3 * np.arange(round(until / 1e-3) + 1)
-    n = yardstick.n - layout.INTEGRALS
-    core, c = (states[:, :n] for states in (core_states(landing, times), yardstick.states(times)))
-    if landing.statistics != yardstick.statistics():
+    n = c_landing.n - layout.INTEGRALS
+    core, c = (states[:, :n] for states in (core_states(landing, times), c_landing.states(times)))
+    if landing.statistics != c_landing.statistics():
         return np.inf
     largest = np.abs(core).max(axis=0)
     return float((np.abs(core - c).max(axis=0) / np.where(largest > 0.0, largest, 1.0)).max())

@@ -1,4 +1,7 @@
-"""The benchmarks' landing in C is the core's: without that, its time would say nothing of the core."""
+"""The benchmarks' landing in C computes what the core computes.
+
+Otherwise its time would say nothing about the core.
+"""
 
 import sys
 from pathlib import Path
@@ -8,9 +11,9 @@ import pytest
 from rlv_landing import Landing, load_preset
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "benchmarks"))
+from c_landing import CLanding, disagreement
 from cvode_in_c import ADAMS, BDF, CvodeInC
 from problem import TIMES, Problem
-from yardstick import Yardstick, disagreement
 
 # a load and a deck, all of them changing
 INPUTS = {
@@ -26,11 +29,11 @@ RATES = {"external.force_y": 500.0, "ground.heave_rate": -0.3, "ground.tilt_rate
 @pytest.mark.parametrize("rtol", [1e-3, 1e-5])
 def test_the_landing_in_c_takes_the_cores_steps_to_the_same_states(mode, rtol):
     landing, start = (Landing(load_preset("yue2022-figures"), mode, rtol) for _ in range(2))
-    assert disagreement(landing, Yardstick(start, rtol), 0.5) < 1e-9
+    assert disagreement(landing, CLanding(start, rtol), 0.5) < 1e-9
 
 
 def test_the_landing_in_c_has_the_cores_inputs_slope_and_stops(mode):
-    """With the transverse load at the footpads, on a slope, so fast that a strut reaches both ends."""
+    """Covers the transverse load at the footpads, a slope and both end stops."""
     values = {
         "vehicle.transverse_load_at": "footpad",
         "ground.slope": 0.03,
@@ -42,7 +45,7 @@ def test_the_landing_in_c_has_the_cores_inputs_slope_and_stops(mode):
     )
     landing.set_inputs(INPUTS, RATES)
     landing._solver.rhs_calls = 1.0  # the C landing starts with the inputs, so it has no restart
-    assert disagreement(landing, Yardstick(start, 1e-4, inputs=INPUTS, rates=RATES), 0.3) < 1e-9
+    assert disagreement(landing, CLanding(start, 1e-4, inputs=INPUTS, rates=RATES), 0.3) < 1e-9
     watched.set_inputs(INPUTS, RATES)
     stroke = watched.run(0.3)["leg[1].main_strut.stroke"]
     assert stroke.min() < 0.0
@@ -54,7 +57,7 @@ def test_a_landing_in_c_of_another_vehicle_is_told_from_the_cores(mode):
     assert (
         disagreement(
             Landing(load_preset("yue2022-figures"), mode),
-            Yardstick(Landing(heavier, mode), 1e-5),
+            CLanding(Landing(heavier, mode), 1e-5),
             0.2,
         )
         > 1e-3
@@ -63,8 +66,9 @@ def test_a_landing_in_c_of_another_vehicle_is_told_from_the_cores(mode):
 
 @pytest.mark.parametrize("method", [ADAMS, BDF])
 def test_cvode_lands_as_the_core_does(mode, method):
-    """An integrator that shares nothing with ours finds the same peaks; friction lets late strokes
-    differ by some micrometres.
+    """CVODE, which shares no code with the core, finds the same peaks.
+
+    Friction lets late strokes differ by some micrometres.
     """
     problem = Problem(mode)
     found = problem.error(CvodeInC(problem, 1e-8, method, 2e-3, 500_000).states(TIMES))
