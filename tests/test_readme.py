@@ -33,11 +33,6 @@ def test_every_command_and_option_that_is_shown_exists(line):
         assert option in shown.output, option
 
 
-def test_every_linked_file_exists():
-    for target in re.findall(r"\]\(([^)#]+)\)", README):
-        assert (ROOT / target).is_file(), target
-
-
 def test_readme_names_every_make_target_it_relies_on():
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     for target in re.findall(r"`?make (\w+)", README):
