@@ -32,14 +32,14 @@ def normal_forces(result):
 
 
 def test_command_writes_fmus_system_results_and_picture_and_says_what_happened(ran):
-    out, said = ran
+    out, output = ran
     files = {"ShipDeck.fmu", "EngineTailOff.fmu", "calm.ssp", "moving.ssp", "ship_deck.png"}
     assert {p.name for p in out.iterdir()} == files | {
         f"{d}-{i}.csv" for d in ("calm", "moving") for i in ("fmpy", "ecos")
     }
     assert imread(out / "ship_deck.png").shape[0] > 500
     touched = {
-        name: float(time) for name, time in re.findall(r"(\w+) deck: touches at ([\d.]+) s", said)
+        name: float(time) for name, time in re.findall(r"(\w+) deck: touches at ([\d.]+) s", output)
     }
     assert touched["moving"] < touched["calm"], "the deck rises towards the vehicle"
 
