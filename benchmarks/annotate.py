@@ -25,7 +25,7 @@ LINE = re.compile(
 
 @dataclass(frozen=True)
 class Line:
-    """A line of the joined kernels; `score` is Cython's measure of the Python it calls, 0 for none."""
+    """A line of the joined kernels; `score` is Cython's measure of its Python calls, 0 for none."""
 
     number: int
     score: int
@@ -33,8 +33,10 @@ class Line:
 
 
 def annotate(folder: Path) -> Path:
-    """Write the joined kernels and their annotation below `folder`; return the HTML file, which
-    stands beside its source.
+    """Write the joined kernels and their annotation below `folder`.
+
+    Returns:
+        The HTML file, which lies beside its source.
     """
     source = write_source(folder)
     extension = Extension(f"{source.parent.name}.{MODULE}", [str(source)])

@@ -1,17 +1,16 @@
-"""What the FMU costs its importer, beside an FMU in C of the same variables and no model: what FMPy
-costs by itself.
+"""Measures what the FMU costs FMPy, beside an FMU in C with the same variables and no model.
 
-- Cold: a new Python process that imports FMPy and lands for 1 s in 1 ms steps with all outputs
-  recorded, from its start to its end, and what of that was the start of Python with the import of
-  FMPy, and `simulate_fmu` (unpacking, loading, the landing, removing). How long its main thread was
-  on a processor tells what a machine that does nothing else would take, but for reading files.
-- Calls: `fmi2DoStep` of 1 ms, and with it all Real outputs in one `fmi2GetReal` with arrays made
+- Cold: a new Python process imports FMPy and lands for 1 s in 1 ms steps with all outputs recorded.
+  Measured from its start to its end. Parts of it are the start of Python with the import of FMPy,
+  and `simulate_fmu` (unpacking, loading, the landing, removing). The processor time of its main
+  thread is what an idle machine would take, without reading files.
+- Calls: `fmi2DoStep` of 1 ms, alone and with all Real outputs in one `fmi2GetReal` with arrays made
   before, over the 1000 steps of a landing.
 
 The C FMU (`empty_fmu.c`, compiled here by gcc) has the FMU's modelDescription.xml and nothing else
-to unpack, and its step does nothing: the ratios are upper bounds of those to the same model written
-in C. The two FMUs take turns, and the best of all turns counts. Prints a table, and appends a row a
-case to `results.jsonl`.
+to unpack, and its step does nothing. So the ratios are upper bounds of those to the same model
+written in C. The two FMUs take turns, and the best of all turns counts. Prints a table and appends
+one row per case to `results.jsonl`.
 """
 
 from __future__ import annotations
@@ -49,7 +48,7 @@ print(json.dumps({"simulate": seconds, "processor": time.thread_time(), **shape}
 
 
 def empty_fmu(folder: Path) -> Path:
-    """The C FMU, made in `folder`."""
+    """Build the C FMU in `folder`."""
     with zipfile.ZipFile(FMU) as archive:
         description = archive.read("modelDescription.xml")
     variables = len(fmpy.read_model_description(str(FMU)).modelVariables)
@@ -73,8 +72,11 @@ def empty_fmu(folder: Path) -> Path:
 
 
 def cold(fmu: Path) -> dict[str, float]:
-    """Seconds of one new process: from its start to its end, of `simulate_fmu` in it, and of its
-    main thread on a processor.
+    """Measure one landing in a new Python process.
+
+    Returns:
+        Seconds of the whole process (`cold`), of `simulate_fmu` in it (`simulate`), of the rest
+        (`start`), and of its main thread on a processor (`processor`).
     """
     start = time.perf_counter()
     done = subprocess.run(
@@ -98,7 +100,7 @@ def cold(fmu: Path) -> dict[str, float]:
 
 
 def calls(fmu: Path, folder: Path) -> dict[str, float]:
-    """Mean seconds a step of one landing: `fmi2DoStep` alone, and with all Real outputs."""
+    """Mean seconds per step of one landing: `fmi2DoStep` alone, and with all Real outputs."""
     description = fmpy.read_model_description(str(fmu))
     outputs = [
         v.valueReference
@@ -135,6 +137,7 @@ def calls(fmu: Path, folder: Path) -> dict[str, float]:
 
 
 def main() -> None:
+    """Measure both FMUs, print the table and append the rows."""
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         folder = Path(name)
         fmus = {"FMU": FMU, "C FMU without a model": empty_fmu(folder)}
@@ -150,7 +153,8 @@ def main() -> None:
     load = os.getloadavg()[0]
     ours, empty = best.values()
     table = Table(
-        title=f"Cost to FMPy {fmpy.__version__}: best of {REPEATS}, load {load:.1f} on {os.cpu_count()} cores",
+        title=f"Cost to FMPy {fmpy.__version__}: best of {REPEATS}, "
+        f"load {load:.1f} on {os.cpu_count()} cores",
         title_justify="left",
     )
     for heading in ("cost", *best, "ratio"):

@@ -1,8 +1,7 @@
-"""What a 1 s landing costs at equal error: our integrator and model beside other solvers, C, MuJoCo
-and the FMU, in one run.
+"""Measures a 1 s landing at equal error: the core, the FMU, C, other solvers and MuJoCo.
 
-See `docs/performance.md`, whose table and picture this writes. Prints the table as well, and
-appends a row a run to `results.jsonl`.
+All run in one process. Writes the table and the picture of `docs/performance.md`, prints the table
+and appends one row per solver to `results.jsonl`.
 """
 
 from __future__ import annotations
@@ -11,7 +10,7 @@ import os
 from itertools import chain
 from typing import Any
 
-# one thread: what is timed is the thread's processor time
+# one thread, because the thread's processor time is measured
 os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import fmpy
@@ -19,14 +18,14 @@ import mujoco
 import numpy as np
 import scipy
 import sksundae
-from foreign import FOREIGN
+from c_landing import EXACT, CLanding, disagreement
+from other_solvers import OTHERS
 from peers import OURS
 from problem import Problem
 from rich.console import Console
 from rich.table import Table
 from rows import HERE, append_rows, load, provenance
 from work_precision import Run, cost, draw, measure
-from yardstick import EXACT, Yardstick, disagreement
 
 from rlv_landing.core import COMPILED
 from rlv_landing.quantities import MODES
@@ -35,27 +34,33 @@ DOCS = HERE.parent / "docs"
 MARKS = ("<!-- measured by make bench -->\n", "<!-- end of what is measured -->\n")
 TARGETS = (1e-3, 1e-2)
 HEADINGS = (
-    "solver", "ms at 0.1 %", "to core's", "stroke error [um]", "right-hand sides", "to core's", "us each", "model", "ms at 1 %", "to core's"
+    "solver", "ms at 0.1 %", "to core's", "stroke error [um]", "right-hand sides", "to core's",
+    "us each", "model", "ms at 1 %", "to core's",
 )  # fmt: skip
 
 
-def check_yardstick(problem: Problem) -> None:
-    """Ends the program where the landing in C is not the core's."""
-    found = disagreement(problem.new_solver(), Yardstick(problem.landing().parameters, 1e-5), 1.0)
+def check_c_landing(problem: Problem) -> None:
+    """End the program if the landing in C differs from the core's."""
+    found = disagreement(problem.new_solver(), CLanding(problem.landing().parameters, 1e-5), 1.0)
     if not found <= 1e-9:
         raise SystemExit(
-            f"error: the landing in C differs from the core's by {found:.1e} in mode {problem.mode}; bring yardstick.c up to date"
+            f"error: the landing in C differs from the core's by {found:.1e} in mode "
+            f"{problem.mode}; change c_landing.c as the core has changed"
         )
 
 
 def digits(value: float, bound: str = "") -> str:
-    """Three digits, and what bounds them."""
+    """Three digits of `value`, after its `bound` (≤ or >) if it has one."""
     return f"{bound} {value:.3g}".strip() if value < 1000.0 else f"{bound} {value:.0f}".strip()
 
 
 def line_of(runs: list[Run], core: list[Run], call: float) -> list[str]:
-    """One line of the table: the `runs` of one peer beside those of the core, one of whose
-    right-hand sides takes `call` [s].
+    """One line of the table: a peer beside the core.
+
+    Args:
+        runs: The peer's runs at all tolerances.
+        core: The core's runs.
+        call: Time of one of the core's right-hand sides [s].
     """
     (at, loose), (base, base_loose) = (
         [cost(own, target) for target in TARGETS] for own in (runs, core)
@@ -71,7 +76,7 @@ def line_of(runs: list[Run], core: list[Run], call: float) -> list[str]:
     if peer.kind == "simulator":
         line += [f"{at.calls:.0f} steps", "", "", ""]
     else:
-        share = f"{100.0 * call * at.calls / at.seconds:.0f} %" if peer.kind == "foreign" else ""
+        share = f"{100.0 * call * at.calls / at.seconds:.0f} %" if peer.kind == "other" else ""
         line += [
             f"{at.calls:.0f}",
             digits(at.calls / base.calls, at.bound),
@@ -86,8 +91,9 @@ def line_of(runs: list[Run], core: list[Run], call: float) -> list[str]:
 
 
 def row_of(mode: str, runs: list[Run], loads: list[float]) -> dict[str, Any]:
-    """What `results.jsonl` keeps of a peer: its cost at the first target, and of every run
-    tolerance, seconds, calls and errors.
+    """A peer's row in `results.jsonl`.
+
+    It has the cost at the first target, and tolerance, seconds, calls and errors of every run.
     """
     at = cost(runs, TARGETS[0])
     curve = [
@@ -109,7 +115,7 @@ def row_of(mode: str, runs: list[Run], loads: list[float]) -> dict[str, Any]:
 
 
 def report(console: Console, lines: dict[str, list[list[str]]], note: str) -> None:
-    """Print the tables, and put them where `docs/performance.md` has them."""
+    """Print the tables, and write them to `docs/performance.md` between its marks."""
     text = f"Measured on {note}.\n"
     for mode, table_lines in lines.items():
         table = Table(
@@ -133,16 +139,17 @@ def report(console: Console, lines: dict[str, list[list[str]]], note: str) -> No
 
 
 def main() -> None:
+    """Measure all solvers in both modes, report, and append the rows."""
     if not COMPILED:
         raise SystemExit("error: the core is not compiled here; run make")
     console, loads = Console(width=160), [load()]
     runs: dict[str, list[list[Run]]] = {}
     for mode in MODES:
         problem = Problem(mode)
-        check_yardstick(problem)
+        check_c_landing(problem)
         with console.status(f"{mode}: reference") as status:
-            found = measure((*OURS, *FOREIGN), problem, status.update)
-        runs[mode] = [[r for r in found if r.peer is peer] for peer in (*OURS, *FOREIGN)]
+            found = measure((*OURS, *OTHERS), problem, status.update)
+        runs[mode] = [[r for r in found if r.peer is peer] for peer in (*OURS, *OTHERS)]
     loads.append(load())
     lines = {}
     for mode, own in runs.items():
@@ -151,11 +158,15 @@ def main() -> None:
     append_rows([row_of(mode, peer, loads) for mode, own in runs.items() for peer in own])
     stamp, modules = provenance(), (np, scipy, sksundae, mujoco, fmpy)
     versions = ", ".join(f"{module.__name__} {module.__version__}" for module in modules)
-    machine = f"{stamp['cpu']}, load {loads[0]:.1f} before and {loads[1]:.1f} after on {os.cpu_count()} cores"
+    machine = (
+        f"{stamp['cpu']}, load {loads[0]:.1f} before and {loads[1]:.1f} after "
+        f"on {os.cpu_count()} cores"
+    )
     report(
         console,
         lines,
-        f"{machine}; commit {stamp['commit']}, Python {stamp['python']}, {versions}; `gcc {' '.join(EXACT)}`",
+        f"{machine}; commit {stamp['commit']}, Python {stamp['python']}, {versions}; "
+        f"`gcc {' '.join(EXACT)}`",
     )
     draw(
         {mode: [*chain(*own)] for mode, own in runs.items()},

@@ -1,20 +1,19 @@
-"""What the quasi-3D formulation saves: the core against a full three-dimensional Newton-Euler model
-of the same vehicle, at equal error.
+"""Compares the quasi-3D core with a full 3-D Newton-Euler model of the vehicle at equal error.
 
 The 3-D model is that of `tests/independent/vehicle_3d.py`: numpy over four legs, no symmetry used,
-45 states, 18 linear equations a call, integrated by scipy's RK45, which is the core's method
-`dormand-prince` with the core's scales of error. The error of either is the largest difference of
-any main strut stroke from its own landing at a far tighter tolerance. Both are run at several
-tolerances; calls of the right-hand side at equal error are read off by interpolation between them,
-and seconds are calls times seconds a call.
+45 states, 18 linear equations per call. scipy's RK45 integrates it: the core's method
+`dormand-prince`, with the core's scales of error. The error of either is the largest difference of
+any main strut stroke from its own landing at a far tighter tolerance. Both run at several
+tolerances. Interpolation between them gives the calls of the right-hand side at equal error, and
+seconds are calls times seconds per call.
 
 Seconds compare languages as much as models: a compiled core, a plain Python one, numpy. So the work
-of one right-hand side is counted too, by running both on numbers that count their operations, at
+of one right-hand side is counted too. Both models run on numbers that count their operations, at
 the same moment of the landing: + - * / sqrt on one hand, powers, exp, sin, cos, tanh on the other.
-The core's includes its energy accounts, which the 3-D model has not; the 3-D model's is given with
-and without its dense elimination, because a cleverer one would cost less. Compiled like the core,
-the 3-D model would be slower by about the ratio of the work. Prints a table and appends a row a
-case to `results.jsonl`.
+The core's work includes its energy accounts, which the 3-D model has not. The 3-D model's is given
+with and without its dense elimination, because a specialised one would cost less. Compiled like the
+core, the 3-D model would be slower by about the ratio of the work. Prints a table and appends one
+row per case to `results.jsonl`.
 """
 
 from __future__ import annotations
@@ -55,7 +54,7 @@ BODY = ("x", "y", "pitch", "vx", "vy", "pitch_rate")
 METHOD = "dormand-prince"
 UNTIL = 0.5
 TIMES = np.arange(501) * 1e-3
-MOMENT = 0.3  # s, at which the work is counted: all footpads have landed
+MOMENT = 0.3  # s; the work is counted here, after all footpads have landed
 TARGETS = (1e-6, 1e-8)  # m
 TOLERANCES = (1e-5, 1e-6, 1e-7, 1e-8, 3e-9)
 REPEATS = 5
@@ -72,7 +71,7 @@ Runs = list[tuple[float, int]]  # (error [m], calls) at each tolerance
 
 
 class Count:
-    """A number that counts what is done with it."""
+    """A number that counts the operations done with it."""
 
     operations = 0
     functions = 0
@@ -90,7 +89,7 @@ class Count:
         return Count(abs(self.value))
 
 
-def _operator(name: str, function: bool) -> None:
+def _operator(name: str, *, function: bool) -> None:
     def apply(self: Count, other: Any) -> Any:
         if isinstance(other, np.ndarray):
             return NotImplemented
@@ -115,9 +114,9 @@ def _method(name: str) -> None:
 
 
 for _name in ("add", "radd", "sub", "rsub", "mul", "rmul", "truediv", "rtruediv"):
-    _operator(f"__{_name}__", False)
+    _operator(f"__{_name}__", function=False)
 for _name in ("pow", "rpow"):
-    _operator(f"__{_name}__", True)
+    _operator(f"__{_name}__", function=True)
 for _name in ("lt", "le", "gt", "ge"):
     _comparison(f"__{_name}__")
 for _name in ("sqrt", "exp", "sin", "cos", "tanh"):
@@ -125,18 +124,19 @@ for _name in ("sqrt", "exp", "sin", "cos", "tanh"):
 
 
 class Counted3D(Vehicle3D):
-    """The 3-D model with the elimination's work written down instead of done: 2/3 n^3 + 2 n^2."""
+    """The 3-D model; counts its linear solution as 2/3 n^3 + 2 n^2 operations."""
 
     elimination = 2 * 18**3 // 3 + 2 * 18**2
 
     def solve(self, A: Any, b: Any) -> Any:
+        """Solve the 18 equations with floats, so that their operations are not counted here."""
         return np.array(
             [Count(v) for v in np.linalg.solve(A.astype(float), b.astype(float))], dtype=object
         )
 
 
 def count(work: Any) -> tuple[int, int]:
-    """(operations, functions) that `work` takes."""
+    """(operations, functions) of one call of `work`."""
     Count.operations = Count.functions = 0
     work()
     return Count.operations, Count.functions
@@ -178,7 +178,7 @@ def work_of_core(parameters: Parameters, time: float) -> tuple[int, int]:
 
 
 def core(mode: str, rtol: float) -> tuple[np.ndarray, int, float]:
-    """Strokes, calls, and best seconds a call of the compiled core."""
+    """Strokes, calls, and best seconds per call of the compiled core."""
     best = math.inf
     for _ in range(REPEATS):
         landing = Landing(load_preset(PRESET), mode, rtol, METHOD)
@@ -193,7 +193,7 @@ def core(mode: str, rtol: float) -> tuple[np.ndarray, int, float]:
 def space(
     mode: str, rtol: float, method: str = "RK45"
 ) -> tuple[np.ndarray, int, float, np.ndarray]:
-    """Strokes, calls, seconds a call and states of the 3-D model."""
+    """Strokes, calls, seconds per call and states of the 3-D model."""
     landing = Landing(load_preset(PRESET), mode)
     model = Vehicle3D(landing.parameters)
     y0 = model.start([landing.get(f"body.{n}") for n in BODY])
@@ -217,7 +217,8 @@ def calls_at(runs: Runs, error: float) -> float:
     errors, calls = np.log(np.array(sorted(runs))).T
     if not errors[0] <= math.log(error) <= errors[-1]:
         raise SystemExit(
-            f"error: {error:g} m is outside the errors found, {np.exp(errors[0]):.1e} to {np.exp(errors[-1]):.1e} m"
+            f"error: {error:g} m is outside the errors found, "
+            f"{np.exp(errors[0]):.1e} to {np.exp(errors[-1]):.1e} m"
         )
     return float(np.exp(np.interp(math.log(error), errors, calls)))
 
@@ -234,7 +235,8 @@ def measure(mode: str) -> list[dict[str, Any]]:
         strokes, calls, space_seconds, states = space(mode, rtol)
         full.append((float(np.abs(strokes - exact_space).max()), calls))
         print(
-            f"{mode} rtol {rtol:.0e}: core {ours[-1][0]:.1e} m in {ours[-1][1]} calls, 3-D {full[-1][0]:.1e} m in {full[-1][1]} calls"
+            f"{mode} rtol {rtol:.0e}: core {ours[-1][0]:.1e} m in {ours[-1][1]} calls, "
+            f"3-D {full[-1][0]:.1e} m in {full[-1][1]} calls"
         )
     command = [sys.executable, "-c", PURE, mode, str(UNTIL)]
     done = subprocess.run(
@@ -276,6 +278,7 @@ def measure(mode: str) -> list[dict[str, Any]]:
 
 
 def main() -> None:
+    """Measure both modes, print the table and append the rows."""
     rows = [row for mode in ("2-2", "1-2-1") for row in measure(mode)]
     table = Table(title=f"Landing to {UNTIL} s at equal error of the strokes", title_justify="left")
     for name in (
@@ -310,8 +313,9 @@ def main() -> None:
             f"{ratio[0]:.2f}" if ratio[0] == ratio[1] else f"{ratio[0]:.1f} to {ratio[1]:.1f}",
         )
     table.caption = (
-        "work to core: calls times (+-*/ + 20 a function), without and with the dense elimination. Seconds compare languages too: "
-        "numpy against compiled or plain Python; the work does not. The core's includes its energy accounts."
+        "work to core: calls times (+-*/ + 20 per function), without and with the dense "
+        "elimination. Seconds compare languages too: numpy against compiled or plain Python; the "
+        "work does not. The core's includes its energy accounts."
     )
     Console(width=130).print(table)
     append_rows(rows)

@@ -1,8 +1,8 @@
-"""CVODE without Python in its loop: the shared libraries that come with scikit-sundae, with the
-right-hand side of `yardstick.c`.
+"""CVODE without Python in its loop, on the right-hand side of `c_landing.c`.
 
-What is left of Python is one call a millisecond or less. It shows what the method costs, where
-scikit-sundae shows what a user of it pays.
+It uses the shared libraries in scikit-sundae's wheel. Python makes at most one call per
+millisecond of the landing. So this shows what the method costs, while scikit-sundae shows what its
+user pays.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 import sksundae.cvode
+from c_landing import EXACT, CLanding, doubles, library
 from problem import Problem
-from yardstick import EXACT, Yardstick, doubles, library
 
 ADAMS, BDF = 1, 2
 NORMAL = 1
@@ -41,7 +41,7 @@ SIGNATURES: dict[str, tuple[str, Any, tuple[Any, ...]]] = {
 
 
 class Bridge(Structure):
-    """What `slope_for_cvode` gets as its user data."""
+    """User data of `slope_for_cvode`: the landing in C, and the access to a vector's array."""
 
     _fields_ = (("landing", c_void_p), ("array", c_void_p))
 
@@ -64,7 +64,11 @@ def function(name: str) -> Any:
 
 
 def call(name: str, *arguments: Any) -> Any:
-    """Call a function of SUNDIALS; raises ArithmeticError where it returns an error."""
+    """Call a function of SUNDIALS.
+
+    Raises:
+        ArithmeticError: It returns an error.
+    """
     result = function(name)(*arguments)
     if SIGNATURES[name][1] is c_int and result < 0:
         raise ArithmeticError(f"{name} of SUNDIALS returned {result}")
@@ -72,17 +76,26 @@ def call(name: str, *arguments: Any) -> Any:
 
 
 class CvodeInC:
-    """One landing by CVODE, `method` ADAMS or BDF, with its dense Newton iteration and its
-    difference quotients for the Jacobian.
+    """One landing by CVODE, with dense Newton iterations and a Jacobian by difference quotients.
+
+    Args:
+        problem: The landing.
+        rtol: Relative tolerance.
+        method: ADAMS or BDF.
+        longest: Longest step [s].
+        most: Largest number of steps between two outputs.
+
+    Raises:
+        ArithmeticError: A function of SUNDIALS returns an error.
     """
 
     def __init__(
         self, problem: Problem, rtol: float, method: int, longest: float, most: int
     ) -> None:
         m = problem.m
-        # kept, because SUNDIALS works in them
+        # references, because SUNDIALS works in these arrays
         self._y, self._atol = doubles(problem.state), doubles(rtol * problem.scale)
-        self._landing = Yardstick(problem.landing().parameters, rtol)
+        self._landing = CLanding(problem.landing().parameters, rtol)
         self._bridge = Bridge(
             self._landing._landing, cast(sundials("core").N_VGetArrayPointer, c_void_p)
         )
@@ -116,11 +129,11 @@ class CvodeInC:
             call("SUNContext_Free", byref(self._context))
 
     def advance(self, t_end: float) -> None:
-        """Step past `t_end` [s], the state there by CVODE's dense output."""
+        """Step past `t_end` [s]; the state there is from CVODE's dense output."""
         call("CVode", self._memory, t_end, self._vector, byref(c_double()), NORMAL)
 
     def states(self, times: Any) -> np.ndarray:
-        """The states at `times` [s], the first of which is 0, one a row."""
+        """The states at `times` [s], one row each; `times` starts with 0."""
         rows = np.empty((len(times), len(self._y)))
         rows[0] = self._y
         for row, t in zip(rows[1:], times[1:]):
@@ -129,5 +142,5 @@ class CvodeInC:
         return rows
 
     def calls(self) -> int:
-        """Right-hand sides so far, those for the Jacobian included."""
+        """Right-hand sides so far, including those for the Jacobian."""
         return self._landing.statistics()["rhs_calls"] - 1

@@ -1,7 +1,7 @@
-"""The solvers that are compared, each a `Peer`: a plain landing to time, and the error of a landing
-with the same steps.
+"""The solvers that are compared, each a `Peer`.
 
-Here are those that are ours, and the landing in C; `foreign.py` has the others.
+A peer has a plain landing, whose time is measured, and the error of a landing with the same steps.
+Here are the project's own solvers and the landing in C; `other_solvers.py` has the others.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from typing import Any
 
 import fmpy
 import numpy as np
+from c_landing import EXACT, FAST, CLanding, core_states
 from fmpy.fmi2 import FMU2Slave
 from problem import PRESET, SAMPLED, TIMES, UNTIL, Error, Problem, error
 from rows import FMU
-from yardstick import EXACT, FAST, Yardstick, core_states
 
 from rlv_landing import load_preset
 from rlv_landing.assembly import new_solver
@@ -33,8 +33,9 @@ FEW_TOLERANCES = (1e-3, 1e-4, 1e-5)
 
 @dataclass(frozen=True)
 class Task:
-    """One landing, ready to go: `land()` is what is timed, `calls()` tells its right-hand sides (or
-    steps) afterwards.
+    """One landing, ready to start.
+
+    `land()` is timed. `calls()` returns its right-hand sides (or steps) afterwards.
     """
 
     land: Callable[[], object]
@@ -43,10 +44,10 @@ class Task:
 
 @dataclass(frozen=True)
 class Peer:
-    """A solver: `task(problem, tolerance)` is its plain landing, `error(problem, tolerance)` that
-    of one with the same steps.
+    """A solver to compare.
 
-    `kind` groups the curves: ours, C, foreign, or simulator.
+    `task(problem, tolerance)` is its plain landing; `error(problem, tolerance)` is the error of a
+    landing with the same steps. `kind` groups the curves: ours, C, other or simulator.
     """
 
     name: str
@@ -90,28 +91,28 @@ def pure(problem: Problem, rtol: float) -> Task:
 
 
 def in_c(name: str, options: tuple[str, ...]) -> Peer:
-    """The yardstick, compiled with `options`."""
+    """The landing in C, compiled with `options`."""
 
     def task(problem: Problem, rtol: float) -> Task:
-        landing = Yardstick(problem.landing().parameters, rtol, options)
+        landing = CLanding(problem.landing().parameters, rtol, options)
         return Task(lambda: landing.advance(UNTIL), lambda: landing.statistics()["rhs_calls"])
 
     def deviation(problem: Problem, rtol: float) -> Error:
-        return problem.error(Yardstick(problem.landing().parameters, rtol, options).states(TIMES))
+        return problem.error(CLanding(problem.landing().parameters, rtol, options).states(TIMES))
 
     return Peer(name, "C", TOLERANCES, task, deviation)
 
 
 @cache
 def unpacked() -> tuple[Any, tempfile.TemporaryDirectory[str]]:
-    """The FMU's description, and the folder that it is unpacked in."""
+    """The FMU's description, and the folder of its files."""
     folder = tempfile.TemporaryDirectory(prefix="rlv_landing_")
     fmpy.extract(str(FMU), folder.name)
     return fmpy.read_model_description(str(FMU)), folder
 
 
 class Slave:
-    """An FMU at the start of a landing, and FMPy's calls."""
+    """An FMU at the start of a landing, called through FMPy."""
 
     def __init__(self, problem: Problem, rtol: float) -> None:
         description, folder = unpacked()
@@ -144,7 +145,7 @@ class Slave:
             step(component, TIMES[k], 1e-3, 1)
 
     def series(self, problem: Problem) -> np.ndarray:
-        """[force, force, stroke; leg group; time] of a landing."""
+        """A landing as [force, force, stroke; leg group; time]."""
         legs = [group.legs[0][0] for group in MODES[problem.mode]]
         chosen = [self.references[f"leg[{leg}].{name}"] for name in SAMPLED for leg in legs]
         references, values = (c_uint * len(chosen))(*chosen), (c_double * len(chosen))()

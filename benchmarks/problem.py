@@ -1,11 +1,11 @@
-"""The benchmarks' problem: a 1 s landing of the default preset in one mode, and the error of a
-solution, the same for every solver.
+"""The benchmarks' problem: a 1 s landing of the default preset in one mode, and a solution's error.
 
-A solution is what its solver's own dense output gives every millisecond. Its loads are worked out
-from its states by the core. Its error is the largest relative deviation of any peak: largest and
-smallest main strut force and auxiliary strut force and largest main strut stroke of every leg
-group, against the reference, in parts of the largest absolute value of that force or stroke; and
-the largest difference of any main strut stroke at any time [m].
+The error is defined alike for every solver. A solution is the state that the solver's own dense
+output gives every millisecond; the core computes the loads from it. The error of the peaks is the
+largest relative deviation of any peak from the reference. Peaks are the largest and smallest main
+strut force and auxiliary strut force and the largest main strut stroke of every leg group, in parts
+of the largest absolute value of that force or stroke. The error of the strokes is the largest
+difference of any main strut stroke at any time [m].
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from yardstick import core_states
+from c_landing import core_states
 
 from rlv_landing import Landing, load_preset
 from rlv_landing.assembly import new_solver
@@ -33,8 +33,9 @@ COLUMNS = [[q.name for q in LEG_QUANTITIES].index(name) for name in SAMPLED]
 
 @dataclass(frozen=True)
 class Error:
-    """Of a solution: `peaks` the largest relative deviation of any peak, `stroke` the largest
-    stroke error over time [m].
+    """Error of a solution.
+
+    `peaks` is the largest relative deviation of any peak, `stroke` the largest stroke error [m].
     """
 
     peaks: float
@@ -52,10 +53,10 @@ def error(series: np.ndarray, reference: np.ndarray) -> Error:
 
 
 class Problem:
-    """The landing in `mode`: what solvers of others need of it, and the error of what they find.
+    """The landing in `mode`: the start for other solvers, and the error of their solutions.
 
-    `state` is where it starts, without the energy integrals, which no other state depends on;
-    `scale` and `relative` are the core's measures of error for it.
+    `state` is the start without the energy integrals, which no other state depends on. `scale` and
+    `relative` are the core's measures of error for it.
     """
 
     def __init__(self, mode: str) -> None:
@@ -76,8 +77,10 @@ class Problem:
         return new_solver(load_preset(PRESET, self.mode), rtol, METHODS[method])
 
     def series(self, states: np.ndarray) -> np.ndarray:
-        """[force, force, stroke; leg group; time] of the `states` at TIMES, one a row, with or
-        without the energy integrals.
+        """Loads and strokes as [force, force, stroke; leg group; time].
+
+        Args:
+            states: One row for each of TIMES, with or without the energy integrals.
         """
         y, size = array("d", bytes(8 * self.n)), len(LEG_QUANTITIES)
         out = array("d", bytes(8 * (len(SHARED_QUANTITIES) + size * self.groups)))

@@ -1,8 +1,7 @@
-"""Work against precision: runs the peers at their tolerances, reads off what equal error costs, and
-draws it.
+"""Work against precision: runs the peers, reads off the cost at equal error, and draws it.
 
-Time is the processor time of the thread in one plain landing, the best of several turns that all
-runs take one after another, so that other work on the machine hurts all alike.
+Time is the processor time of the thread in one plain landing, the best of several turns. All runs
+take turns one after another, so that other work on the machine affects all alike.
 """
 
 from __future__ import annotations
@@ -18,17 +17,15 @@ from peers import Peer
 from problem import Error, Problem
 
 TURNS = 15
-# of processor time, after which a run takes no more turns
+# of processor time [s], after which a run takes no more turns
 ENOUGH_SECONDS = 0.3
-COLOURS = {"ours": "Blues", "C": "Greys", "foreign": "Oranges", "simulator": "Purples"}
+COLOURS = {"ours": "Blues", "C": "Greys", "other": "Oranges", "simulator": "Purples"}
 MARKERS = "osD^vP*X<>"
 
 
 @dataclass
 class Run:
-    """One peer at one tolerance: its error, its best time [s] and its right-hand sides (steps of a
-    simulator).
-    """
+    """One peer at one tolerance: error, best time [s] and right-hand sides (a simulator: steps)."""
 
     peer: Peer
     tolerance: float
@@ -40,14 +37,14 @@ class Run:
 
     def find_error(self, problem: Problem) -> None:
         """Land once for the error."""
-        with self._kept():
+        with self._record_failure():
             self.error = self.peer.error(problem, self.tolerance)
 
     def time(self, problem: Problem) -> None:
-        """Land once plainly, unless it has failed or has had turns enough."""
+        """Land once plainly, unless it has failed or has had enough turns."""
         if self.failure or self.spent > ENOUGH_SECONDS:
             return
-        with self._kept():
+        with self._record_failure():
             task = self.peer.task(problem, self.tolerance)
             start = thread_time()
             task.land()
@@ -59,22 +56,22 @@ class Run:
             )
 
     @contextmanager
-    def _kept(self) -> Iterator[None]:
-        """Keeps a failure of the solver."""
+    def _record_failure(self) -> Iterator[None]:
+        """Record a failure of the solver."""
         try:
             yield
         except (ArithmeticError, TimeoutError, Warning) as failure:
             self.failure = f"{type(failure).__name__}: {failure}"
 
 
-def measure(peers: Iterable[Peer], problem: Problem, tell: Callable[[str], object]) -> list[Run]:
-    """All runs of the `peers`; those that come to no end carry their `failure`."""
+def measure(peers: Iterable[Peer], problem: Problem, report: Callable[[str], object]) -> list[Run]:
+    """All runs of the `peers`; those that do not end have a `failure`."""
     runs = [Run(peer, tolerance) for peer in peers for tolerance in peer.tolerances]
     for run in runs:
-        tell(f"{problem.mode}: error of {run.peer.name} at {run.tolerance:g}")
+        report(f"{problem.mode}: error of {run.peer.name} at {run.tolerance:g}")
         run.find_error(problem)
     for turn in range(TURNS):
-        tell(f"{problem.mode}: time, turn {turn + 1} of {TURNS}")
+        report(f"{problem.mode}: time, turn {turn + 1} of {TURNS}")
         for run in runs:
             run.time(problem)
     return runs
@@ -82,11 +79,10 @@ def measure(peers: Iterable[Peer], problem: Problem, tell: Callable[[str], objec
 
 @dataclass(frozen=True)
 class Cost:
-    """What an error of the peaks costs: seconds, right-hand sides (steps), and the stroke error [m]
-    that goes with it.
+    """Cost at an error of the peaks: seconds, right-hand sides (steps) and stroke error [m].
 
-    `bound`: "≤" where even the loosest run is better than asked, ">" where the tightest is not good
-    enough; its numbers are that run's.
+    `bound` is "≤" if even the loosest run is better than required, ">" if the tightest is not good
+    enough; the numbers are that run's.
     """
 
     seconds: float
@@ -96,10 +92,10 @@ class Cost:
 
 
 def cost(runs: list[Run], target: float) -> Cost:
-    """What the `runs` of one peer need to keep every peak within `target`, at every tighter
-    tolerance too.
+    """Cost of a peer at which every peak is within `target`, at every tighter tolerance too.
 
-    Between the loosest run that keeps it and the next looser one, logarithms are interpolated.
+    Between the loosest run that keeps the target and the next looser one, logarithms are
+    interpolated.
     """
     numbers = [
         (r.error.peaks, r.seconds, float(r.calls), r.error.stroke)
@@ -119,7 +115,7 @@ def cost(runs: list[Run], target: float) -> Cost:
 
 
 def draw(runs: dict[str, list[Run]], path: Path, note: str) -> None:
-    """A PNG of every peer's error over its time, a panel a mode."""
+    """Draw every peer's error over its time, one panel per mode, as a PNG."""
     from matplotlib import colormaps
     from matplotlib.figure import Figure
 
@@ -152,7 +148,7 @@ def draw(runs: dict[str, list[Run]], path: Path, note: str) -> None:
             ylim=(3e-7, 3.0),
         )
         ax.set_title(f"mode {mode}", loc="left")
-        ax.grid(True, which="major", linewidth=0.3)
+        ax.grid(visible=True, which="major", linewidth=0.3)
     axes[0].set_ylabel("largest error of any peak force or stroke [of its peak]")
     figure.legend(
         *axes[0].get_legend_handles_labels(),

@@ -1,5 +1,6 @@
-"""The tip-over of the vehicle with locked legs, by `envelope`'s bisection, beside the closed form
-of a rigid block (docs/envelope.md).
+"""Tip-over of the vehicle with locked legs, beside the closed form of a rigid block.
+
+`envelope`'s bisection finds the critical speeds; docs/envelope.md has the closed form.
 """
 
 from __future__ import annotations
@@ -17,11 +18,13 @@ SLOPES = (0.0, 5.0, 10.0)
 
 
 def main() -> None:
-    """Print a line for each mode, height of the CG and slope: critical speeds over tilts from 0.5
-    to 8 deg steeper than the slope.
+    """Print a line of critical speeds for each mode, height of the CG and slope.
+
+    The tilts are 0.5 to 8 deg steeper than the slope.
     """
     print(
-        "mode   CG above feet  slope  points  tilt           critical speed   model/block: mean, least, largest"
+        "mode   CG above feet  slope  points  tilt           critical speed   "
+        "model/block: mean, least, largest"
     )
     for mode in ("2-2", "1-2-1"):
         preset = load_preset("yue2022-figures", mode)
@@ -52,8 +55,10 @@ def main() -> None:
                 ratios = [c.x / block.critical_speed(c.y, -0.5) for c in points]
                 tilts, speeds = [degrees(c.y) for c in points], [c.x for c in points]
                 print(
-                    f"{mode:6s} {block.height:10.2f} m {slope:6.0f} deg {len(points):4d}  {min(tilts):4.1f} to {max(tilts):4.1f} deg"
-                    f"  {min(speeds):.2f} to {max(speeds):.2f} m/s  {sum(ratios) / len(ratios):.4f}, {min(ratios):.4f}, {max(ratios):.4f}",
+                    f"{mode:6s} {block.height:10.2f} m {slope:6.0f} deg {len(points):4d}"
+                    f"  {min(tilts):4.1f} to {max(tilts):4.1f} deg"
+                    f"  {min(speeds):.2f} to {max(speeds):.2f} m/s"
+                    f"  {sum(ratios) / len(ratios):.4f}, {min(ratios):.4f}, {max(ratios):.4f}",
                     flush=True,
                 )
 

@@ -1,11 +1,11 @@
-"""The FMI 2.0 co-simulation slave: registers the table's quantities as variables and delegates to
-`Landing`. No arithmetic.
+"""The FMI 2.0 co-simulation slave: maps FMI variables and calls to `Landing`.
 
-The C front (`fmu_front/`) calls it through pythonfmu's binary, with known value references of the
-right type only, in the order that FMI allows, and returns the worst status that is logged here
-during a call. `fmu_build/build.py` packs this file into its own copy of the package, whose name
-carries the version; `fmu_build/description.py` adds units, types and dependencies to the
-description.
+The C front (`fmu_front/`) calls it through pythonfmu's binary. The front passes only value
+references that exist and are of the right type, in the order that FMI allows. It returns the worst
+status that is logged here during a call.
+
+`fmu_build/build.py` packs this file into the FMU's own copy of the package, whose name carries the
+version. `fmu_build/description.py` adds units, types and dependencies to the description.
 """
 
 import json
@@ -42,19 +42,19 @@ from rlv_landing.quantities import (
     Quantity,
 )
 
-# value references of the front's own: the rate of input i is set as the real RATES + i
+# the front sets the rate of input i as the real RATES + i, a value reference of no variable
 RATES = 2_000_000
 LARGEST_INTEGER = 2**31 - 1
-_kept: list[Any] = []
-keep = _kept.append
+_references: list[Any] = []
+# holds one more reference to an object, for the rest of the process
+keep = _references.append
 KINDS = {"real": Real, "integer": Integer, "boolean": Boolean, "string": String}
 
 
-def logs_faults(method: Callable[..., Any]) -> Callable[..., Any]:
-    """`method`, whose exceptions are logged as errors: the front returns the status logged, while
-    pythonfmu makes every exception Fatal.
+def log_exceptions(method: Callable[..., Any]) -> Callable[..., Any]:
+    """Decorate a method of the slave: log its exceptions as errors and return False then.
 
-    Returns False after an exception.
+    The front returns the status that was logged. An exception would be Fatal in pythonfmu.
     """
 
     @wraps(method)
@@ -73,21 +73,34 @@ def logs_faults(method: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def new_landing(values: dict[str, Any], rtol: float) -> Landing:
-    """A landing with the parameters `values`, the others being the defaults."""
+    """A landing with some parameters set, in SI units, and defaults for the others.
+
+    Args:
+        values: Parameter values by name.
+        rtol: Relative tolerance of the integrator.
+
+    Raises:
+        LandingError: A value is out of bounds, or values contradict each other.
+    """
     checked = {name: check_value(PARAMETER_QUANTITIES[name], v) for name, v in values.items()}
     return Landing(Parameters().with_values(checked), rtol=rtol)
 
 
 class RlvLanding(Fmi2Slave):
-    """Touchdown of a four-legged rocket stage: parameters, external loads and ground motion in;
-    loads, strokes and motion out.
+    """Touchdown of a four-legged rocket stage as an FMI 2.0 co-simulation slave.
+
+    Inputs are external loads and ground motion. Outputs are motion, strut and contact forces,
+    strokes, energies and status.
     """
 
     author = "The rlv-landing authors"
     license = "Apache-2.0"
     copyright = "Copyright The rlv-landing authors"
     version = __version__
-    description = "Touchdown of a vertical-landing rocket stage on four legs (Yue, Lin, Zheng, Du 2022), quasi-3D"
+    description = (
+        "Touchdown of a vertical-landing rocket stage on four legs (Yue, Lin, Zheng, Du 2022), "
+        "quasi-3D"
+    )
     default_experiment = DefaultExperiment(
         start_time=0.0, stop_time=1.0, step_size=1e-3, tolerance=DEFAULT_RTOL
     )
@@ -98,14 +111,14 @@ class RlvLanding(Fmi2Slave):
         self._rtol = DEFAULT_RTOL
         self._values: list[Any] = []
         self._parameters: dict[str, Any] = {}
-        # what the next step starts with; rates of a step that was refused hold until the input is
-        # set again
+        # set since the last step; rates of a refused step stay until their input is set again
         self._inputs: dict[str, float] = {}
         self._rates: dict[str, float] = {}
         self._refused_rates: set[str] = set()
         self._landing: Landing | None = None
-        self._broken = ""
-        # once they were asked for at this time
+        # the reason why the landing has ended; empty while it runs
+        self._failure = ""
+        # the outputs at the present time, if they were read; else empty
         self._outputs: list[float] = []
         for q in PARAMETER_QUANTITIES.values():
             self._register(
@@ -115,8 +128,10 @@ class RlvLanding(Fmi2Slave):
             self._register(q, 0.0, Fmi2Causality.input, Fmi2Variability.continuous, None)
         self._first_output = len(self.vars)
         for q in OUTPUT_QUANTITIES:
-            changes = Fmi2Variability.continuous if q.kind == "real" else Fmi2Variability.discrete
-            self._register(q, 0.0, Fmi2Causality.output, changes, Fmi2Initial.calculated)
+            variability = (
+                Fmi2Variability.continuous if q.kind == "real" else Fmi2Variability.discrete
+            )
+            self._register(q, 0.0, Fmi2Causality.output, variability, Fmi2Initial.calculated)
         self._output_references = list(range(self._first_output, len(self.vars)))
         for q in STATISTIC_QUANTITIES:
             self._register(
@@ -125,7 +140,7 @@ class RlvLanding(Fmi2Slave):
         self._names = [v.name for v in self.vars.values()]
 
     def to_xml(self, model_options: dict[str, str] | None = None) -> Element:
-        """pythonfmu's description, with a GUID made from the version and the variables.
+        """The description by pythonfmu, with a GUID derived from version and variables.
 
         Called at build time only.
         """
@@ -152,118 +167,125 @@ class RlvLanding(Fmi2Slave):
         )
         self._values.append(value)
 
-    @logs_faults
+    @log_exceptions
     def setup_experiment(
         self, start_time: float, stop_time: float | None, tolerance: float | None
     ) -> None:
-        """Takes the start time, and the tolerance for the integrator's own."""
+        """Set the start time [s] and the integrator's relative tolerance; `stop_time` is unused."""
         self._start_time = start_time
         self._rtol = DEFAULT_RTOL if tolerance is None else tolerance
         self._landing = None
 
-    @logs_faults
+    @log_exceptions
     def enter_initialization_mode(self) -> None:
-        """Takes the resources off Python's path, where pythonfmu puts them for each instance: all
-        is imported by now.
+        """Remove the resources from Python's path, where pythonfmu puts them for each instance.
+
+        All modules are imported by now.
         """
         while self.resources in sys.path:
             sys.path.remove(self.resources)
 
-    @logs_faults
+    @log_exceptions
     def exit_initialization_mode(self) -> None:
-        """Checks parameters and inputs and starts the landing.
+        """Check parameters and inputs and start the landing.
 
-        A bad one is an error; others may be set then.
+        A bad value is an error. The importer may then set another and call this again.
         """
-        self._present()
+        self._current_landing()
         self._apply_inputs()
 
-    @logs_faults
+    @log_exceptions
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """Goes on to `current_time + step_size`; refuses (Discard, with a logged reason) what
-        cannot be done, and stays as it was.
+        """Integrate from `current_time` to `current_time + step_size` [s].
 
-        Where the integrator gives up within the step, that is an error, and the landing has ended:
-        outputs and steps are errors until a state is restored, or reset.
+        A step that cannot be made is refused: Discard with a logged reason, and nothing changes.
+        An integrator that fails within the step is an error and ends the landing: outputs and
+        steps are errors until the importer restores a state or resets.
         """
         try:
-            landing = self._present()
+            landing = self._current_landing()
             if not 0.0 < step_size < math.inf:
                 raise LandingError(f"step = {step_size:g} s must be finite and above 0 s")
             now = current_time - self._start_time
             if not abs(now - landing.time) <= 1e-9 * (1.0 + landing.time):
                 raise LandingError(
-                    f"the importer's time is {now:g} s, the landing's is {landing.time:g} s; restore a state or reset to go back"
+                    f"the importer's time is {now:g} s, the landing's is {landing.time:g} s; "
+                    "restore a state or reset to go back"
                 )
             self._apply_inputs()
         except LandingError as e:
-            self.log(str(e), Fmi2Status.error if self._broken else Fmi2Status.discard)
+            self.log(str(e), Fmi2Status.error if self._failure else Fmi2Status.discard)
             return False
         self._inputs, self._rates = {}, {}
         try:
             self._outputs = []
             landing.advance_to(max(now + step_size, landing.time))
         except LandingError as e:
-            self._broken = f"{e}; the landing has ended there: restore a state, or reset"
-            self.log(self._broken, Fmi2Status.error)
+            self._failure = f"{e}; the landing has ended there: restore a state, or reset"
+            self.log(self._failure, Fmi2Status.error)
             return False
         return True
 
-    def _present(self) -> Landing:
-        if self._broken:
-            raise LandingError(self._broken)
+    def _current_landing(self) -> Landing:
+        if self._failure:
+            raise LandingError(self._failure)
         if self._landing is None:
             self._landing = new_landing(self._parameters, self._rtol)
             self._outputs = []
         return self._landing
 
     def _apply_inputs(self) -> None:
-        """Gives the landing what was set since the last step, however often before the next."""
+        """Pass the inputs that were set since the last step to the landing; may be called twice."""
         if self._inputs or self._rates:
             try:
-                self._present().set_inputs(self._inputs, self._rates)
+                self._current_landing().set_inputs(self._inputs, self._rates)
             except LandingError:
                 self._refused_rates = set(self._rates)
                 raise
             self._refused_rates.clear()
             self._outputs = []
 
-    @logs_faults
-    def _values_of(self, vrs: list[int]) -> list[Any]:
-        known, first = self._values, self._first_output
-        # all outputs are what the front asks for
-        whole = vrs == self._output_references
-        if whole or max(vrs, default=0) >= first:
-            landing = self._present()
-            # inputs act at once; those that are out of bounds the next step refuses
-            if self._inputs or self._rates:
-                with suppress(LandingError):
-                    self._apply_inputs()
-            if not self._outputs:
-                self._outputs = landing.values()
-        if whole:
+    @log_exceptions
+    def _read(self, vrs: list[int]) -> list[Any]:
+        first = self._first_output
+        # the front reads all outputs at once
+        all_outputs = vrs == self._output_references
+        if all_outputs or max(vrs, default=0) >= first:
+            self._update_outputs()
+        if all_outputs:
             return self._outputs
         calculated: list[Any] = self._outputs
         if max(vrs, default=0) >= first + len(OUTPUT_QUANTITIES):
-            calculated = [
-                *calculated,
-                *(min(count, LARGEST_INTEGER) for count in self._present().statistics.values()),
-            ]
-        return [known[vr] if vr < first else calculated[vr - first] for vr in vrs]
+            counts = self._current_landing().statistics.values()
+            calculated = [*calculated, *(min(count, LARGEST_INTEGER) for count in counts)]
+        return [self._values[vr] if vr < first else calculated[vr - first] for vr in vrs]
+
+    def _update_outputs(self) -> None:
+        landing = self._current_landing()
+        # inputs act at once; the next step refuses those that are out of bounds
+        if self._inputs or self._rates:
+            with suppress(LandingError):
+                self._apply_inputs()
+        if not self._outputs:
+            self._outputs = landing.values()
 
     def get_real(self, vrs: list[int]) -> list[float]:
-        return self._values_of(vrs) or [math.nan] * len(vrs)
+        """Values of real variables; NaN after an error."""
+        return self._read(vrs) or [math.nan] * len(vrs)
 
     def get_string(self, vrs: list[int]) -> list[str]:
-        return self._values_of(vrs) or [""] * len(vrs)
+        """Values of string variables; empty after an error."""
+        return self._read(vrs) or [""] * len(vrs)
 
     def get_integer(self, vrs: list[int]) -> list[int]:
-        return [int(v) for v in self._values_of(vrs) or [0] * len(vrs)]
+        """Values of integer variables; 0 after an error."""
+        return [int(v) for v in self._read(vrs) or [0] * len(vrs)]
 
     def get_boolean(self, vrs: list[int]) -> list[bool]:
-        return [v > 0 for v in self._values_of(vrs) or [0] * len(vrs)]
+        """Values of boolean variables; False after an error."""
+        return [v > 0 for v in self._read(vrs) or [0] * len(vrs)]
 
-    @logs_faults
+    @log_exceptions
     def _set(self, vrs: list[int], values: list[Any]) -> None:
         for vr, value in zip(vrs, values):
             if vr >= RATES:
@@ -284,9 +306,11 @@ class RlvLanding(Fmi2Slave):
         self._outputs = []
 
     def set_real(self, vrs: list[int], values: list[float]) -> None:
+        """Set parameters, inputs, or, from RATES on, the rates of inputs."""
         self._set(vrs, values)
 
     def set_string(self, vrs: list[int], values: list[str]) -> None:
+        """Set parameters that are texts."""
         self._set(vrs, values)
 
     def _get_fmu_state(self) -> dict[str, Any]:
@@ -298,48 +322,31 @@ class RlvLanding(Fmi2Slave):
             "inputs": dict(self._inputs),
             "rates": dict(self._rates),
             "refused_rates": sorted(self._refused_rates),
-            "broken": self._broken,
+            "broken": self._failure,
             "landing": None if self._landing is None else list(self._landing.state()),
         }
 
-    @logs_faults
+    @log_exceptions
     def _set_fmu_state(self, state: dict[str, Any]) -> None:
-        """Takes up all of `state`, or, where it is no state of this FMU, nothing of it."""
+        """Restore `state`; change nothing if it is no state of this FMU."""
         if "fault" in state:
             raise LandingError(f"the state cannot be read: {state['fault']}")
-        start_time, rtol, values, broken = (
-            float(state["start_time"]),
-            float(state["rtol"]),
-            list(state["values"]),
-            str(state["broken"]),
-        )
-        parameters, inputs, rates = (
-            dict(state["parameters"]),
-            dict(state["inputs"]),
-            dict(state["rates"]),
-        )
-        refused_rates, numbers = set(state["refused_rates"]), state["landing"]
-        landing = self._landing
-        if numbers is None:
-            landing = None
-        else:
+        # all conversions come first, since each may fail
+        start_time, rtol = float(state["start_time"]), float(state["rtol"])
+        values, failure = list(state["values"]), str(state["broken"])
+        parameters, inputs = dict(state["parameters"]), dict(state["inputs"])
+        rates, refused_rates = dict(state["rates"]), set(state["refused_rates"])
+        landing = None
+        if state["landing"] is not None:
+            landing = self._landing
             if landing is None or parameters != self._parameters or rtol != self._rtol:
                 landing = new_landing(parameters, rtol)
-            landing.restore(array("d", numbers))
-        self._landing, self._start_time, self._rtol, self._values, self._broken = (
-            landing,
-            start_time,
-            rtol,
-            values,
-            broken,
-        )
-        self._parameters, self._inputs, self._rates, self._refused_rates = (
-            parameters,
-            inputs,
-            rates,
-            refused_rates,
-        )
-        self._outputs = []
+            landing.restore(array("d", state["landing"]))
+        self._landing, self._outputs = landing, []
+        self._start_time, self._rtol = start_time, rtol
+        self._values, self._failure = values, failure
+        self._parameters, self._inputs = parameters, inputs
+        self._rates, self._refused_rates = rates, refused_rates
 
     @staticmethod
     def _fmu_state_to_bytes(state: dict[str, Any]) -> bytes:

@@ -1,4 +1,4 @@
-"""What all tests share: the FMU that was built, one run of each drop test, and Ecos' program."""
+"""Fixtures of all tests: the built FMU, one run of each drop test, Ecos' program."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from rlv_landing.history import History
 ROOT = Path(__file__).resolve().parent.parent
 # the example's modules, as its `run.py` finds them
 sys.path.insert(0, str(ROOT / "examples" / "ship_deck"))
-# How long one example takes says more of the machine than of us.
+# the time that one example takes depends on the machine
 settings.register_profile("suite", deadline=None)
 settings.load_profile("suite")
 MODES = ("2-2", "1-2-1")
@@ -28,9 +28,7 @@ MODES = ("2-2", "1-2-1")
 
 @pytest.fixture(scope="session")
 def many() -> Callable[[int], int]:
-    """How many cases a random test tries: those of `make test`, times RLV_TORTURE in the
-    environment.
-    """
+    """Scale the number of a random test's cases: by RLV_TORTURE in the environment, else by 1."""
     return lambda count: round(count * float(os.environ.get("RLV_TORTURE", "1")))
 
 
@@ -55,8 +53,9 @@ def drop_test(mode: str) -> History:
 
 @pytest.fixture(scope="session")
 def ecos_environment() -> dict[str, str]:
-    """The environment, with the libtbb that Ecos needs: the wheel `tbb` puts it where the loader
-    does not look.
+    """The environment with the libtbb that Ecos needs on the loader's path.
+
+    The wheel `tbb` puts the library where the loader does not look.
     """
     libraries = [str(Path(sys.prefix) / "lib"), os.environ.get("LD_LIBRARY_PATH", "")]
     return {**os.environ, "LD_LIBRARY_PATH": os.pathsep.join(filter(None, libraries))}
@@ -77,8 +76,9 @@ def ecos(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def simulated_by_ecos(
     ecos: Path, ecos_environment: dict[str, str], tmp_path: Path
 ) -> Callable[..., np.ndarray]:
-    """`simulated_by_ecos(path, *options)`: the table that `ecos simulate`, a C++ program without
-    Python, writes of an FMU or SSP file.
+    """Run `ecos simulate` on an FMU or SSP file; return the table that it writes.
+
+    `ecos` is a C++ program without Python. Call it as `simulated_by_ecos(path, *options)`.
     """
 
     def run(path: Path, *options: str) -> np.ndarray:

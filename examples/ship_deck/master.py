@@ -39,15 +39,18 @@ class Component:
         self.slave.instantiate()
 
     def start(self, parameters: dict[str, float]) -> None:
+        """Initialise the instance at time 0 with `parameters`."""
         self.slave.setupExperiment(startTime=0.0)
         self.slave.enterInitializationMode()
         self.set(parameters)
         self.slave.exitInitializationMode()
 
     def set(self, values: dict[str, float]) -> None:
+        """Set real variables by name."""
         self.slave.setReal([self.references[name] for name in values], list(values.values()))
 
     def get(self) -> list[float]:
+        """Values of all real outputs, in the order of `outputs`."""
         return self.slave.getReal(self._output_references)
 
 
@@ -59,8 +62,19 @@ def simulate(
     until: float = 3.0,
     progress: Callable[[float], object] | None = None,
 ) -> dict[str, np.ndarray]:
-    """The real outputs of all components at every communication point from 0 to `until` [s]: `time`
-    and `component.output` -> values.
+    """Run the system from time 0.
+
+    Args:
+        fmus: The file of every component.
+        connections: (component, output) -> (component, input).
+        parameters: Values by name for every component.
+        step: Communication step [s].
+        until: End [s].
+        progress: Called with the time [s] after each step.
+
+    Returns:
+        `time`, and the real outputs of all components as `component.output`, at every communication
+        point.
     """
     with TemporaryDirectory() as folder:
         components = {name: Component(name, file, Path(folder)) for name, file in fmus.items()}
@@ -76,7 +90,8 @@ def simulate(
             if k > 0:
                 for component in components.values():
                     component.slave.doStep(time, step)
-                time += step  # summed, as Ecos does: the communication points of both are the same to the last digit
+                # summed as in Ecos, so that both have the same communication points
+                time += step
             transfer(
                 components,
                 connections,

@@ -1,1 +1,1 @@
-"""The build of the FMU: slave, package, compiled core, binary, description, documentation."""
+"""Builds the FMU: slave, package, compiled core, binary, description, documentation."""

@@ -1,9 +1,7 @@
-"""The FMU's binaries: compiles the front in `fmu_front/` and lays pythonfmu's own binary beside it.
+"""Compiles the FMU's front (`fmu_front/`) and puts pythonfmu's binary beside it.
 
-Runs at build time only.
-
-Windows' front is compiled where mingw-w64 is found (`x86_64-w64-mingw32-gcc`); else the FMU has
-pythonfmu's own DLL there.
+The front for Windows is compiled if mingw-w64 is found (`x86_64-w64-mingw32-gcc`). Otherwise the
+FMU has only pythonfmu's own DLL for Windows.
 """
 
 from __future__ import annotations
@@ -26,8 +24,8 @@ HEADERS = Path(fmpy.__file__).parent / "c-code"
 CAUSALITIES = {"parameter": "p", "input": "i", "output": "o"}
 FLAGS = ["-std=c11", "-O2", "-fvisibility=hidden", "-Wall", "-Wextra", "-g0", "-s", "-shared"]
 MINGW = "x86_64-w64-mingw32-gcc"
-# no library of mingw's own beside the DLL, C's printf, the same bytes at any time and in any folder
-FOR_WINDOWS = [
+# no DLL of mingw needed, C11's printf, the same bytes at any time and in any folder
+WINDOWS_FLAGS = [
     "-D__USE_MINGW_ANSI_STDIO=1",
     "-static",
     "-Wl,--no-insert-timestamp,--disable-auto-image-base",
@@ -37,10 +35,15 @@ SHT_DYNAMIC = 6
 
 
 def replace_binaries(files: Path) -> None:
-    """Put the front in the place of pythonfmu's binary in the FMU's unpacked `files`, and the
-    latter beside it.
+    """Replace pythonfmu's binary by the front, and put pythonfmu's beside it.
 
-    Raises SystemExit with the compiler's words where the front cannot be compiled.
+    Also records the building Python's library in `resources/libpython.txt`.
+
+    Args:
+        files: Folder of the unpacked FMU.
+
+    Raises:
+        SystemExit: The front does not compile; the message has the compiler's output.
     """
     root = ElementTree.parse(files / "modelDescription.xml").getroot()
     simulation = root.find("CoSimulation")
@@ -55,20 +58,30 @@ def replace_binaries(files: Path) -> None:
         (files / "resources" / "libpython.txt").write_text(library + "\n")
 
 
-def put_front(binary: Path, stock: bytes, root: ElementTree.Element) -> None:
-    """Put the front in the place of `binary`, and `stock`, pythonfmu's, beside it; `root` is the
-    FMU's description.
+def put_front(binary: Path, pythonfmu_binary: bytes, root: ElementTree.Element) -> None:
+    """Compile the front to `binary`, and write pythonfmu's binary beside it.
+
+    Args:
+        binary: File that importers load, for Windows if it is a `.dll`.
+        pythonfmu_binary: Content of pythonfmu's binary.
+        root: Root of the FMU's modelDescription.xml.
     """
     beside = binary.with_name(f"pythonfmu-export-{pythonfmu_version}{binary.suffix}")
-    beside.write_bytes(stock)
+    beside.write_bytes(pythonfmu_binary)
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as folder:
         (Path(folder) / "variables.h").write_text(variables_header(root, beside.name))
         compile_front(binary, Path(folder))
 
 
 def compile_front(target: Path, include: Path) -> None:
-    """Compile the front to the shared library `target`, for Windows if it is a `.dll`; `include`
-    holds `variables.h`.
+    """Compile the front to a shared library.
+
+    Args:
+        target: The library, for Windows if it is a `.dll`.
+        include: Folder that holds `variables.h`.
+
+    Raises:
+        SystemExit: The front does not compile; the message has the compiler's output.
     """
     windows = target.suffix == ".dll"
     compiler = MINGW if windows else os.environ.get("CC", "gcc")
@@ -77,7 +90,7 @@ def compile_front(target: Path, include: Path) -> None:
         for p in sorted(FRONT.glob("*.c"))
         if p.name != ("posix.c" if windows else "windows.c")
     ]
-    own = FOR_WINDOWS if windows else ["-fPIC", "-ldl"]
+    own = WINDOWS_FLAGS if windows else ["-fPIC", "-ldl"]
     command = [
         compiler,
         *FLAGS,
@@ -97,9 +110,15 @@ def compile_front(target: Path, include: Path) -> None:
         )
 
 
-def variables_header(root: ElementTree.Element, stock: str) -> str:
-    """The C header that tells the front what the FMU's description says: variables, log categories,
-    GUID.
+def variables_header(root: ElementTree.Element, pythonfmu_binary: str) -> str:
+    """C header with the description's variables, log categories and GUID, for the front.
+
+    Args:
+        root: Root of the FMU's modelDescription.xml.
+        pythonfmu_binary: Name of pythonfmu's binary, which lies beside the front.
+
+    Raises:
+        SystemExit: The value references are not 0, 1, 2, ... in order.
     """
     lines = [
         "/* Made by fmu_build/binary.py from modelDescription.xml. */",
@@ -109,7 +128,8 @@ def variables_header(root: ElementTree.Element, stock: str) -> str:
     for i, variable in enumerate(root.findall("ModelVariables/ScalarVariable")):
         if int(variable.attrib["valueReference"]) != i:
             raise SystemExit(
-                f"error: value reference of {variable.attrib['name']} is not {i}; the front counts on them being in order"
+                f"error: value reference of {variable.attrib['name']} is not {i}; "
+                "the front needs them in order"
             )
         causality = CAUSALITIES.get(variable.attrib["causality"], "-")
         lines.append(
@@ -124,7 +144,7 @@ def variables_header(root: ElementTree.Element, stock: str) -> str:
     lines += [
         "};",
         f"#define GUID {quoted(root.attrib['guid'])}",
-        f"#define STOCK_BINARY {quoted(stock)}",
+        f"#define PYTHONFMU_BINARY {quoted(pythonfmu_binary)}",
     ]
     lines.append(f"#define BUILD_PYTHON_MINOR {sys.version_info.minor}")
     return "\n".join(lines) + "\n"
@@ -136,18 +156,24 @@ def quoted(text: str) -> str:
 
 
 def libpython() -> str:
-    """Path of the shared library of the Python that runs this; empty where it has none."""
+    """Path of the shared library of the running Python; empty if it has none."""
     folder, name = sysconfig.get_config_var("LIBDIR"), sysconfig.get_config_var("INSTSONAME")
     path = Path(folder or "", name or "")
     return str(path) if path.is_file() and path.suffix != ".a" else ""
 
 
 def without_last_finaliser(binary: bytes) -> bytes:
-    """pythonfmu's binary (64-bit ELF) with the last entry of its DT_FINI_ARRAY dropped.
+    """Copy of pythonfmu's binary without the last entry of its DT_FINI_ARRAY.
 
-    That entry runs when the process ends and resets a static object that `exit` has destroyed
-    before: it changes memory that is freed, and hosts written in C may end in a heap corruption.
-    The object needs no reset, since our front never lets it finalise Python.
+    That entry runs when the process ends. It resets a static object that `exit` has destroyed
+    before, so it writes to freed memory: importers written in C may end with a corrupted heap.
+    The object needs no reset, because the front never lets it finalise Python.
+
+    Args:
+        binary: Content of a 64-bit little-endian ELF file.
+
+    Raises:
+        SystemExit: The file is of another kind, or has not the two finalisers that are known.
     """
     edited = bytearray(binary)
     if edited[:6] != b"\x7fELF\x02\x01":
@@ -166,7 +192,8 @@ def without_last_finaliser(binary: bytes) -> bytes:
             if tag == DT_FINI_ARRAYSZ:
                 if value != 16:
                     raise SystemExit(
-                        f"error: pythonfmu's binary has {value // 8} finalisers, 2 are known: look at it before going on"
+                        f"error: pythonfmu's binary has {value // 8} finalisers, not 2; "
+                        "look what the others do before you change this check"
                     )
                 struct.pack_into("<Q", edited, at + 8, value - 8)
                 return bytes(edited)

@@ -1,8 +1,9 @@
-"""Builds `build/RlvLanding.fmu`: the slave, its own copy of the package with the compiled core,
-pythonfmu's binary, description and documentation.
+"""Builds `build/RlvLanding.fmu`; run by `build_fmu.sh`.
 
-Run by `build_fmu.sh`. pythonfmu's FMU is unpacked, completed and packed anew, the same bytes from
-the same sources. The FMU is validated by FMPy and landed once before it takes its place.
+pythonfmu builds an FMU of the slave and its own copy of the package. This unpacks it, puts the
+front before its binary, completes its description, adds the documentation and packs it again. The
+same sources give the same bytes. FMPy validates the FMU and simulates one landing before it
+replaces an older file.
 """
 
 from __future__ import annotations
@@ -42,22 +43,22 @@ MODULES = (
 # pythonfmu's command line, CSV tool and builder, which no slave needs
 NOT_NEEDED = ("__main__.py", "csvbuilder.py", "deploy.py", "builder.py", "osutil.py")
 # the line of pythonfmu's `__init__.py` that imports the builder, and with it argparse, logging and
-# minidom: a third of an instance
+# minidom: a third of the time that the first instance takes
 IMPORTS_BUILDER = "from .builder import FmuBuilder\n"
-# what a zip file can date: 1980, which stands for a source without a date, to 2107
+# dates that a zip file can hold, 1980 to 2107 [s since 1970]; 1980 also for sources without a date
 OLDEST, NEWEST = 315532800, 4354819199
 
-# pythonfmu runs its script anew for each instance: classes made there would pile up
+# pythonfmu runs its script for each instance, so the slave's class is in a module, made once
 SCRIPT = """\
 from {package}.slave import RlvLanding, keep
 
 __all__ = ["RlvLanding"]
-keep(globals())  # pythonfmu drops a reference to them each time
+keep(globals())  # pythonfmu releases one reference too many
 """
 
 
 def version() -> str:
-    """The package's version, as its `__init__.py` says."""
+    """The package's version, from its `__init__.py`."""
     found = re.search(r'^__version__ = "(.+)"$', (PACKAGE / "__init__.py").read_text(), re.M)
     if found is None:
         raise SystemExit("error: rlv_landing/__init__.py states no __version__")
@@ -65,8 +66,12 @@ def version() -> str:
 
 
 def source_date() -> datetime:
-    """The date of the sources [UTC]: SOURCE_DATE_EPOCH of the environment, else that of the last
-    git commit, else 1980-01-01.
+    """The date of the sources [UTC].
+
+    SOURCE_DATE_EPOCH of the environment, else the date of the last git commit, else 1980-01-01.
+
+    Raises:
+        SystemExit: SOURCE_DATE_EPOCH is no number of seconds that a zip file can hold.
     """
     text = os.environ.get("SOURCE_DATE_EPOCH", "")
     if not text and (ROOT / ".git").exists():
@@ -82,14 +87,16 @@ def source_date() -> datetime:
             text = ""
     if text and not (re.fullmatch(r"\d+\s*", text) and int(text) <= NEWEST):
         raise SystemExit(
-            f"error: SOURCE_DATE_EPOCH = {text!r} is not a number of seconds from 1970-01-01 to 2107; leave it out or correct it"
+            f"error: SOURCE_DATE_EPOCH = {text!r} is not a number of seconds from 1970-01-01 "
+            "to 2107; leave it out or correct it"
         )
     return datetime.fromtimestamp(max(int(text or OLDEST), OLDEST), timezone.utc)
 
 
-def lay_out(folder: Path) -> tuple[Path, Path]:
-    """Copy slave and package to `folder` under names that carry the version, so that two versions
-    live in one process.
+def copy_sources(folder: Path) -> tuple[Path, Path]:
+    """Copy slave and package to `folder`; return pythonfmu's script and the package.
+
+    Their names carry the version, so that FMUs of two versions can run in one process.
     """
     name = "rlv_landing_" + re.sub(r"\W", "_", version())
     package = folder / name
@@ -97,7 +104,7 @@ def lay_out(folder: Path) -> tuple[Path, Path]:
     for module in MODULES:
         shutil.copy(PACKAGE / module, package / module)
     for file in sorted((PACKAGE / "core").rglob("*")):
-        # compiled cores of all Python versions that are there, but none of older kernels
+        # the compiled cores for all Python versions, but none that older kernels were compiled to
         if file.suffix == ".py" or (
             file.suffix in (".so", ".pyd") and package_name().encode() in file.read_bytes()
         ):
@@ -113,11 +120,19 @@ def lay_out(folder: Path) -> tuple[Path, Path]:
     return script, package
 
 
-def unpack_pythonfmus(folder: Path) -> Path:
-    """Have pythonfmu build its FMU of slave and package; return the folder of its files, without
-    those that are not needed.
+def build_with_pythonfmu(folder: Path) -> Path:
+    """Build an FMU of slave and package by pythonfmu, and unpack it.
+
+    Args:
+        folder: Empty folder to work in.
+
+    Returns:
+        Folder of the FMU's files, without those of NOT_NEEDED.
+
+    Raises:
+        SystemExit: pythonfmu is of a version whose `__init__.py` differs.
     """
-    slave, package = lay_out(folder)
+    slave, package = copy_sources(folder)
     built = FmuBuilder.build_FMU(
         slave, dest=folder / "out" / "RlvLanding.fmu", project_files=[package]
     )
@@ -130,7 +145,8 @@ def unpack_pythonfmus(folder: Path) -> Path:
     text = init.read_text()
     if text.count(IMPORTS_BUILDER) != 1:
         raise SystemExit(
-            "error: pythonfmu's __init__.py does not import its builder as 0.7.0's does; look at IMPORTS_BUILDER in fmu_build/build.py"
+            "error: pythonfmu's __init__.py does not import its builder as that of 0.7.0 does; "
+            "change IMPORTS_BUILDER in fmu_build/build.py"
         )
     init.write_text(text.replace(IMPORTS_BUILDER, ""))
     return files
@@ -148,9 +164,7 @@ def write_description(files: Path, date: datetime) -> ElementTree.Element:
 
 
 def pack(files: Path, target: Path, date: datetime) -> None:
-    """Zip all of `files`, in the order of their names, all of `date`, so that the same files give
-    the same bytes.
-    """
+    """Zip all of `files`, sorted by name and dated `date`: the same files give the same bytes."""
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         for name in sorted(
             p.relative_to(files).as_posix() for p in files.rglob("*") if p.is_file()
@@ -163,9 +177,10 @@ def pack(files: Path, target: Path, date: datetime) -> None:
 
 
 def check(fmu: Path) -> str:
-    """Validate the FMU's description and land it once; say what came of it.
+    """Validate the FMU's description and simulate one landing; return a line with the results.
 
-    Raises SystemExit with what is wrong.
+    Raises:
+        SystemExit: The description is not valid, or the landing's numbers are not plausible.
     """
     problems = validate_fmu(str(fmu))
     if problems:
@@ -179,19 +194,23 @@ def check(fmu: Path) -> str:
     force, balance = result["leg[1].main_strut.force"].min(), abs(result["energy.balance"]).max()
     if not (force < -1000.0 and balance < 1e-3):
         raise SystemExit(
-            f"error: the FMU's trial landing is off: strut force {force:g} N, energy balance {balance:g} J"
+            f"error: the FMU's trial landing is not plausible: strut force {force:g} N, "
+            f"energy balance {balance:g} J"
         )
-    return f"valid; trial landing: main strut 1 down to {force:.0f} N, energy balance within {balance:.1e} J"
+    return (
+        f"valid; trial landing: main strut 1 down to {force:.0f} N, "
+        f"energy balance within {balance:.1e} J"
+    )
 
 
 def main(destination: str) -> None:
-    """Build, check, and only then put the FMU in place."""
+    """Build and check the FMU, then put it at `destination` in one step."""
     target = Path(destination)
     target.parent.mkdir(parents=True, exist_ok=True)
     date = source_date()
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         folder = Path(name)
-        files = unpack_pythonfmus(folder)
+        files = build_with_pythonfmu(folder)
         replace_binaries(files)
         root = write_description(files, date)
         write_documentation(files, root)

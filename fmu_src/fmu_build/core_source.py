@@ -1,11 +1,9 @@
-"""Joins the kernels of `rlv_landing/core` to one Cython module, so that one small binary holds the
-compiled core.
+"""Joins the kernels of `rlv_landing/core` to one Cython module, the source of the compiled core.
 
 The kernels are plain Python and import each other and `math`. Compiled, they call each other and
-libm directly: this drops their imports and tables of laws, puts the files in the order of their
-imports, and lets a function that chooses a law branch on its number. Nothing else of the text
-changes, so compiled and pure core compute the same digits. What is C in it, `core_declarations`
-says.
+libm directly. So this removes their imports and tables of laws, puts the files in the order of
+their imports, and lets a function that chooses a law branch on its number. Nothing else of the text
+changes: compiled and pure core compute the same digits. `core_declarations` says what is C in it.
 """
 
 from __future__ import annotations
@@ -152,9 +150,7 @@ def check_names(sources: list[Path]) -> None:
 
 
 def digest(core: Path = CORE) -> str:
-    """A fingerprint of the kernels' texts; the compiled core carries that of the texts that it was
-    made from.
-    """
+    """SHA-256 of the kernels' texts; the compiled core carries that of its own sources."""
     texts = [
         path.relative_to(core).as_posix().encode() + b"\0" + path.read_bytes()
         for path in files(core)
@@ -168,14 +164,17 @@ def package_name(core: Path = CORE) -> str:
 
 
 def write_source(folder: Path, core: Path = CORE) -> Path:
-    """Write `compiled.py` and `compiled.pxd` below `folder`, only where they change; return the
-    former.
+    """Write `compiled.py` and `compiled.pxd` below `folder` if they change.
 
     Their package is named after their digest. A compiled module enters itself in `sys.modules`
-    under the name it was compiled with, and an FMU's core must never be found there by another
-    version of the package in the same process.
+    under the name it was compiled with. Another version of the package in the same process must
+    not find an FMU's core there.
 
-    Raises ValueError where two kernel files use the same name.
+    Returns:
+        Path of `compiled.py`.
+
+    Raises:
+        ValueError: Two kernel files use the same name.
     """
     sources = kernels(core)
     check_names(sources)

@@ -1,10 +1,9 @@
-"""What each output depends on: the inputs at the same instant, and the parameters at the start.
+"""Dependencies of each output for the FMU's ModelStructure: on inputs and on parameters.
 
-For the FMU's ModelStructure.
-
-Written down from the equations; `tests/fmu/test_description.py` finds the same sets by moving every
-input and parameter of the model. Outputs that are not named here are states or follow from states
-alone: no input changes them at once.
+An output depends on an input if the input changes it at the same instant, and on a parameter if
+that changes its initial value. The sets are derived from the equations.
+`tests/fmu/test_description.py` finds the same ones by changing every input and parameter. Outputs
+that are not named here are states, or follow from states alone: no input changes them at once.
 """
 
 from __future__ import annotations
@@ -15,8 +14,7 @@ LOADS = frozenset({"external.force_x", "external.force_y", "external.moment"})
 PLACE = frozenset({"ground.heave", "ground.tilt"})
 GROUND = PLACE | {"ground.heave_rate", "ground.tilt_rate"}
 
-# parameters: the footpads' place on the body, and what the free flight before the first contact is
-# made of
+# parameters that set the footpads' place on the body, and those of the free flight before contact
 LEG = frozenset(
     f"{strut}.{what}"
     for strut in ("main_strut", "auxiliary_strut")
@@ -29,7 +27,7 @@ VY = FLIGHT | {"drop.vertical_velocity", "ground.gravity"}
 HEIGHT = VY | {"ground.slope", "drop.mode"}
 FOOT = VX | HEIGHT
 PENALTY = FOOT | {"ground.stiffness", "ground.exponent"}
-# friction starts from rest: only its damping acts at once
+# the friction displacement starts at 0: only friction's damping acts at once
 CONTACT = PENALTY | {"ground.damping", "ground.damping_depth", "ground.stick_damping"}
 CHARGE = frozenset(
     f"main_strut.{what}"
@@ -43,7 +41,7 @@ LIQUID = VOLUMES | {
     f"main_strut.{what}"
     for what in ("air_fraction", "air_exponent", "bulk_modulus", "bulk_modulus_slope")
 }
-# the pushes of all legs' struts are equal at the start, so that they do not turn the body
+# the forces of all legs' struts are equal at the start, so they give the body no moment
 TURN = CONTACT | {"vehicle.inertia", "vehicle.transverse_load_at"}
 MARGIN = PITCH | LEG | {"vehicle.mass", "vehicle.footpad_mass", "drop.mode"}
 
@@ -102,14 +100,14 @@ def _of_any_leg(output: str) -> str:
 
 
 def inputs_of(output: str) -> frozenset[str]:
-    """The inputs that change `output` at the instant at which they change."""
+    """The inputs that change `output` at the instant at which they change themselves."""
     return INPUTS.get(_of_any_leg(output), frozenset())
 
 
 def known_at_start(output: str) -> frozenset[str]:
-    """The inputs and parameters that `output` depends on at the start.
+    """The inputs and parameters that the initial value of `output` depends on.
 
-    The footpads do not slide sideways then, whatever is set.
+    The transverse contact force depends on none: no footpad moves along z at the start.
     """
     name = _of_any_leg(output)
     return (

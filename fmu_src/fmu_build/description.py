@@ -1,9 +1,7 @@
-"""The FMU's description: what pythonfmu's lacks is added to it from the one table of quantities.
+"""Completes pythonfmu's modelDescription.xml from the table of quantities.
 
-Runs at build time only.
-
-Units, types, bounds, nominal values and exact starts of the variables; dependencies of the outputs;
-attributes of the model.
+Adds units, types, bounds, nominal values and exact start values of the variables, dependencies of
+the outputs, and attributes of the model.
 """
 
 from __future__ import annotations
@@ -69,8 +67,11 @@ QUANTITIES = {
 
 
 def describe(root: Element, date: str) -> None:
-    """Complete pythonfmu's description `root` in place; `date` (ISO 8601, UTC) is what it says of
-    the time of its making.
+    """Complete pythonfmu's description in place.
+
+    Args:
+        root: Root of modelDescription.xml.
+        date: Value of `generationDateAndTime`, ISO 8601 in UTC.
     """
     root.set("generationTool", f"rlv-landing {__version__} with {root.get('generationTool')}")
     root.set("generationDateAndTime", date)
@@ -91,9 +92,7 @@ def describe(root: Element, date: str) -> None:
 
 
 def type_name(q: Quantity) -> str:
-    """The type of a real quantity: its physical kind, and the unit that it is shown in where that
-    is another.
-    """
+    """Name of a real quantity's type: its physical kind, and its display unit if it has one."""
     kind = PHYSICAL_KINDS[q.unit or DIMENSIONLESS]
     return f"{kind}_{q.display_unit.replace('/', '_per_')}" if q.display_unit else kind
 
@@ -111,7 +110,7 @@ def unit_definitions() -> Element:
 
 
 def type_definitions() -> Element:
-    """A type for each physical kind and display unit that the table has."""
+    """A type for each physical kind and display unit of the table."""
     node = Element("TypeDefinitions")
     types = {type_name(q): q for q in QUANTITIES.values() if q.kind == "real"}
     for name in sorted(types):
@@ -123,10 +122,10 @@ def type_definitions() -> Element:
 
 
 def complete(variable: Element, q: Quantity) -> None:
-    """Put type, unit, bounds, nominal value and start into the `variable` of the quantity `q`.
+    """Set type, unit, bounds, nominal value and start of the `variable` of the quantity `q`.
 
-    Units stand here as well as in the type, for importers that read no types. Starts are written
-    with all digits.
+    The unit is set here as well as in the type, for importers that read no types. Start values
+    have all digits.
     """
     typed = variable[0]
     if q.kind == "real":
@@ -149,8 +148,10 @@ def _set_units(typed: Element, q: Quantity) -> None:
 
 
 def unknowns(names: list[str]) -> list[Element]:
-    """Outputs with the inputs that they depend on at once, and their initial values with inputs and
-    parameters.
+    """The elements Outputs and InitialUnknowns of ModelStructure, with their dependencies.
+
+    Args:
+        names: All variables, in the order of the description.
     """
     index = {name: i for i, name in enumerate(names, start=1)}
     outputs, initial = Element("Outputs"), Element("InitialUnknowns")

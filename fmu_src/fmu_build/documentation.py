@@ -1,6 +1,4 @@
-"""What the FMU carries for people: documentation/index.html, licences, change log and the icon
-model.png. Runs at build time only.
-"""
+"""The FMU's documentation: documentation/index.html, licences, changelog and the icon model.png."""
 
 from __future__ import annotations
 
@@ -35,8 +33,11 @@ DOTS_PER_INCH = 100
 
 
 def write_documentation(files: Path, description: Element) -> None:
-    """Write all of it below `files`, the FMU's folder; `description` is the root of its
-    modelDescription.xml.
+    """Write documentation, licences, changelog and icon.
+
+    Args:
+        files: Folder of the unpacked FMU.
+        description: Root of its modelDescription.xml.
     """
     documentation = files / "documentation"
     licences = documentation / "licenses"
@@ -51,20 +52,22 @@ def write_documentation(files: Path, description: Element) -> None:
 
 
 def licence_text(package: str) -> str:
-    """The licence of an installed package, from its metadata.
+    """Text of an installed package's licence, from its metadata.
 
-    Raises SystemExit where it brings none.
+    Raises:
+        SystemExit: The installed package has no licence file.
     """
     for path in distribution(package).files or ():
         if path.name.upper().startswith("LICENSE") and ".dist-info" in path.parts[0]:
             return path.read_text(encoding="utf-8")
     raise SystemExit(
-        f"error: the installed {package} brings no licence text, which the FMU has to carry; install it from PyPI"
+        f"error: the installed {package} has no licence text, which the FMU must contain; "
+        "install it from PyPI"
     )
 
 
 def render(files: Path, description: Element) -> str:
-    """The page, self-contained, as well-formed XML as well."""
+    """The documentation page: self-contained HTML that is well-formed XML, too."""
     environment = Environment(
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
@@ -102,7 +105,7 @@ def render(files: Path, description: Element) -> str:
             (
                 "statistics",
                 "Statistics",
-                "local; what the integrator has done",
+                "local; counts of the integrator",
                 rows(STATISTIC_QUANTITIES),
             ),
         ],
@@ -110,9 +113,7 @@ def render(files: Path, description: Element) -> str:
 
 
 def outputs_of_one_leg() -> list[Quantity]:
-    """The outputs, of the legs the first one's only: those of the others differ in the leg's number
-    alone.
-    """
+    """The outputs without those of legs 2 to 4, which differ from leg 1's in their names alone."""
     return [
         q
         for q in OUTPUT_QUANTITIES
@@ -121,7 +122,7 @@ def outputs_of_one_leg() -> list[Quantity]:
 
 
 def rows(quantities: Any) -> list[dict[str, str]]:
-    """A row a quantity, all as text: bounds and default in its SI unit."""
+    """One table row per quantity, all as text; bounds and default in its SI unit."""
     return [
         {
             "name": q.name,
@@ -140,14 +141,9 @@ def rows(quantities: Any) -> list[dict[str, str]]:
 
 
 def _bounds(q: Quantity) -> str:
-    """Both bounds, or the one that there is, or nothing."""
-    lo, hi = math.isfinite(q.lo), math.isfinite(q.hi)
-    return (
-        f"{q.lo:g} ... {q.hi:g}"
-        if lo and hi
-        else f"at least {q.lo:g}"
-        if lo
-        else f"at most {q.hi:g}"
-        if hi
-        else ""
-    )
+    """Text of the finite bounds; empty if there are none."""
+    if math.isfinite(q.lo) and math.isfinite(q.hi):
+        return f"{q.lo:g} ... {q.hi:g}"
+    if math.isfinite(q.lo):
+        return f"at least {q.lo:g}"
+    return f"at most {q.hi:g}" if math.isfinite(q.hi) else ""

@@ -1,4 +1,4 @@
-/* Linux's part of the front: see platform.h. */
+/* platform.h for Linux. */
 #define _GNU_SOURCE
 #include "platform.h"
 
@@ -11,17 +11,19 @@
 #include <unistd.h>
 
 const char *const PYTHON_LIBRARY = "libpython3.%d.so.1.0";
-const char *const STANDARD_LIBRARIES[] = {"%s/lib/python3.%d/os.py", "%s/lib64/python3.%d/os.py", NULL};
-const char *const LAST_RESORT = "python3 on PATH:";
+const char *const STANDARD_LIBRARIES[] = {"%s/lib/python3.%d/os.py", "%s/lib64/python3.%d/os.py",
+                                          NULL};
+const char *const INSTALLED_PYTHON_SOURCE = "python3 on PATH:";
 
-static const char ASK_PYTHON[] =
-    "python3 -I -S -c \"import os, sysconfig as s; print(os.path.join(s.get_config_var('LIBDIR'), s.get_config_var('INSTSONAME')))\" 2>/dev/null";
+static const char ASK_PYTHON3_COMMAND[] =
+    "python3 -I -S -c \"import os, sysconfig as s; print(os.path.join(s.get_config_var('LIBDIR'), "
+    "s.get_config_var('INSTSONAME')))\" 2>/dev/null";
 
 static char *locale_name;
 
-void *library_open(const char *path, bool for_all)
+void *library_open(const char *path, bool global)
 {
-    return dlopen(path, RTLD_NOW | (for_all ? RTLD_GLOBAL : RTLD_LOCAL));
+    return dlopen(path, RTLD_NOW | (global ? RTLD_GLOBAL : RTLD_LOCAL));
 }
 
 void library_close(void *library)
@@ -45,22 +47,22 @@ void *process_symbol(const char *name)
     return dlsym(RTLD_DEFAULT, name);
 }
 
-static int note_python(struct dl_phdr_info *info, size_t size, void *found)
+static int find_libpython(struct dl_phdr_info *info, size_t size, void *found)
 {
     (void)size;
     const char *file = strrchr(info->dlpi_name, '/');
     file = file ? file + 1 : info->dlpi_name;
-    /* libpython3.so is a mere pointer to the library of one version */
+    /* libpython3.so only refers to the library of one version */
     if (strncmp(file, "libpython3.", 11) != 0 || strncmp(file, "libpython3.so", 13) == 0)
         return 0;
     snprintf(found, PATH_SIZE, "%s", info->dlpi_name);
     return 1;
 }
 
-void share_loaded_python(void)
+void make_loaded_python_global(void)
 {
     char path[PATH_SIZE] = "";
-    if (dl_iterate_phdr(note_python, path))
+    if (dl_iterate_phdr(find_libpython, path))
         dlopen(path, RTLD_NOW | RTLD_GLOBAL | RTLD_NOLOAD);
 }
 
@@ -82,7 +84,7 @@ bool file_exists(const char *path)
     return access(path, R_OK) == 0;
 }
 
-bool environment(const char *name, char value[PATH_SIZE])
+bool environment_path(const char *name, char value[PATH_SIZE])
 {
     const char *text = getenv(name);
     return text && *text && snprintf(value, PATH_SIZE, "%s", text) < PATH_SIZE;
@@ -90,8 +92,8 @@ bool environment(const char *name, char value[PATH_SIZE])
 
 bool installed_python(int oldest, int newest, char line[PATH_SIZE])
 {
-    (void)oldest, (void)newest; /* the caller looks at the version */
-    FILE *output = popen(ASK_PYTHON, "r");
+    (void)oldest, (void)newest; /* the caller checks the version */
+    FILE *output = popen(ASK_PYTHON3_COMMAND, "r");
     if (!output)
         return false;
     bool found = fgets(line, PATH_SIZE, output) != NULL;
@@ -101,7 +103,7 @@ bool installed_python(int oldest, int newest, char line[PATH_SIZE])
     return found && line[0] != '\0';
 }
 
-void shorten(char path[PATH_SIZE])
+void shorten_path(char path[PATH_SIZE])
 {
     (void)path;
 }
@@ -130,18 +132,21 @@ void unlink_folder(const char *link)
     }
 }
 
-/* The lock of standard error: the one recursive lock that all copies of this library in a process share and nobody keeps for long. */
-void lock(void)
+/*
+ * The lock of standard error: a recursive lock that all copies of this library share, and that
+ * other code holds only for the time of a write.
+ */
+void lock_process(void)
 {
     flockfile(stderr);
 }
 
-void unlock(void)
+void unlock_process(void)
 {
     funlockfile(stderr);
 }
 
-void keep_locale(void)
+void save_locale(void)
 {
     const char *name = setlocale(LC_CTYPE, NULL);
     locale_name = name ? strdup(name) : NULL;

@@ -7,7 +7,7 @@
 
 enum { OLDEST = 10, NEWEST = 13 };
 
-/* Minor version of the Python 3 that `get_version` belongs to; 0 for another Python. */
+/* Minor version of the Python 3 whose Py_GetVersion this is; 0 for another Python. */
 static int minor_version(void *get_version)
 {
     const char *(*version)(void);
@@ -33,15 +33,16 @@ static bool find_home(const char *library, int minor, char home[PATH_SIZE])
 }
 
 /*
- * Start the Python whose symbols the process has, with the standard library in `home` and nothing of the environment.
+ * Start the Python whose symbols are global, with the standard library in `home` and nothing of the
+ * environment.
  *
- * Flags rather than PyConfig, whose layout differs from version to version: one front serves all. A standard library that is not there
- * would end the process, so `home` is checked by the caller.
+ * Flags rather than PyConfig, whose layout differs between versions: one front serves all of them.
+ * Without its standard library Python would end the process, so the caller checks `home`.
  */
-static bool start(const char *home, struct message *reason)
+static bool start_python(const char *home, struct message *reason)
 {
-    static const char *const flags[] = {"Py_NoSiteFlag", "Py_IgnoreEnvironmentFlag", "Py_NoUserSiteDirectory", "Py_IsolatedFlag",
-                                        "Py_UTF8Mode"};
+    static const char *const flags[] = {"Py_NoSiteFlag", "Py_IgnoreEnvironmentFlag",
+                                        "Py_NoUserSiteDirectory", "Py_IsolatedFlag", "Py_UTF8Mode"};
     void (*initialize)(int), (*set_home)(const wchar_t *);
     void *(*release)(void);
     *(void **)&initialize = process_symbol("Py_InitializeEx");
@@ -49,7 +50,7 @@ static bool start(const char *home, struct message *reason)
     *(void **)&release = process_symbol("PyEval_SaveThread");
     static wchar_t wide_home[PATH_SIZE];
     if (!initialize || !set_home || !release || !decode_utf8(home, wide_home, PATH_SIZE)) {
-        add(reason, ": not a complete Python library");
+        append_text(reason, ": not a complete Python library");
         return false;
     }
     for (size_t i = 0; i < sizeof flags / sizeof *flags; i++) {
@@ -58,32 +59,34 @@ static bool start(const char *home, struct message *reason)
             *flag = 1;
     }
     set_home(wide_home);
-    keep_locale();
+    save_locale();
     initialize(0);
     restore_locale();
     release();
     return true;
 }
 
-/* Try the library `path`, said to be `what`: open it, check it, start its Python. */
+/* Open the library `path`, check it and start its Python; `what` names its origin in the message.
+ */
 static bool try_library(const char *path, const char *what, struct message *reason)
 {
-    add(reason, "; %s %s", what, path);
+    append_text(reason, "; %s %s", what, path);
     void *library = library_open(path, false);
     if (!library) {
-        add(reason, ": %s", strchr(path, '/') && !file_exists(path) ? "no such file" : "cannot be loaded");
+        append_text(reason, ": %s",
+                    strchr(path, '/') && !file_exists(path) ? "no such file" : "cannot be loaded");
         return false;
     }
     void *get_version = library_symbol(library, "Py_GetVersion");
     int minor = get_version ? minor_version(get_version) : 0;
     char real[PATH_SIZE], home[PATH_SIZE];
     if (minor < OLDEST) {
-        add(reason, ": not Python 3.%d or newer", OLDEST);
+        append_text(reason, ": not Python 3.%d or newer", OLDEST);
     } else if (!library_path(get_version, real) || !find_home(real, minor, home)) {
-        add(reason, ": its standard library is not above it");
+        append_text(reason, ": its standard library is not above it");
     } else {
-        if (library_open(path, true) && start(home, reason))
-            return true; /* stays open: Python is never unloaded */
+        if (library_open(path, true) && start_python(home, reason))
+            return true; /* stays open: Python cannot be unloaded */
     }
     library_close(library);
     return false;
@@ -107,12 +110,14 @@ static bool read_line(const char *folder, const char *name, char line[PATH_SIZE]
 static bool find_python(const char *resources, struct message *reason)
 {
     char path[PATH_SIZE];
-    if (environment("RLV_LANDING_LIBPYTHON", path))
-        return try_library(path, "RLV_LANDING_LIBPYTHON =", reason); /* a wish that cannot be met is an error, not a hint */
-    add(reason, "; RLV_LANDING_LIBPYTHON: not set");
-    if (read_line(resources, "libpython.txt", path) && try_library(path, "recorded at build:", reason))
+    /* the user's choice is the only candidate */
+    if (environment_path("RLV_LANDING_LIBPYTHON", path))
+        return try_library(path, "RLV_LANDING_LIBPYTHON =", reason);
+    append_text(reason, "; RLV_LANDING_LIBPYTHON: not set");
+    if (read_line(resources, "libpython.txt", path) &&
+        try_library(path, "recorded at build:", reason))
         return true;
-    /* the building Python's version first: the FMU has a compiled core for it */
+    /* first the version that built the FMU, which has a compiled core for it */
     for (int i = NEWEST + 1; i >= OLDEST; i--) {
         int minor = i > NEWEST ? BUILD_PYTHON_MINOR : i;
         if (i == BUILD_PYTHON_MINOR)
@@ -122,8 +127,8 @@ static bool find_python(const char *resources, struct message *reason)
             return true;
     }
     if (installed_python(OLDEST, NEWEST, path))
-        return try_library(path, LAST_RESORT, reason);
-    add(reason, "; %s none that names its library", LAST_RESORT);
+        return try_library(path, INSTALLED_PYTHON_SOURCE, reason);
+    append_text(reason, "; %s none that names its library", INSTALLED_PYTHON_SOURCE);
     return false;
 }
 
@@ -131,33 +136,39 @@ bool python_ready(const char *resources, struct message *reason)
 {
     int (*is_initialized)(void);
     if (!process_symbol("Py_IsInitialized"))
-        share_loaded_python();
+        make_loaded_python_global();
     *(void **)&is_initialized = process_symbol("Py_IsInitialized");
     if (is_initialized) {
         void *get_version = process_symbol("Py_GetVersion");
         int minor = get_version ? minor_version(get_version) : 0;
         if (minor < OLDEST) {
-            add(reason, "this process has a Python older than 3.%d; the FMU needs 3.%d to 3.%d", OLDEST, OLDEST, NEWEST);
+            append_text(reason,
+                        "this process has a Python older than 3.%d; the FMU needs 3.%d to 3.%d",
+                        OLDEST, OLDEST, NEWEST);
             return false;
         }
         if (is_initialized())
             return true;
         char path[PATH_SIZE], home[PATH_SIZE];
         if (library_path(get_version, path) && find_home(path, minor, home))
-            return start(home, reason);
-        add(reason, "this process has a Python 3.%d that is not started, and its standard library is not above %s", minor, path);
+            return start_python(home, reason);
+        append_text(reason,
+                    "this process has a Python 3.%d that is not started, and its standard library "
+                    "is not above %s",
+                    minor, path);
         return false;
     }
     struct message tried = {""};
     if (find_python(resources, &tried))
         return true;
-    add(reason,
-        "no Python library (libpython) of 3.%d to 3.%d was found for this process%s; set RLV_LANDING_LIBPYTHON to the path of one",
-        OLDEST, NEWEST, tried.text);
+    append_text(reason,
+                "no Python library (libpython) of 3.%d to 3.%d was found for this process%s; set "
+                "RLV_LANDING_LIBPYTHON to the path of one",
+                OLDEST, NEWEST, tried.text);
     return false;
 }
 
-void python_interrupt(void)
+void interrupt_python(void)
 {
     void (*set_interrupt)(void);
     *(void **)&set_interrupt = process_symbol("PyErr_SetInterrupt");

@@ -1,23 +1,28 @@
-/* A running Python in this process, for pythonfmu's binary to use. */
+/* The Python that pythonfmu's binary uses in this process. */
 #ifndef PYTHON_H
 #define PYTHON_H
 
 #include "text.h"
 
 /*
- * Make sure that this process has a running Python 3.10 or newer; `resources` is the FMU's folder of that name.
+ * Start Python 3.10 or newer in this process unless it runs; `resources` is the FMU's folder of
+ * that name.
  *
- * The host's own Python, if it has one, is used. Else libpython is looked for: in the file that RLV_LANDING_LIBPYTHON names; in the one
- * recorded when the FMU was built (resources/libpython.txt); under the usual names; where Python is installed (that of the `python3`
- * of PATH; Windows: of the registry). It is opened for all,
- * started without signal handlers, environment and site-packages (the slave needs none, and a .pth there can restart the process), and
- * never finalised: Python cannot be started again in the same process.
+ * A Python that the process has is used. Else libpython is looked for, in this order:
+ *   1. the file that RLV_LANDING_LIBPYTHON names;
+ *   2. the file recorded when the FMU was built (resources/libpython.txt);
+ *   3. the usual names, by the loader;
+ *   4. an installed Python: the `python3` of PATH; on Windows, the registry.
  *
- * Returns false with the reason in `reason` if there is none.
+ * It is opened with global symbols and started without signal handlers, environment and
+ * site-packages: the slave needs none of them, and a .pth file can restart the process. It is never
+ * finalised, because Python cannot be started again in the same process.
+ *
+ * Returns false with the reason if there is none.
  */
 bool python_ready(const char *resources, struct message *reason);
 
-/* Hand an interrupt (Ctrl-C) that the slave caught on to the host's Python. */
-void python_interrupt(void);
+/* Raise in the importer's Python an interrupt (Ctrl-C) that arrived while the slave ran. */
+void interrupt_python(void);
 
 #endif

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-void add(struct message *message, const char *format, ...)
+void append_text(struct message *message, const char *format, ...)
 {
     size_t length = strlen(message->text);
     va_list arguments;
@@ -21,7 +21,11 @@ bool decode_utf8(const char *text, wchar_t *wide, size_t size)
     const unsigned char *s = (const unsigned char *)text;
     size_t n = 0;
     while (*s) {
-        int more = *s < 0x80 ? 0 : (*s & 0xe0) == 0xc0 ? 1 : (*s & 0xf0) == 0xe0 ? 2 : (*s & 0xf8) == 0xf0 ? 3 : -1;
+        int more = *s < 0x80             ? 0
+                   : (*s & 0xe0) == 0xc0 ? 1
+                   : (*s & 0xf0) == 0xe0 ? 2
+                   : (*s & 0xf8) == 0xf0 ? 3
+                                         : -1;
         if (more < 0)
             return false;
         uint32_t point = more == 0 ? *s : *s & (0x3fu >> more);
@@ -54,7 +58,8 @@ bool decode_utf8(const char *text, wchar_t *wide, size_t size)
 static void decode_percent(const char *from, char *to)
 {
     while (*from) {
-        if (from[0] == '%' && isxdigit((unsigned char)from[1]) && isxdigit((unsigned char)from[2])) {
+        if (from[0] == '%' && isxdigit((unsigned char)from[1]) &&
+            isxdigit((unsigned char)from[2])) {
             char digits[] = {from[1], from[2], '\0'};
             *to++ = (char)strtol(digits, NULL, 16);
             from += 3;
@@ -65,14 +70,14 @@ static void decode_percent(const char *from, char *to)
     *to = '\0';
 }
 
-static bool has_slave(const char *folder)
+static bool has_slave_module(const char *folder)
 {
     char file[PATH_SIZE + 20];
     snprintf(file, sizeof file, "%s/slavemodule.txt", folder);
     return file_exists(file);
 }
 
-bool folder_of_uri(const char *uri, char folder[PATH_SIZE])
+bool resource_folder_of_uri(const char *uri, char folder[PATH_SIZE])
 {
     if (strlen(uri) >= PATH_SIZE)
         return false;
@@ -91,18 +96,19 @@ bool folder_of_uri(const char *uri, char folder[PATH_SIZE])
             path += 2;
 #endif
         decode_percent(path, folder);
-        if (has_slave(folder))
+        if (has_slave_module(folder))
             return true;
     }
     /* a plain path, or a URI that its host has not escaped */
     memmove(folder, path, strlen(path) + 1);
-    return has_slave(folder);
+    return has_slave_module(folder);
 }
 
 bool is_plain(const char *path)
 {
     for (; *path; path++)
-        if (!((*path >= 'a' && *path <= 'z') || (*path >= 'A' && *path <= 'Z') || (*path >= '0' && *path <= '9') || strchr("/._-+~:", *path)))
+        if (!((*path >= 'a' && *path <= 'z') || (*path >= 'A' && *path <= 'Z') ||
+              (*path >= '0' && *path <= '9') || strchr("/._-+~:", *path)))
             return false;
     return true;
 }

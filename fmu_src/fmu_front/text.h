@@ -1,4 +1,4 @@
-/* Small things with text: growing messages, UTF-8, file URIs. */
+/* Text: messages, UTF-8, file URIs. */
 #ifndef TEXT_H
 #define TEXT_H
 
@@ -6,7 +6,7 @@
 
 #include <wchar.h>
 
-/* A message that is put together piece by piece; what does not fit is left out. */
+/* A message to append to. What does not fit is cut off. */
 struct message {
     char text[4096];
 };
@@ -14,15 +14,20 @@ struct message {
 #if defined(__GNUC__)
 __attribute__((format(gnu_printf, 2, 3)))
 #endif
-void add(struct message *message, const char *format, ...);
+void append_text(struct message *message, const char *format, ...);
 
-/* Decode UTF-8 into `wide` (which may be NULL); false if `text` is not UTF-8 or does not fit. */
+/* Decode UTF-8 into `wide`, which may be NULL. Returns false if it is no UTF-8 or does not fit. */
 bool decode_utf8(const char *text, wchar_t *wide, size_t size);
 
-/* Write the folder that a file URI (file:///..., file:/..., every percent-escape) or a plain path names. */
-bool folder_of_uri(const char *uri, char folder[PATH_SIZE]);
+/*
+ * Write the FMU's resource folder that a file URI or a plain path names.
+ *
+ * Takes file:///..., file:/... and every percent-escape. Returns false if no slavemodule.txt is
+ * there.
+ */
+bool resource_folder_of_uri(const char *uri, char folder[PATH_SIZE]);
 
-/* Whether pythonfmu's binary takes the path as it is: it knows no escape but %20, and dies of some characters. */
+/* True if pythonfmu's binary can take the path: it decodes only %20 and crashes on some others. */
 bool is_plain(const char *path);
 
 #endif

@@ -1,4 +1,4 @@
-/* Windows' part of the front: see platform.h. Paths are UTF-8 with / here, UTF-16 with \ in the system's functions. */
+/* platform.h for Windows. The system's functions take paths as UTF-16 with \. */
 #define PSAPI_VERSION 2
 #include "platform.h"
 
@@ -13,9 +13,9 @@
 
 const char *const PYTHON_LIBRARY = "python3%d.dll";
 const char *const STANDARD_LIBRARIES[] = {"%s/Lib/os.py", "%s/python3%d.zip", NULL};
-const char *const LAST_RESORT = "registry (PythonCore):";
+const char *const INSTALLED_PYTHON_SOURCE = "registry (PythonCore):";
 
-static HMODULE python; /* what posix.c opens for all */
+static HMODULE python; /* the library whose symbols posix.c makes global */
 
 static bool to_wide(const char *path, wchar_t wide[PATH_SIZE])
 {
@@ -44,8 +44,11 @@ static bool module_path(HMODULE module, char path[PATH_SIZE])
     return length && length < PATH_SIZE && to_utf8(wide, path);
 }
 
-/* pythonfmu's binary is linked with python3.dll, which passes on to python3<minor>.dll and lies beside it, where nobody looks. */
-static void share_python(HMODULE module)
+/*
+ * pythonfmu's binary needs python3.dll, which forwards to python3<minor>.dll. It lies beside the
+ * latter, where the loader does not look.
+ */
+static void make_python_global(HMODULE module)
 {
     char path[PATH_SIZE];
     python = module;
@@ -56,17 +59,18 @@ static void share_python(HMODULE module)
     }
 }
 
-void *library_open(const char *path, bool for_all)
+void *library_open(const char *path, bool global)
 {
     wchar_t wide[PATH_SIZE];
     if (!to_wide(path, wide)) {
         SetLastError(ERROR_INVALID_NAME);
         return NULL;
     }
-    /* a library of known place may have what it needs beside it */
-    HMODULE module = LoadLibraryExW(wide, NULL, wcschr(wide, L'\\') ? LOAD_WITH_ALTERED_SEARCH_PATH : 0);
-    if (module && for_all)
-        share_python(module);
+    /* a library with a path may have its dependencies beside it */
+    HMODULE module =
+        LoadLibraryExW(wide, NULL, wcschr(wide, L'\\') ? LOAD_WITH_ALTERED_SEARCH_PATH : 0);
+    if (module && global)
+        make_python_global(module);
     return module;
 }
 
@@ -92,7 +96,7 @@ void *process_symbol(const char *name)
     return python ? library_symbol(python, name) : NULL;
 }
 
-void share_loaded_python(void)
+void make_loaded_python_global(void)
 {
     HMODULE modules[1024];
     DWORD size = 0;
@@ -107,7 +111,7 @@ void share_loaded_python(void)
             continue;
         const char *file = _strlwr(strrchr(path, '/') + 1);
         if (sscanf(file, "python3%d.dll%n", &minor, &length) == 1 && length && !file[length]) {
-            share_python(modules[i]);
+            make_python_global(modules[i]);
             return;
         }
     }
@@ -116,7 +120,8 @@ void share_loaded_python(void)
 bool library_path(const void *address, char path[PATH_SIZE])
 {
     HMODULE module;
-    DWORD flags = GET_MODULE_HANDLE_EX_FLAG_FROM_ADDRESS | GET_MODULE_HANDLE_EX_FLAG_UNCHANGED_REFCOUNT;
+    DWORD flags =
+        GET_MODULE_HANDLE_EX_FLAG_FROM_ADDRESS | GET_MODULE_HANDLE_EX_FLAG_UNCHANGED_REFCOUNT;
     return GetModuleHandleExW(flags, address, &module) && module_path(module, path);
 }
 
@@ -126,7 +131,7 @@ bool file_exists(const char *path)
     return to_wide(path, wide) && GetFileAttributesW(wide) != INVALID_FILE_ATTRIBUTES;
 }
 
-bool environment(const char *name, char value[PATH_SIZE])
+bool environment_path(const char *name, char value[PATH_SIZE])
 {
     wchar_t wide_name[PATH_SIZE], wide[PATH_SIZE];
     if (!to_wide(name, wide_name))
@@ -141,19 +146,22 @@ bool installed_python(int oldest, int newest, char path[PATH_SIZE])
         for (int all_users = 0; all_users < 2; all_users++) {
             wchar_t key[80], folder[PATH_SIZE];
             DWORD size = sizeof folder;
-            swprintf(key, sizeof key / sizeof *key, L"Software\\Python\\PythonCore\\3.%d\\InstallPath", minor);
-            if (RegGetValueW(all_users ? HKEY_LOCAL_MACHINE : HKEY_CURRENT_USER, key, NULL, RRF_RT_REG_SZ, NULL, folder, &size) ||
+            swprintf(key, sizeof key / sizeof *key,
+                     L"Software\\Python\\PythonCore\\3.%d\\InstallPath", minor);
+            if (RegGetValueW(all_users ? HKEY_LOCAL_MACHINE : HKEY_CURRENT_USER, key, NULL,
+                             RRF_RT_REG_SZ, NULL, folder, &size) ||
                 !to_utf8(folder, path))
                 continue;
             size_t length = strlen(path);
-            snprintf(path + length, PATH_SIZE - length, "%spython3%d.dll", length && path[length - 1] == '/' ? "" : "/", minor);
+            snprintf(path + length, PATH_SIZE - length, "%spython3%d.dll",
+                     length && path[length - 1] == '/' ? "" : "/", minor);
             if (file_exists(path))
                 return true;
         }
     return false;
 }
 
-void shorten(char path[PATH_SIZE])
+void shorten_path(char path[PATH_SIZE])
 {
     wchar_t wide[PATH_SIZE], other[PATH_SIZE];
     DWORD length = to_wide(path, wide) ? GetShortPathNameW(wide, other, PATH_SIZE) : 0;
@@ -161,8 +169,8 @@ void shorten(char path[PATH_SIZE])
         to_utf8(other, path);
 }
 
-/* Copy or delete a folder; the names must end with two zeros. */
-static bool change_folder(UINT what, const wchar_t *from, const wchar_t *to)
+/* FO_COPY or FO_DELETE a folder; the names must end with two zeros. */
+static bool copy_or_delete_folder(UINT what, const wchar_t *from, const wchar_t *to)
 {
     SHFILEOPSTRUCTW change = {.wFunc = what, .pFrom = from, .pTo = to, .fFlags = FOF_NO_UI};
     return SHFileOperationW(&change) == 0 && !change.fAnyOperationsAborted;
@@ -177,23 +185,24 @@ bool link_folder(const char *target, char link[PATH_SIZE])
     errno = ENAMETOOLONG;
     if (!length || length >= PATH_SIZE || !to_utf8(to, link) || !to_wide(target, from))
         return false;
-    shorten(link);
+    shorten_path(link);
     length = (DWORD)strlen(link);
-    snprintf(link + length, PATH_SIZE - length, "rlv_landing_%lu_%ld", GetCurrentProcessId(), InterlockedIncrement(&count));
+    snprintf(link + length, PATH_SIZE - length, "rlv_landing_%lu_%ld", GetCurrentProcessId(),
+             InterlockedIncrement(&count));
     if (!to_wide(link, to))
         return false;
     errno = EACCES;
-    return change_folder(FO_COPY, from, to);
+    return copy_or_delete_folder(FO_COPY, from, to);
 }
 
 void unlink_folder(const char *link)
 {
     wchar_t folder[PATH_SIZE + 1] = {0};
     if (to_wide(link, folder))
-        change_folder(FO_DELETE, folder, NULL);
+        copy_or_delete_folder(FO_DELETE, folder, NULL);
 }
 
-static HANDLE lock_of_process(void)
+static HANDLE process_mutex(void)
 {
     static HANDLE mutex;
     wchar_t name[40];
@@ -206,17 +215,17 @@ static HANDLE lock_of_process(void)
     return mutex;
 }
 
-void lock(void)
+void lock_process(void)
 {
-    WaitForSingleObject(lock_of_process(), INFINITE);
+    WaitForSingleObject(process_mutex(), INFINITE);
 }
 
-void unlock(void)
+void unlock_process(void)
 {
-    ReleaseMutex(lock_of_process());
+    ReleaseMutex(process_mutex());
 }
 
-/* Python's C library is ucrtbase.dll, as most hosts' is. */
+/* The setlocale of ucrtbase.dll, which is Python's C library and that of most importers. */
 static char *ucrt_locale(const char *name)
 {
     HMODULE ucrt = LoadLibraryW(L"ucrtbase.dll");
@@ -227,7 +236,7 @@ static char *ucrt_locale(const char *name)
 
 static char *locale_name;
 
-void keep_locale(void)
+void save_locale(void)
 {
     const char *name = ucrt_locale(NULL);
     locale_name = name ? _strdup(name) : NULL;
@@ -245,6 +254,6 @@ BOOL WINAPI DllMain(HINSTANCE library, DWORD why, LPVOID ending)
 {
     (void)library;
     if (why == DLL_PROCESS_DETACH && !ending)
-        unloaded();
+        on_unload();
     return TRUE;
 }

@@ -1,5 +1,6 @@
-"""Nothing inside a step calls Python: every kernel is declared for C, and Cython's annotation finds
-no Python in it.
+"""No code inside a step calls Python.
+
+Every kernel is declared for C, and Cython's annotation finds no Python in it.
 """
 
 import ast

@@ -1,5 +1,6 @@
-"""The integration methods: order conditions, convergence, stiffness, and the same digits compiled
-and pure.
+"""Integration methods: order conditions, convergence, stiffness.
+
+Compiled and pure core give the same digits.
 """
 
 import os
@@ -38,8 +39,9 @@ def test_nodes_are_those_of_the_scheme():
 
 
 def order_conditions(b):
-    """Left side minus right side of every order condition up to order 5, by order (Hairer, Norsett,
-    Wanner, II.2).
+    """Left side minus right side of every order condition up to order 5, by order.
+
+    Source: Hairer, Norsett, Wanner, II.2.
     """
     Ac = A @ C
     return {
@@ -209,8 +211,10 @@ def test_compiled_and_pure_core_give_the_same_digits(mode, method):
 
 @pytest.mark.skipif(not core.COMPILED, reason="measured on the pure core")
 def test_other_threads_run_during_a_run():
-    """The interpreter does not switch threads of itself here: the other one gets on only where the
-    core lets it.
+    """A long run releases Python's lock.
+
+    The interpreter does not switch threads by itself here, so the other thread runs only while the
+    core has released the lock.
     """
     solver = new_solver(Parameters(), DEFAULT_RTOL)
     rows = np.empty(1000 * solver.system.row)

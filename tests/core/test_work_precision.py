@@ -1,4 +1,4 @@
-"""What the benchmarks say equal error costs is read off their runs as docs/performance.md has it."""
+"""The benchmarks' cost at equal error, read off their runs as docs/performance.md says."""
 
 import sys
 from pathlib import Path

@@ -19,7 +19,7 @@ def example() -> Path:
 
 @pytest.fixture(scope="session")
 def ran(fmu: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
-    """Where `run.py` wrote, and what it said."""
+    """The folder that `run.py` wrote to, and its output."""
     out = tmp_path_factory.mktemp("ship_deck")
     command = [sys.executable, str(EXAMPLE / "run.py"), "--out", str(out), "--until", "1"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300)

@@ -32,22 +32,23 @@ def normal_forces(result):
 
 
 def test_command_writes_fmus_system_results_and_picture_and_says_what_happened(ran):
-    out, said = ran
+    out, output = ran
     files = {"ShipDeck.fmu", "EngineTailOff.fmu", "calm.ssp", "moving.ssp", "ship_deck.png"}
     assert {p.name for p in out.iterdir()} == files | {
         f"{d}-{i}.csv" for d in ("calm", "moving") for i in ("fmpy", "ecos")
     }
     assert imread(out / "ship_deck.png").shape[0] > 500
     touched = {
-        name: float(time) for name, time in re.findall(r"(\w+) deck: touches at ([\d.]+) s", said)
+        name: float(time) for name, time in re.findall(r"(\w+) deck: touches at ([\d.]+) s", output)
     }
     assert touched["moving"] < touched["calm"], "the deck rises towards the vehicle"
 
 
 @pytest.mark.parametrize("deck", ["calm", "moving"])
 def test_ecos_gives_the_python_masters_trajectory_from_the_ssp_file(ran, deck):
-    """Both are Jacobi masters with the same communication points: 1e-9 of every output's largest
-    value.
+    """To 1e-9 of every output's largest value.
+
+    Both are Jacobi masters with the same communication points.
     """
     out, _ = ran
     ours, theirs = (
@@ -87,7 +88,9 @@ def test_ssp_file_is_valid_and_its_connections_are_those_of_the_system(ran, deck
         assert read == set(system.CONNECTIONS.items())
         assert structure.check_connections(unconnected_inputs=True) == []
         assert {component.name: component.source for component in structure.system.elements} == {
-            "landing": "resources/RlvLanding.fmu", "deck": "resources/ShipDeck.fmu", "engine": "resources/EngineTailOff.fmu",
+            "landing": "resources/RlvLanding.fmu",
+            "deck": "resources/ShipDeck.fmu",
+            "engine": "resources/EngineTailOff.fmu",
         }  # fmt: skip
 
 
@@ -126,8 +129,7 @@ def test_deck_starts_at_rest_and_its_rates_are_those_of_its_positions(fmus):
 
 
 def test_only_the_speed_relative_to_the_deck_counts(fmus):
-    """A deck that rises steadily at 0.3 m/s is a deck at rest for a vehicle that falls 0.3 m/s
-    faster (Galileo).
+    """A deck that rises at 0.3 m/s is a deck at rest for a vehicle that falls 0.3 m/s faster.
 
     The deck is 1 s of a wave of 400 s: steady within 1.3e-4 of its speed.
     """
@@ -170,8 +172,9 @@ def test_only_the_speed_relative_to_the_deck_counts(fmus):
 
 
 def test_a_vehicle_that_stands_goes_with_the_deck(fmus):
-    """At the end: height above the deck, speed and pitch are the deck's, but for what struts and
-    friction give under 4 % of g.
+    """At the end, height above the deck, speed and pitch are the deck's.
+
+    The tolerance is what struts and friction give under 4 % of g.
     """
     result = run(fmus, 5.0, deck={}, engine={})
     standing = result["time"] > 2.5

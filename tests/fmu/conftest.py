@@ -1,6 +1,4 @@
-"""What the tests of the FMU share: its description, its unpacked files, an instance, and hosts
-written in C.
-"""
+"""Fixtures of the FMU's tests: description, unpacked files, instances, hosts written in C."""
 
 from __future__ import annotations
 

@@ -1,12 +1,14 @@
-"""One instance of the FMU, driven call by call through FMPy, its log kept."""
+"""One instance of the FMU in FMPy, with a method for each call and its log kept."""
 
 from __future__ import annotations
 
-from ctypes import c_double, c_int, c_uint
+from ctypes import Array, c_double, c_int, c_uint
 from pathlib import Path
 from typing import Any
 
 from fmpy import fmi2
+
+from rlv_landing import Landing
 
 OK, WARNING, DISCARD, ERROR = range(4)
 
@@ -86,3 +88,23 @@ class Instance:
     def reason(self) -> str:
         """The last message logged."""
         return self.log[-1][1]
+
+
+def refs(*numbers: int) -> Array[c_uint]:
+    """Value references for a call."""
+    return (c_uint * len(numbers))(*numbers)
+
+
+def reals(*numbers: float) -> Array[c_double]:
+    """Reals for a call."""
+    return (c_double * len(numbers))(*numbers)
+
+
+def assert_lands_like_landing(instance: Instance, first: int = 0) -> None:
+    """The instance gives `Landing`'s digits after 20 more steps of 1 ms, from step `first`."""
+    instance.steps(first, first + 20)
+    landing = Landing()
+    landing.advance_to((first + 19) * 1e-3 + 1e-3)
+    names = ("body.x", "body.pitch", "leg[2].footpad.y")
+    vrs = [instance.vr[name] for name in names]
+    assert instance.slave.getReal(vrs) == [landing.get(name) for name in names]

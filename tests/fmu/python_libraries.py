@@ -14,8 +14,9 @@ BARE = {name: os.environ[name] for name in ("HOME",) if name in os.environ} | {
 
 
 def python_libraries() -> list[str]:
-    """The Python libraries, 3.10 to 3.13, of this machine: of the running Python, beside it, and
-    those that the loader finds.
+    """Python libraries, 3.10 to 3.13, of this machine.
+
+    That of the running Python, those beside it, and those that the loader finds.
     """
     found = {}
     here = Path(sysconfig.get_config_var("LIBDIR") or "/usr/lib")

@@ -1,4 +1,4 @@
-"""`build_fmu.sh` as a user calls it."""
+"""The build of the FMU: `build_fmu.sh` as a user calls it, and the front in C."""
 
 import re
 import subprocess
@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 OF_MODEL_EXCHANGE = re.compile("Event|Continuous|Integrator|NewDiscrete|SetTime|GetDerivatives")
 
 
-def test_build_script_writes_where_it_is_told_and_says_what_it_checked(tmp_path):
+def test_build_script_writes_the_named_file_and_prints_what_it_checked(tmp_path):
     target = tmp_path / "sub folder" / "mine.fmu"
     done = subprocess.run(
         ["./build_fmu.sh", str(target)],
@@ -37,7 +37,7 @@ def test_the_front_compiles_without_a_warning_and_exports_fmi_functions_only(
     from fmu_build import binary
 
     root = ElementTree.parse(unpacked / "modelDescription.xml").getroot()
-    (tmp_path / "variables.h").write_text(binary.variables_header(root, "stock.so"))
+    (tmp_path / "variables.h").write_text(binary.variables_header(root, "pythonfmu.so"))
     monkeypatch.setattr(binary, "FLAGS", [*binary.FLAGS, "-Werror", "-Wpedantic"])
     binary.compile_front(tmp_path / "front.so", tmp_path)
     listed = subprocess.run(
@@ -54,12 +54,12 @@ def test_the_front_compiles_without_a_warning_and_exports_fmi_functions_only(
 
 
 def test_an_unknown_binary_of_pythonfmus_stops_the_build(monkeypatch, unpacked):
-    """A binary with other finalisers than the known two is for a person to look at."""
+    """A binary with other finalisers than the known two needs a person to look at it."""
     monkeypatch.syspath_prepend(ROOT / "fmu_src")
     from fmu_build import binary
 
-    stock = next((unpacked / "binaries" / "linux64").glob("pythonfmu-export-*.so")).read_bytes()
-    with pytest.raises(SystemExit, match="has 1 finalisers, 2 are known"):
-        binary.without_last_finaliser(stock)
+    edited = next((unpacked / "binaries" / "linux64").glob("pythonfmu-export-*.so")).read_bytes()
+    with pytest.raises(SystemExit, match="has 1 finalisers, not 2"):
+        binary.without_last_finaliser(edited)
     with pytest.raises(SystemExit, match="no 64-bit little-endian ELF file"):
-        binary.without_last_finaliser(b"MZ" + stock)
+        binary.without_last_finaliser(b"MZ" + edited)

@@ -43,11 +43,12 @@ def land(host, unpacked, description):
     return run
 
 
-def assert_landed_or_said_what_it_lacks(
+def assert_landed_or_logged_what_is_missing(
     done: subprocess.CompletedProcess[str], steps: int = STEPS
 ) -> None:
-    """The host's numbers are `Landing`'s; on a machine without any libpython, the host lives and
-    its log names what was tried.
+    """The host's numbers are `Landing`'s.
+
+    On a machine without any libpython the host does not crash, and its log names what was tried.
     """
     if not python_libraries() and done.returncode == 1:
         assert MISSING in done.stdout
@@ -67,15 +68,16 @@ def assert_landed_or_said_what_it_lacks(
 
 @pytest.mark.parametrize("library", python_libraries() or ["/nowhere/libpython3.13.so.1.0"])
 def test_a_c_host_lands_like_landing_with_every_python_of_the_machine(land, library):
-    """With the compiled core where the FMU has one for it: built by Python 3.11 or newer, for all
-    from 3.11 on.
+    """With the compiled core where the FMU has one for that Python.
+
+    An FMU that Python 3.11 or newer built has one for all versions from 3.11 on.
     """
     done = land(RLV_LANDING_LIBPYTHON=library)
     if library.startswith("/nowhere/"):
         assert done.returncode == 1
         assert f"RLV_LANDING_LIBPYTHON = {library}: no such file" in done.stdout
         return
-    assert_landed_or_said_what_it_lacks(done)
+    assert_landed_or_logged_what_is_missing(done)
     minor = int(library.split("libpython3.")[1].split(".")[0])
     compiled = minor >= 11 if sys.version_info >= (3, 11) else minor == 10
     assert done.stdout.splitlines()[-1] == ("compiled core" if compiled else "pure core")
@@ -83,7 +85,7 @@ def test_a_c_host_lands_like_landing_with_every_python_of_the_machine(land, libr
 
 def test_fifty_c_hosts_in_a_row_end_well_without_any_variable_set(land):
     for _ in range(50):
-        assert_landed_or_said_what_it_lacks(land(steps=5), steps=5)
+        assert_landed_or_logged_what_is_missing(land(steps=5), steps=5)
 
 
 @pytest.mark.parametrize(
@@ -96,7 +98,7 @@ def test_folders_may_have_any_name(land, unpacked, tmp_path, name, escaped):
     done = land(
         folder, (folder / "resources").as_uri() if escaped else str(folder / "resources"), steps=20
     )
-    assert_landed_or_said_what_it_lacks(done, steps=20)
+    assert_landed_or_logged_what_is_missing(done, steps=20)
     left = Path("/tmp").glob("rlv_landing_*/resources")
     assert [
         link for link in left if link.is_symlink() and link.readlink() == folder / "resources"
@@ -105,7 +107,7 @@ def test_folders_may_have_any_name(land, unpacked, tmp_path, name, escaped):
 
 @pytest.mark.parametrize("form", ["file://{}", "file:{}", "file://localhost{}", "{}"])
 def test_the_resources_may_be_named_in_every_usual_form(land, unpacked, form):
-    assert_landed_or_said_what_it_lacks(
+    assert_landed_or_logged_what_is_missing(
         land(uri=form.format(unpacked / "resources"), steps=5), steps=5
     )
 
@@ -113,7 +115,10 @@ def test_the_resources_may_be_named_in_every_usual_form(land, unpacked, form):
 def test_wrong_resources_are_an_error_that_names_them(land):
     done = land(uri="file:///nowhere/resources")
     assert done.returncode == 1
-    reason = "fmuResourceLocation does not name the FMU's resources (no slavemodule.txt there): file:///nowhere/resources"
+    reason = (
+        "fmuResourceLocation does not name the FMU's resources (no slavemodule.txt there): "
+        "file:///nowhere/resources"
+    )
     assert f"log 3 logStatusError land: {reason}" in done.stdout
 
 
@@ -129,8 +134,8 @@ def test_a_bad_library_is_an_error_that_names_it_and_the_remedy(land, library, f
     done = land(RLV_LANDING_LIBPYTHON=library)
     assert done.returncode == 1
     assert (
-        f"{MISSING}; RLV_LANDING_LIBPYTHON = {library}: {fault}; set RLV_LANDING_LIBPYTHON to the path of one"
-        in done.stdout
+        f"{MISSING}; RLV_LANDING_LIBPYTHON = {library}: {fault}; "
+        "set RLV_LANDING_LIBPYTHON to the path of one" in done.stdout
     )
 
 
@@ -144,13 +149,14 @@ def test_a_bad_library_is_an_error_that_names_it_and_the_remedy(land, library, f
     ],
 )
 def test_the_hosts_environment_does_not_reach_the_fmus_python(land, environment):
-    assert_landed_or_said_what_it_lacks(land(steps=5, **environment), steps=5)
+    assert_landed_or_logged_what_is_missing(land(steps=5, **environment), steps=5)
 
 
 @pytest.fixture
-def dying_venv(tmp_path) -> Path:
-    """A venv whose site-packages end every Python that reads them: what a `.pth` that starts Python
-    anew does to an embedded Python.
+def venv_that_ends_python(tmp_path) -> Path:
+    """A venv whose site-packages end every Python that reads them.
+
+    A `.pth` file that starts Python anew does that to an embedded Python.
     """
     venv = tmp_path / "venv"
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(venv)], check=True)
@@ -160,17 +166,18 @@ def dying_venv(tmp_path) -> Path:
     return venv
 
 
-def test_a_pth_that_ends_or_restarts_python_does_not_reach_the_host(land, dying_venv):
-    for venv in (dying_venv, Path(sys.prefix)):
+def test_a_pth_that_ends_or_restarts_python_does_not_reach_the_host(land, venv_that_ends_python):
+    for venv in (venv_that_ends_python, Path(sys.prefix)):
         path = f"{venv}/bin{os.pathsep}{BARE['PATH']}"
-        assert_landed_or_said_what_it_lacks(
+        assert_landed_or_logged_what_is_missing(
             land(steps=5, PATH=path, VIRTUAL_ENV=str(venv)), steps=5
         )
 
 
 def test_the_library_of_python3_on_path_is_the_last_resort(land, unpacked, tmp_path):
-    """Where the FMU was not built, and the loader knows no usable libpython: pyenv's and conda's
-    are not where it looks.
+    """Without a recorded libpython, and without one that the loader finds.
+
+    The loader does not look where pyenv and conda put theirs.
     """
     folder, empty, shims = tmp_path / "fmu", tmp_path / "empty", tmp_path / "shims"
     shutil.copytree(unpacked, folder)
@@ -186,7 +193,7 @@ def test_the_library_of_python3_on_path_is_the_last_resort(land, unpacked, tmp_p
     done = land(
         folder, steps=5, LD_LIBRARY_PATH=str(empty), PATH=f"{shims}{os.pathsep}{BARE['PATH']}"
     )
-    assert_landed_or_said_what_it_lacks(done, steps=5)
+    assert_landed_or_logged_what_is_missing(done, steps=5)
     without = land(folder, steps=5, LD_LIBRARY_PATH=str(empty), PATH="/nowhere")
     assert without.returncode == 1
     assert "RLV_LANDING_LIBPYTHON: not set; the loader's libpython3." in without.stdout

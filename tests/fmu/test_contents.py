@@ -1,6 +1,4 @@
-"""What the FMU file holds: nothing that is not needed, licences, a page that stands alone, the same
-bytes from the same sources.
-"""
+"""Contents of the FMU file: needed files only, licences, documentation, reproducible bytes."""
 
 from __future__ import annotations
 
@@ -32,7 +30,7 @@ def archive(fmu: Path) -> ZipFile:
 
 @pytest.fixture(scope="module")
 def page(archive: ZipFile):
-    """The page, as a reader of XML finds it."""
+    """The documentation page, parsed as XML."""
     return etree.fromstring(archive.read(PAGE).replace(b"<!DOCTYPE html>", b""))
 
 
@@ -193,19 +191,19 @@ DATE = "from fmu_build import build; print(build.source_date().isoformat())"
 def test_date_is_that_of_the_environment_else_of_the_last_commit_else_a_constant(
     tmp_path, committed, epoch, expected
 ):
-    done = source_date(tmp_path, committed, epoch)
+    done = source_date(tmp_path, committed=committed, epoch=epoch)
     assert (done.returncode, done.stdout.strip()) == (0, expected), done.stderr
 
 
 @pytest.mark.parametrize("epoch", ["yesterday", "-5", "1e9", "99999999999"])
 def test_bad_source_date_is_refused_with_what_to_do(tmp_path, epoch):
-    done = source_date(tmp_path, True, epoch)
+    done = source_date(tmp_path, committed=True, epoch=epoch)
     assert done.returncode == 1
     assert done.stderr.startswith(f"error: SOURCE_DATE_EPOCH = {epoch!r}")
     assert "leave it out" in done.stderr
 
 
-def source_date(folder: Path, committed: bool, epoch: str) -> subprocess.CompletedProcess[str]:
+def source_date(folder: Path, *, committed: bool, epoch: str) -> subprocess.CompletedProcess[str]:
     """The date that a copy of the build scripts finds in `folder`, a git repository or none."""
     shutil.copytree(
         ROOT / "fmu_src" / "fmu_build",

@@ -1,4 +1,4 @@
-"""The FMU through FMPy: its description, its numbers, its state, and what it refuses."""
+"""The FMU in FMPy: variables, numbers, states, and what it refuses."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ FIGURES = "yue2022-figures"
 
 
 def drop_values(mode: str) -> dict[str, float | str]:
-    """What an importer sets to get the drop test of `mode`."""
+    """The `drop.*` values that an importer sets for the drop test of `mode`."""
     return {
         name: value
         for name, value in load_preset(FIGURES, mode).items()
@@ -189,15 +189,17 @@ slave.setup_experiment(0.0, None, None)
 slave.exit_initialization_mode()
 for k in range(130):
     assert slave.do_step(k * 1e-3, 1e-3)
-third_party = sorted(m for m in sys.modules if m.split(".")[0] in ("numpy", "scipy", "click", "pint", "rlv_landing"))
+packages = ("numpy", "scipy", "click", "pint", "rlv_landing")
+third_party = sorted(m for m in sys.modules if m.split(".")[0] in packages)
 print(third_party, " ".join(v.hex() for v in slave.get_real(slave._output_references)))
 """
 
 
 @pytest.mark.parametrize("pure", ["0", "1"])
 def test_the_fmu_needs_no_package_of_the_host_and_falls_back_to_the_pure_core(fmu, tmp_path, pure):
-    """A Python without site-packages runs the slave; compiled and pure core give `Landing`'s
-    digits.
+    """A Python without site-packages runs the slave.
+
+    Compiled and pure core give `Landing`'s digits.
     """
     fmpy.extract(str(fmu), str(tmp_path))
     environment = {**os.environ, "RLV_LANDING_PURE": pure}

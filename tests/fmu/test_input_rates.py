@@ -1,4 +1,4 @@
-"""Inputs that go on linearly between communication points: fmi2SetRealInputDerivatives."""
+"""Inputs that change linearly between communication points: fmi2SetRealInputDerivatives."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def assert_equal_at_every_step(instance, landing, steps, first=0):
 @pytest.mark.parametrize("looked_at", [False, True])
 @pytest.mark.parametrize("rate_first", [False, True])
 def test_a_rate_acts_as_on_landing_in_whatever_order_it_is_given(instance, rate_first, looked_at):
-    """Whether or not outputs, in which inputs show at once, are got in between."""
+    """Also if outputs, which inputs change at once, are read in between."""
     landing = Landing()
     instance.start()
     for k in range(40):

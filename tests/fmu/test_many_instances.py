@@ -1,4 +1,4 @@
-"""Many instances: in threads, in any order of life, one after the other."""
+"""Many instances: in threads, in any order of creation and release, one after the other."""
 
 from __future__ import annotations
 
@@ -19,8 +19,10 @@ SEEN = ("body.x", "body.y", "body.pitch")
 
 @pytest.fixture
 def run(host, unpacked, description):
-    """Runs a C host with an environment of its own, or of a Python library; None where this machine
-    has no such library.
+    """Run a C host in a clean environment and return its output.
+
+    `library` names the Python library to use. On a machine without any the host must fail with exit
+    code 1.
     """
 
     def hosted(name: str, *arguments: object, library: str = "") -> str:

@@ -1,5 +1,6 @@
-"""The FMU's whole state: taken, restored, turned to bytes, taken up by another process, and bytes
-that are no state.
+"""The FMU's state: get, set, serialise, and restore in another process.
+
+Bytes that are no state are refused.
 """
 
 from __future__ import annotations

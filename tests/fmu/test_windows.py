@@ -1,5 +1,6 @@
-"""The FMU's Windows library, read by objdump: the front where mingw-w64 is on this machine, else
-pythonfmu's own.
+"""The FMU's Windows library, read by objdump.
+
+It is the front if mingw-w64 is installed, else pythonfmu's own DLL.
 """
 
 import re
@@ -13,7 +14,7 @@ import pythonfmu
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 OF_WINDOWS = {"kernel32.dll", "advapi32.dll", "shell32.dll", "msvcrt.dll", "ucrtbase.dll"}
-STOCK = (
+PYTHONFMUS_DLL = (
     Path(pythonfmu.__file__).parent / "resources" / "binaries" / "win64" / "pythonfmu-export.dll"
 )
 
@@ -28,11 +29,11 @@ def fmu_binary(monkeypatch):
 
 @pytest.fixture
 def files(unpacked, tmp_path) -> Path:
-    """What pythonfmu gives the build: its own binaries, its description."""
+    """The files that pythonfmu gives the build: its own binaries and a description."""
     for folder, suffix in (("linux64", ".so"), ("win64", ".dll")):
         (tmp_path / "binaries" / folder).mkdir(parents=True)
-        stock = next((STOCK.parent.parent / folder).glob(f"*{suffix}"))
-        shutil.copy(stock, tmp_path / "binaries" / folder / f"RlvLanding{suffix}")
+        own = next((PYTHONFMUS_DLL.parent.parent / folder).glob(f"*{suffix}"))
+        shutil.copy(own, tmp_path / "binaries" / folder / f"RlvLanding{suffix}")
     (tmp_path / "resources").mkdir()
     shutil.copy(unpacked / "modelDescription.xml", tmp_path)
     return tmp_path
@@ -53,7 +54,9 @@ def test_without_mingw_the_windows_library_is_pythonfmus_own(fmu_binary, files, 
     monkeypatch.setattr(fmu_binary, "MINGW", "no-such-compiler")
     fmu_binary.replace_binaries(files)
     assert [p.name for p in (files / "binaries" / "win64").iterdir()] == ["RlvLanding.dll"]
-    assert (files / "binaries" / "win64" / "RlvLanding.dll").read_bytes() == STOCK.read_bytes()
+    assert (
+        files / "binaries" / "win64" / "RlvLanding.dll"
+    ).read_bytes() == PYTHONFMUS_DLL.read_bytes()
 
 
 def test_windows_library_exports_what_linuxs_does_and_needs_windows_only(fmu_binary, files):
@@ -78,7 +81,7 @@ def test_windows_library_exports_what_linuxs_does_and_needs_windows_only(fmu_bin
     assert exports == of_linux
     assert needs <= OF_WINDOWS
     beside = [p for p in (files / "binaries" / "win64").iterdir() if p.name != "RlvLanding.dll"]
-    assert [p.read_bytes() for p in beside] == [STOCK.read_bytes()]
+    assert [p.read_bytes() for p in beside] == [PYTHONFMUS_DLL.read_bytes()]
     assert beside[0].name.encode() in (files / "binaries" / "win64" / "RlvLanding.dll").read_bytes()
 
 
@@ -86,7 +89,7 @@ def test_the_front_for_windows_compiles_without_a_warning_or_names_the_missing_c
     fmu_binary, unpacked, tmp_path, monkeypatch
 ):
     root = ElementTree.parse(unpacked / "modelDescription.xml").getroot()
-    (tmp_path / "variables.h").write_text(fmu_binary.variables_header(root, "stock.dll"))
+    (tmp_path / "variables.h").write_text(fmu_binary.variables_header(root, "pythonfmu.dll"))
     monkeypatch.setattr(fmu_binary, "FLAGS", [*fmu_binary.FLAGS, "-Werror", "-Wpedantic"])
     if shutil.which(fmu_binary.MINGW) is None:
         with pytest.raises(FileNotFoundError, match=fmu_binary.MINGW):

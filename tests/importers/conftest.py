@@ -24,14 +24,15 @@ Landed = Callable[..., np.ndarray]
 
 @pytest.fixture
 def landed_by(fmu: Path, ecos_environment: dict[str, str], tmp_path: Path) -> Landed:
-    """`landed_by(host, job, outputs, file)`: the rows that `hosts/with_HOST.py` gives of the FMU
-    `file`, by default the built one.
+    """Land the FMU in an importer; return the rows of `hosts/with_HOST.py`.
+
+    Call it as `landed_by(host, job, outputs, file)`; `file` is the built FMU by default.
     """
 
     def run(
         name: str, job: Job, outputs: Sequence[str] = OUTPUT_NAMES, file: Path = fmu
     ) -> np.ndarray:
-        (tmp_path / "job.json").write_text(json.dumps(job.told(outputs)), encoding="utf-8")
+        (tmp_path / "job.json").write_text(json.dumps(job.as_json(outputs)), encoding="utf-8")
         environment = ecos_environment
         if name == "cofmupy":
             assert COFMUPY.is_dir(), f"{COFMUPY} is missing: run make build/cofmupy/.packages"

@@ -1,6 +1,4 @@
-"""The landings that every importer is asked for, and what `Landing` makes of them at the importer's
-own communication points.
-"""
+"""The landings that every importer runs, and `Landing`'s numbers at its communication points."""
 
 from __future__ import annotations
 
@@ -15,8 +13,9 @@ from rlv_landing.quantities import OUTPUT_NAMES, OUTPUT_QUANTITIES
 
 @dataclass(frozen=True)
 class Job:
-    """A landing with these parameters; the inputs are 0 up to the end of step `inputs_after`, and
-    constant from there.
+    """A landing with these parameters.
+
+    The inputs are 0 up to the end of step `inputs_after`, and constant from there.
     """
 
     parameters: dict[str, float | str] = field(default_factory=dict)
@@ -25,15 +24,15 @@ class Job:
     step: float = 1e-3
     steps: int = 1000
 
-    def told(self, outputs: Sequence[str] = OUTPUT_NAMES) -> dict[str, object]:
-        """What a host is told."""
+    def as_json(self, outputs: Sequence[str] = OUTPUT_NAMES) -> dict[str, object]:
+        """The job for a host, as `hosts/job.py` describes it."""
         return {
             **asdict(self),
             "outputs": {q.name: q.kind for q in OUTPUT_QUANTITIES if q.name in outputs},
         }
 
-    def landed(self, times: np.ndarray) -> np.ndarray:
-        """All outputs of `Landing` at `times`, the ends of the steps, a row each."""
+    def expected(self, times: np.ndarray) -> np.ndarray:
+        """`Landing`'s outputs, one row for each of `times` [s], the ends of the steps."""
         landing = Landing(Parameters().with_values(self.parameters))
         rows = []
         for k, time in enumerate(times, start=1):
@@ -53,7 +52,7 @@ def drop_of(mode: str) -> dict[str, float | str]:
     }
 
 
-# heave and tilt are set in the flight: the deck has moved before the first footpad meets it
+# heave and tilt are set in flight: the deck has moved before the first footpad touches it
 LOADS_AND_DECK = {
     "external.force_x": 400.0,
     "external.moment": 30.0,
@@ -70,12 +69,13 @@ JOBS = {
 def assert_same(
     result: np.ndarray, job: Job, outputs: Sequence[str] = OUTPUT_NAMES, rounding: float = 0.0
 ) -> None:
-    """`result` (time, outputs) is the job's landing within 1e-9 of each quantity's largest value,
-    and a text writer's `rounding`.
+    """`result` (time, outputs) is the job's landing within 1e-9 of each quantity's largest value.
+
+    `rounding` is added for importers that write texts.
     """
     assert result.shape == (job.steps, 1 + len(outputs))
     assert np.allclose(result[:, 0], np.arange(1, job.steps + 1) * job.step, rtol=0.0, atol=1e-9)
-    expected = dict(zip(OUTPUT_NAMES, job.landed(result[:, 0]).T))
+    expected = dict(zip(OUTPUT_NAMES, job.expected(result[:, 0]).T))
     largest = {name: np.abs(values).max() for name, values in expected.items()}
     largest["energy.balance"] = largest["energy.kinetic"]  # what rounding leaves of energies
     for name, column in zip(outputs, result[:, 1:].T):

@@ -1,5 +1,6 @@
-"""The FMU in importers that share no code with each other: the trajectory of `Landing` from each,
-parameters and inputs set.
+"""The FMU in importers that share no code: each gives the trajectory of `Landing`.
+
+Parameters and inputs are set.
 """
 
 import subprocess
@@ -13,11 +14,12 @@ from jobs import JOBS, SLIPPERY, Job, assert_same
 
 from rlv_landing.quantities import OUTPUT_QUANTITIES
 
+SCENARIO_NAMESPACE = "http://github.com/Ecos-platform/libecos/resources/schema/ScenarioConfig"
 REALS = [q.name for q in OUTPUT_QUANTITIES if q.kind == "real"]
 
 
 def fmutool(*options: str) -> str:
-    """What `fmutool` says; it must succeed."""
+    """Output of `fmutool`, which must succeed."""
     done = subprocess.run(
         [str(Path(sys.executable).parent / "fmutool"), *options],
         capture_output=True,
@@ -61,8 +63,9 @@ def test_ecos_command_line_a_cpp_program_gives_landings_trajectory(
         for name, value in job.inputs.items()
     )
     (tmp_path / "inputs.xml").write_text(
-        '<ecos:Scenario xmlns:ecos="http://github.com/Ecos-platform/libecos/resources/schema/ScenarioConfig">'
-        f'<ecos:action t="{job.inputs_after * job.step!r}" eps="1e-6">{settings}</ecos:action></ecos:Scenario>',
+        f'<ecos:Scenario xmlns:ecos="{SCENARIO_NAMESPACE}">'
+        f'<ecos:action t="{job.inputs_after * job.step!r}" eps="1e-6">{settings}</ecos:action>'
+        "</ecos:Scenario>",
         encoding="utf-8",
     )
     options = (
@@ -93,6 +96,6 @@ def test_two_landings_in_one_fmucontainer_do_not_mix(landed_by, job):
 
 
 def test_fmutool_check_finds_nothing(fmu):
-    said = fmutool("-input", str(fmu), "-check")
-    assert "This FMU seems to be compliant with FMI-2.0" in said
-    assert "No semantic error against the FMI-2 standard" in said
+    output = fmutool("-input", str(fmu), "-check")
+    assert "This FMU seems to be compliant with FMI-2.0" in output
+    assert "No semantic error against the FMI-2 standard" in output

@@ -1,10 +1,9 @@
-"""The same vehicle in MuJoCo, with linear struts: its own multibody dynamics and, where asked for,
-its own contact.
+"""The same vehicle in MuJoCo, with linear struts and MuJoCo's own multibody dynamics.
 
-The legs are built as the mechanism is, not as the kernels' coordinates are: the footpad is a body
-on a hinge at the auxiliary strut's joint and on a slide along that strut (spring and damper), so
-the transverse force is the hinge's. The main strut is a tendon from its joint to the footpad. The
-stage is free in space. Axes are the model's: y up, z = x cross y, pitch clockwise positive.
+The legs are built like the mechanism, not like the kernels' coordinates. A footpad is a body on a
+hinge at the auxiliary strut's joint and on a slide along that strut (spring and damper), so the
+transverse force is the hinge's. The main strut is a tendon from its joint to the footpad. The stage
+is free in space. Axes are the model's: y up, z = x cross y, pitch clockwise positive.
 """
 
 from __future__ import annotations
@@ -28,24 +27,28 @@ NAMES = ("x", "y", "z", "pitch", "stroke", "main_force", "aux_force")
 
 
 def linear_struts(parameters: Parameters) -> Parameters:
-    """The parameters with struts that are linear springs and dampers, as nearly as the kernels'
-    laws can be.
+    """The parameters with struts that are almost linear springs and dampers.
 
-    Main strut: two large chambers of almost equal area A, so that a steady stroke only squeezes the
-    area difference dA into the liquid, K = dA^2 B/(V1 + V2), and a moving one drives A v through an
-    orifice in its laminar range, C = A^2 sqrt(dP_lam rho/2)/(Cd Ao). What is left: the liquid
+    The main strut has two large chambers of almost equal area A. A steady stroke only squeezes the
+    area difference dA into the liquid: K = dA^2 B/(V1 + V2). A moving one drives A v through an
+    orifice in its laminar range: C = A^2 sqrt(dP_lam rho/2)/(Cd Ao). Deviations remain: the liquid
     stiffens by 6e-4 at 30 mm, the damper lags by C V/(2 A^2 B) = 2e-5 s, and the stop at full
-    extension cannot be softer than 1 kN/m (4e-3 of the spring, only in tension). Ambient pressure
-    10 MPa, so that nothing cavitates.
+    extension cannot be softer than 1 kN/m (4e-3 of the spring, only in tension). The ambient
+    pressure is 10 MPa, so that nothing cavitates.
     """
     area, volume, modulus, pressure, density = 0.02, 0.05, 1e10, 1e7, 1000.0
     difference = sqrt(STIFFNESS * 2.0 * volume / modulus)
     orifice = area**2 * sqrt(pressure * density / 2.0) / DAMPING
     main = {
-        "area_upper": area - 0.5 * difference, "area_lower": area + 0.5 * difference, "volume_upper": volume, "volume_lower": volume,
-        "charge_pressure": 1e7, "ambient_pressure": 1e7, "fluid_density": density, "air_fraction": 1e-7, "bulk_modulus": modulus,
-        "bulk_modulus_slope": 1.5, "orifice_area_compression": orifice, "orifice_area_rebound": orifice, "laminar_pressure": pressure,
-        "seal_coulomb": 0.0, "seal_stribeck": 0.0, "seal_pressure": 0.0, "stroke_max": 0.2, "stop_stiffness": 1e3, "stop_damping": 0.0,
+        "area_upper": area - 0.5 * difference, "area_lower": area + 0.5 * difference,
+        "volume_upper": volume, "volume_lower": volume,
+        "charge_pressure": 1e7, "ambient_pressure": 1e7,
+        "fluid_density": density, "air_fraction": 1e-7,
+        "bulk_modulus": modulus, "bulk_modulus_slope": 1.5,
+        "orifice_area_compression": orifice, "orifice_area_rebound": orifice,
+        "laminar_pressure": pressure,
+        "seal_coulomb": 0.0, "seal_stribeck": 0.0, "seal_pressure": 0.0,
+        "stroke_max": 0.2, "stop_stiffness": 1e3, "stop_damping": 0.0,
     }  # fmt: skip
     return parameters.with_values(
         {
@@ -62,8 +65,13 @@ def _text(*numbers: float) -> str:
 def build(
     parameters: Parameters, timestep: float, contact: tuple[float, float] | None = None
 ) -> mujoco.MjModel:
-    """The vehicle; `contact` (time constant [s], damping ratio) turns MuJoCo's own contact and
-    Coulomb friction on.
+    """MuJoCo's model of the vehicle.
+
+    Args:
+        parameters: Vehicle, struts, ground and drop mode.
+        timestep: Time step [s].
+        contact: Time constant [s] and damping ratio of MuJoCo's own contact with Coulomb friction;
+            no contact if None.
     """
     v, m, a, g = (
         parameters.vehicle,
@@ -85,14 +93,16 @@ def build(
       <site name="top{i}" pos="{_text(*at(m.joint_radius, -m.joint_depth))}"/>
       <body name="foot{i}" pos="{_text(*foot)}">
         <inertial pos="0 0 0" mass="{v.footpad_mass!r}" diaginertia="1e-9 1e-9 1e-9"/>
-        <joint name="hinge{i}" type="hinge" axis="{_text(-s, 0.0, c)}" pos="{_text(*(joint - foot))}"/>
+        <joint name="hinge{i}" type="hinge" axis="{_text(-s, 0.0, c)}"
+               pos="{_text(*(joint - foot))}"/>
         <joint name="slide{i}" type="slide" axis="{_text(*((joint - foot) / a.length))}"
                stiffness="{a.stiffness!r}" damping="{a.damping!r}"/>
         <site name="foot{i}"/>
         <geom type="sphere" size="{RADIUS}" contype="{int(contact is not None)}" conaffinity="0"/>
       </body>"""
         tendons += f"""
-    <spatial name="main{i}" stiffness="{STIFFNESS!r}" damping="{DAMPING!r}" springlength="{m.length!r}">
+    <spatial name="main{i}" stiffness="{STIFFNESS!r}" damping="{DAMPING!r}"
+             springlength="{m.length!r}">
       <site site="top{i}"/><site site="foot{i}"/>
     </spatial>"""
     time_constant, ratio = contact or (1e-3, 1.0)
@@ -100,14 +110,19 @@ def build(
     return mujoco.MjModel.from_xml_string(f"""
 <mujoco>
   <compiler angle="radian"/>
-  <option gravity="{_text(0.0, -g.gravity, 0.0)}" timestep="{timestep}" integrator="{method}" cone="elliptic"
-          impratio="20" tolerance="1e-12"/>
-  <default><geom friction="{g.friction!r} 0 0" solref="{_text(time_constant, ratio)}" solimp="0.95 0.95 0.001" condim="3"/></default>
+  <option gravity="{_text(0.0, -g.gravity, 0.0)}" timestep="{timestep}" integrator="{method}"
+          cone="elliptic" impratio="20" tolerance="1e-12"/>
+  <default>
+    <geom friction="{g.friction!r} 0 0" solref="{_text(time_constant, ratio)}"
+          solimp="0.95 0.95 0.001" condim="3"/>
+  </default>
   <worldbody>
-    <geom name="ground" type="plane" size="0 0 1" zaxis="{_text(*normal)}" pos="{_text(*(-RADIUS * normal))}" contype="0" conaffinity="1"/>
+    <geom name="ground" type="plane" size="0 0 1" zaxis="{_text(*normal)}"
+          pos="{_text(*(-RADIUS * normal))}" contype="0" conaffinity="1"/>
     <body name="stage">
       <freejoint/>
-      <inertial pos="0 0 0" mass="{v.mass!r}" diaginertia="{_text(v.inertia, 40.0, v.inertia)}"/>{legs}
+      <inertial pos="0 0 0" mass="{v.mass!r}"
+                diaginertia="{_text(v.inertia, 40.0, v.inertia)}"/>{legs}
     </body>
   </worldbody>
   <tendon>{tendons}
@@ -116,8 +131,9 @@ def build(
 
 
 def ground_law(parameters: Parameters, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-    """Our frictionless ground with a linear spring as a passive force on the footpads, worked out
-    from MuJoCo's own kinematics.
+    """Apply the model's ground law, linear and frictionless, as a passive force on the footpads.
+
+    Depth and speed are computed from MuJoCo's own kinematics.
     """
     g = parameters.ground
     normal = np.array([np.sin(g.slope), np.cos(g.slope), 0.0])
@@ -139,21 +155,27 @@ def land(
     until: float,
     timestep: float,
     contact: tuple[float, float] | None = None,
-    force: tuple[float, float] = (0.0, 0.0),
-    moment: float = 0.0,
+    load: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> dict[str, Array]:
-    """Motion and loads every millisecond, and the time of each footpad's `first_touch` (inf without
-    one).
+    """Land; return motion and loads every millisecond.
 
-    `body` is (x, y, pitch, vx, vy, pitch rate) at time 0, with the legs at full length and at rest
-    in it. With `contact` the ground is MuJoCo's, without it the footpads feel `ground_law`.
+    Args:
+        parameters: Vehicle, struts, ground and drop mode.
+        body: (x, y, pitch, vx, vy, pitch rate) at time 0; the legs are at full length and at rest.
+        until: End [s].
+        timestep: Time step [s].
+        contact: As for `build`; if None, `ground_law` acts on the footpads.
+        load: Inertial force x and y [N] at the CG, and clockwise moment [N m].
+
+    Returns:
+        Arrays by name, and the time of each footpad's `first_touch` [s], inf if there is none.
     """
     model = build(parameters, timestep, contact)
     data = mujoco.MjData(model)
     x, y, pitch, vx, vy, rate = body
     data.qpos[:7] = [x, y, 0.0, np.cos(-0.5 * pitch), 0.0, 0.0, np.sin(-0.5 * pitch)]
     data.qvel[:6] = [vx, vy, 0.0, 0.0, 0.0, -rate]
-    data.xfrc_applied[model.body("stage").id] = [*force, 0.0, 0.0, 0.0, -moment]
+    data.xfrc_applied[model.body("stage").id] = [*load[:2], 0.0, 0.0, 0.0, -load[2]]
     slides = [model.joint(f"slide{i}") for i in range(4)]
     legs = [(j.qposadr[0], j.dofadr[0]) for j in slides]
     a = parameters.auxiliary_strut

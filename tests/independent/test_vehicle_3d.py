@@ -1,5 +1,4 @@
-"""The landing against a full three-dimensional Newton-Euler model of the same vehicle that shares
-no code with it.
+"""The landing against a 3-D Newton-Euler model of the vehicle that shares no code with it.
 
 First without any solver in between: accelerations, pressure rates and friction rates at random
 states, to rounding. Then whole landings, each model with a solver of its own.
@@ -45,11 +44,10 @@ def leg_at(group: int) -> int:
 def random_state(
     rng: np.random.Generator, mode: str, model: Vehicle3D, upright: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The same violent symmetric state for both models: (the kernels', the 3-D one's), footpads
-    some millimetres in or above the ground.
+    """The same violent symmetric state for both models: (the kernels', the 3-D one's).
 
-    `upright` is the slope of the ground now: the body's height is chosen so that one footpad is
-    near it.
+    The footpads are some millimetres in or above the ground. `upright` is the slope of the ground
+    now: the body's height is chosen so that one footpad is near it.
     """
     groups = max(g for g, _ in GROUPS[mode]) + 1
     y = np.zeros(leg_at(groups) + access.ACCOUNTS)
@@ -156,11 +154,11 @@ def test_accelerations_and_rates_are_the_same_at_random_states_to_rounding(
 
 
 def test_the_three_dimensional_model_itself_obeys_newton_and_euler() -> None:
-    """At random states, rolled and yawed: d(momentum)/dt and d(angular momentum)/dt by differences
-    are the forces and moments from outside.
+    """The rates of momentum and angular momentum are the forces and moments from outside.
 
-    The witness is itself examined by what needs no model: the sums over its particles and its
-        body."""
+    At random states, rolled and yawed, with rates by differences. This examines the 3-D model by
+    sums over its particles and its body, which need no model.
+    """
     rng = np.random.default_rng(8)
     parameters = (
         load_preset(FIGURES, "1-2-1")
@@ -246,17 +244,19 @@ LANDINGS = {
 def both_ways(
     mode: str, values: dict[str, Any], loads: Inputs, until: float, rtol: float
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The same landing by the kernels and by the 3-D model with scipy's DOP853, every millisecond,
-    under the same names.
+    """The same landing by the kernels and by the 3-D model with scipy's DOP853.
+
+    Both every millisecond, under the same names.
     """
     landing = Landing(load_preset(FIGURES, mode).for_mode(mode).with_values(values), rtol=1e-9)
     body = [landing.get(f"body.{name}") for name in BODY]
     model = Vehicle3D(landing.parameters, loads)
     landing.set_inputs(
         {
-            "external.force_x": loads.force[0], "external.force_y": loads.force[1], "external.moment": loads.moment,
-            "ground.heave": loads.heave, "ground.heave_rate": loads.heave_rate, "ground.tilt": loads.tilt,
-            "ground.tilt_rate": loads.tilt_rate,
+            "external.force_x": loads.force[0], "external.force_y": loads.force[1],
+            "external.moment": loads.moment,
+            "ground.heave": loads.heave, "ground.heave_rate": loads.heave_rate,
+            "ground.tilt": loads.tilt, "ground.tilt_rate": loads.tilt_rate,
         }
     )  # fmt: skip
     history = landing.run(until, 1e-3)
@@ -299,8 +299,9 @@ def test_a_landing_is_that_of_the_three_dimensional_model(name: str) -> None:
 
 
 def test_without_friction_a_landing_agrees_to_1e9_m(mode: str) -> None:
-    """Only contacts are left that are not smooth, so tight solvers show that the equations are the
-    same ones, not only alike.
+    """Without friction only the contacts are not smooth.
+
+    So tight solvers show that the equations are the same, not only similar.
     """
     ours, theirs = both_ways(
         mode,

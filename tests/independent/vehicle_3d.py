@@ -1,15 +1,14 @@
-"""The vehicle again, as a full three-dimensional Newton-Euler model: a second opinion that shares
-no code with the kernels.
+"""The vehicle as a full 3-D Newton-Euler model that shares no code with the kernels.
 
 A rigid body with six degrees of freedom (quaternion, full inertia about its axes) carries four
-separate legs. Each footpad is a point mass held in a plane fixed in the body by a transverse
+separate legs. Each footpad is a point mass, held in a plane fixed in the body by a transverse
 constraint force N. Nothing is eliminated by hand: Newton's law of the body (3), Euler's (3) and
-Newton's law of four footpads (12) are 18 linear equations for 18 unknowns, the accelerations of the
-body (3 + 3) and of the footpads in their planes (4 + 4), and N (4). They are solved as they stand,
-with all four legs on their own: no groups, no mirror images, no symmetric plane.
+Newton's law of four footpads (12) are 18 linear equations. The 18 unknowns are the accelerations of
+the body (3 + 3) and of the footpads in their planes (4 + 4), and N (4). They are solved as they
+are, with all four legs separate: no groups, no mirror images, no symmetric plane.
 
-Axes: inertial x, y up, z = x cross y; pitch is clockwise positive, so a pitch psi is a turn about z
-by -psi. SI units. Arrays of vectors are (3, 4): component, leg.
+Axes: inertial x, y up, z = x cross y. Pitch is clockwise positive, so a pitch psi is a rotation
+about z by -psi. SI units. Arrays of vectors are (3, 4): component, leg.
 """
 
 from __future__ import annotations
@@ -41,8 +40,10 @@ SCALE = np.concatenate(
 
 @dataclass(frozen=True)
 class Inputs:
-    """Loads on the body (inertial force [N], clockwise moment [N m]) and motion of the ground,
-    which goes on at its rates [m/s, rad/s].
+    """Loads on the body and motion of the ground.
+
+    `force` is inertial [N], `moment` clockwise positive [N m]. Heave and tilt change at their rates
+    [m/s, rad/s].
     """
 
     force: tuple[float, float] = (0.0, 0.0)
@@ -61,9 +62,7 @@ def cross(a: Sequence[Any] | Array, b: Sequence[Any] | Array) -> Array:
 
 
 def rotation(q: Array) -> Array:
-    """Body to inertial axes from the quaternion (w, x, y, z), which is brought to unit length
-    first.
-    """
+    """Body to inertial axes from the quaternion (w, x, y, z), which is normalised first."""
     w, x, y, z = q / np.sqrt((q * q).sum())
     return np.array(
         [
@@ -114,8 +113,9 @@ class Vehicle3D:
         self.calls = 0
 
     def _constant_part(self) -> Array:
-        """Coefficients of (a, spin', r'', h'', N) that do not depend on the state; rows: body's
-        Newton, Euler, footpads' Newton.
+        """Coefficients of (a, spin', r'', h'', N) that do not depend on the state.
+
+        The rows are the body's Newton, Euler, and the footpads' Newton equations.
         """
         A = np.zeros((18, 18))
         A[0:3, 0:3] = self.vehicle.mass * np.eye(3)
@@ -131,8 +131,9 @@ class Vehicle3D:
         return A
 
     def specific_volume(self, P: Array) -> tuple[Array, Array]:
-        """Specific volume of liquid and air relative to that at ambient pressure, and its slope
-        [1/Pa].
+        """Specific volume of liquid and air, and its slope [1/Pa].
+
+        It is relative to that at ambient pressure.
         """
         d = self.damper
         P = np.maximum(P, 1.0)
@@ -144,8 +145,9 @@ class Vehicle3D:
     def main_strut(
         self, s: Array, v: Array, upper: Array, lower: Array
     ) -> tuple[Array, Array, Array]:
-        """Axial force [N], compression positive, and rates of the two pressures, from the mass
-        balance of each chamber.
+        """Axial force [N], compression positive, and rates of the two pressures [Pa/s].
+
+        The rates come from the mass balance of each chamber.
         """
         d = self.damper
         volume, slope = self.specific_volume(np.array([upper, lower]))
@@ -185,8 +187,9 @@ class Vehicle3D:
         return q * q * (3.0 - 2.0 * q)
 
     def friction(self, d: Array, limit: Array, v: Array, s: Array) -> tuple[Array, Array]:
-        """Force along one direction of the ground and the displacement's rate; `limit` [N] is
-        coefficient times normal force.
+        """Force along one direction of the ground, and the displacement's rate.
+
+        `limit` [N] is coefficient times normal force.
         """
         g = self.ground
         s0 = g.stick_displacement
@@ -204,8 +207,9 @@ class Vehicle3D:
     def contact(
         self, t: float, place: Array, speed: Array, slip_x: Array, slip_z: Array
     ) -> tuple[Array, Array, Array, Array]:
-        """Force of the ground on the footpads (inertial axes), rates of both friction
-        displacements, penetration.
+        """Force of the ground on the footpads, rates of both friction displacements, penetration.
+
+        The force is in inertial axes.
         """
         g, u = self.ground, self.inputs
         angle = g.slope + u.tilt + u.tilt_rate * t
@@ -241,8 +245,9 @@ class Vehicle3D:
     def pull(
         self, joint: Array, length: float, rho: Array, rho_rate: Array
     ) -> tuple[Array, Array, Array]:
-        """Stroke, stroke rate (compression positive) and direction joint to footpad of a strut,
-        seen from the body.
+        """Stroke, stroke rate and direction of a strut, as seen from the body.
+
+        Stroke and rate are positive in compression; the direction points from joint to footpad.
         """
         line = rho - joint
         now = np.sqrt((line * line).sum(axis=0))
@@ -298,9 +303,12 @@ class Vehicle3D:
         b = np.concatenate((on_body, torque - gyroscopic, (on_feet - m * carried).T.ravel()))
         x = self.solve(A, b)
         return {
-            "rotation": R, "acceleration": R @ x[0:3], "spin_rate": x[3:6], "r_acc": x[6:10], "h_acc": x[10:14], "transverse": x[14:18],
-            "upper_rate": upper_rate, "lower_rate": lower_rate, "slip_x_rate": rate_x, "slip_z_rate": rate_z,
-            "main_force": Fm, "stroke": s, "stroke_rate": s_rate, "aux_force": Fa, "aux_stroke": sa, "place": place,
+            "rotation": R, "acceleration": R @ x[0:3], "spin_rate": x[3:6],
+            "r_acc": x[6:10], "h_acc": x[10:14], "transverse": x[14:18],
+            "upper_rate": upper_rate, "lower_rate": lower_rate,
+            "slip_x_rate": rate_x, "slip_z_rate": rate_z,
+            "main_force": Fm, "stroke": s, "stroke_rate": s_rate,
+            "aux_force": Fa, "aux_stroke": sa, "place": place,
             "ground": ground, "penetration": d,
         }  # fmt: skip
 
@@ -324,8 +332,9 @@ class Vehicle3D:
         )
 
     def start(self, body: Sequence[float]) -> Array:
-        """State with the legs at full length and at rest in the body; `body` is (x, y, pitch, vx,
-        vy, pitch rate).
+        """State with the legs at full length and at rest in the body.
+
+        `body` is (x, y, pitch, vx, vy, pitch rate).
         """
         x, y, pitch, vx, vy, rate = body
         a, b = self.main_joint[:, 0] @ self.e_r[:, 0], -self.damper.joint_depth
@@ -360,8 +369,10 @@ def pitch_of(q: Array) -> Array:
 def land(
     model: Vehicle3D, body: Sequence[float], times: Array, method: str, rtol: float
 ) -> dict[str, Array]:
-    """Integrate from time 0 with a scipy solver; body motion (n,) and legs (4, n) at `times`, signs
-    as the user sees them.
+    """Integrate from time 0 with a scipy solver.
+
+    Returns:
+        Body motion (n,) and legs (4, n) at `times`, signs as in the package's outputs.
     """
     done = solve_ivp(
         model,
@@ -377,7 +388,10 @@ def land(
     y = done.y
     legs = [model.evaluate(t, state) for t, state in zip(times, y.T)]
     return {
-        "x": y[0], "y": y[1], "z": y[2], "pitch": pitch_of(y[QUATERNION]), "roll_yaw": y[QUATERNION][1:3], "spin": y[SPIN],
-        "vz": y[VELOCITY][2], "main_force": -np.array([e["main_force"] for e in legs]).T, "stroke": np.array([e["stroke"] for e in legs]).T,
-        "aux_force": -np.array([e["aux_force"] for e in legs]).T, "ground": np.array([e["ground"] for e in legs]).transpose(1, 2, 0),
+        "x": y[0], "y": y[1], "z": y[2], "pitch": pitch_of(y[QUATERNION]),
+        "roll_yaw": y[QUATERNION][1:3], "spin": y[SPIN], "vz": y[VELOCITY][2],
+        "main_force": -np.array([e["main_force"] for e in legs]).T,
+        "stroke": np.array([e["stroke"] for e in legs]).T,
+        "aux_force": -np.array([e["aux_force"] for e in legs]).T,
+        "ground": np.array([e["ground"] for e in legs]).transpose(1, 2, 0),
     }  # fmt: skip

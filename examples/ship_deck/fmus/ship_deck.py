@@ -8,8 +8,9 @@ from described import DescribedSlave
 def sinusoid(
     time: float, amplitude: float, period: float, phase: float, start_up: float
 ) -> tuple[float, float]:
-    """Value and rate at `time` [s] of a sinusoid that fades in over `start_up` [s], with (1 -
-    cos)/2, so that value and rate start at 0.
+    """Value and rate at `time` [s] of a sinusoid that starts smoothly.
+
+    It fades in over `start_up` [s] with (1 - cos)/2, so that value and rate start at 0.
     """
     omega = 2.0 * pi / period
     wave, wave_rate = (
@@ -26,8 +27,9 @@ def sinusoid(
 
 
 class ShipDeck(DescribedSlave):
-    """Heave (up) and tilt (clockwise positive) of the deck with their rates: what `ground.*` of
-    RlvLanding takes.
+    """Heave (up) and tilt (clockwise positive) of the deck, with their rates.
+
+    They drive `ground.*` of RlvLanding.
     """
 
     def __init__(self, **kwargs):
@@ -47,13 +49,16 @@ class ShipDeck(DescribedSlave):
         self.output("tilt_rate", "rad/s", "rate of the tilt")
 
     def exit_initialization_mode(self):
+        """Set the outputs at time 0."""
         self.move(0.0)
 
     def do_step(self, current_time, step_size):
+        """Set the outputs at the end of the step."""
         self.move(current_time + step_size)
         return True
 
     def move(self, time: float) -> None:
+        """Set heave, tilt and their rates at `time` [s]."""
         self.heave, self.heave_rate = sinusoid(
             time, self.heave_amplitude, self.heave_period, self.heave_phase, self.start_up
         )

@@ -10,12 +10,41 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FUNCTIONS(X)                                                                                                                       \
-    X(GetTypesPlatform) X(GetVersion) X(SetDebugLogging) X(Instantiate) X(FreeInstance) X(SetupExperiment) X(EnterInitializationMode)      \
-    X(ExitInitializationMode) X(Terminate) X(Reset) X(GetReal) X(GetInteger) X(GetBoolean) X(GetString) X(SetReal) X(SetInteger)           \
-    X(SetBoolean) X(SetString) X(GetFMUstate) X(SetFMUstate) X(FreeFMUstate) X(SerializedFMUstateSize) X(SerializeFMUstate)                \
-    X(DeSerializeFMUstate) X(GetDirectionalDerivative) X(SetRealInputDerivatives) X(GetRealOutputDerivatives) X(DoStep) X(CancelStep)      \
-    X(GetStatus) X(GetRealStatus) X(GetIntegerStatus) X(GetBooleanStatus) X(GetStringStatus)
+#define FUNCTIONS(X) \
+    X(GetTypesPlatform) \
+    X(GetVersion) \
+    X(SetDebugLogging) \
+    X(Instantiate) \
+    X(FreeInstance) \
+    X(SetupExperiment) \
+    X(EnterInitializationMode) \
+    X(ExitInitializationMode) \
+    X(Terminate) \
+    X(Reset) \
+    X(GetReal) \
+    X(GetInteger) \
+    X(GetBoolean) \
+    X(GetString) \
+    X(SetReal) \
+    X(SetInteger) \
+    X(SetBoolean) \
+    X(SetString) \
+    X(GetFMUstate) \
+    X(SetFMUstate) \
+    X(FreeFMUstate) \
+    X(SerializedFMUstateSize) \
+    X(SerializeFMUstate) \
+    X(DeSerializeFMUstate) \
+    X(GetDirectionalDerivative) \
+    X(SetRealInputDerivatives) \
+    X(GetRealOutputDerivatives) \
+    X(DoStep) \
+    X(CancelStep) \
+    X(GetStatus) \
+    X(GetRealStatus) \
+    X(GetIntegerStatus) \
+    X(GetBooleanStatus) \
+    X(GetStringStatus)
 
 static struct {
 #define DECLARE(name) fmi2##name##TYPE *name;
@@ -23,7 +52,8 @@ static struct {
 #undef DECLARE
 } fmi2;
 
-static void print_log(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category, fmi2String message, ...)
+static void print_log(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,
+                      fmi2String category, fmi2String message, ...)
 {
     (void)environment;
     printf("log %d %s %s: ", status, category, name);
@@ -47,10 +77,10 @@ static void *load(const char *binary)
         fprintf(stderr, "%s\n", dlerror());
         exit(2);
     }
-#define FIND(name)                                                                                                                         \
-    if (!(*(void **)&fmi2.name = dlsym(library, "fmi2" #name))) {                                                                          \
-        fprintf(stderr, "no fmi2" #name "\n");                                                                                             \
-        exit(2);                                                                                                                           \
+#define FIND(name) \
+    if (!(*(void **)&fmi2.name = dlsym(library, "fmi2" #name))) { \
+        fprintf(stderr, "no fmi2" #name "\n"); \
+        exit(2); \
     }
     FUNCTIONS(FIND)
 #undef FIND
@@ -67,7 +97,8 @@ static inline void must(fmi2Status status, const char *what)
 
 static inline fmi2Component instantiate(const char *name, const char *resources, const char *guid)
 {
-    return fmi2.Instantiate(name, fmi2CoSimulation, guid, resources, &CALLBACKS, fmi2False, fmi2True);
+    return fmi2.Instantiate(name, fmi2CoSimulation, guid, resources, &CALLBACKS, fmi2False,
+                            fmi2True);
 }
 
 static inline void initialise(fmi2Component c)

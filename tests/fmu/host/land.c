@@ -1,8 +1,8 @@
-/* land BINARY RESOURCES GUID STEPS EVERY FIRST COUNT: lands in steps of 1 ms and prints the reals FIRST .. FIRST + COUNT - 1 every
- * EVERY steps, and at last which core it has used. */
+/* land BINARY RESOURCES GUID STEPS EVERY FIRST COUNT: lands in steps of 1 ms and prints the reals
+ * FIRST .. FIRST + COUNT - 1 every EVERY steps, and at last which core it has used. */
 #include "host.h"
 
-/* Whether the process has the compiled core in it. */
+/* True if the process has loaded the compiled core. */
 static int has_compiled_core(void)
 {
     char line[8192];

@@ -1,5 +1,6 @@
-/* many BINARY RESOURCES GUID COUNT STATE: makes, initialises, steps and frees COUNT instances one after the other; with STATE 1 each also takes
- * and frees a state. Prints how much memory [bytes] the process has taken for each of them, the first hundred left out. */
+/* many BINARY RESOURCES GUID COUNT STATE: makes, initialises, steps and frees COUNT instances one
+ * after the other; with STATE 1 each also takes and frees a state. Prints how much memory [bytes]
+ * the process has taken for each of them, the first hundred left out. */
 #include "host.h"
 
 #include <unistd.h>

@@ -1,5 +1,6 @@
-/* threads BINARY RESOURCES GUID THREADS INSTANCES FIRST COUNT: each thread makes instances and lands them in turns, all threads at once.
- * Prints the reals FIRST .. FIRST + COUNT - 1 of each instance after 120 steps of 1 ms. */
+/* threads BINARY RESOURCES GUID THREADS INSTANCES FIRST COUNT: each thread makes instances and
+ * lands them in turns, all threads at once. Prints the reals FIRST .. FIRST + COUNT - 1 of each
+ * instance after 120 steps of 1 ms. */
 #include "host.h"
 
 #include <pthread.h>

@@ -1,8 +1,8 @@
-"""What every host is told and gives back: `python with_HOST.py FMU JOB.json RESULT.npy`.
+"""Interface of every host: `python with_HOST.py FMU JOB.json RESULT.npy`.
 
-The job: `parameters` by name; `inputs` by name, 0 at first and set after the step `inputs_after`;
-`step` [s] and `steps`; `outputs`, name -> kind (real, integer, boolean). The result: a row a
-communication point after the start, its time and then the outputs.
+The job has `parameters` by name; `inputs` by name, 0 at first and set after the step
+`inputs_after`; `step` [s] and `steps`; `outputs`, name -> kind (real, integer, boolean). The result
+has a row for each communication point after the start: its time, then the outputs.
 """
 
 from __future__ import annotations

@@ -1,5 +1,6 @@
-"""Ecos by ecospy: a parameter set, inputs by `set_real`, outputs by `get_real`, `get_integer` and
-`get_bool`.
+"""Ecos by ecospy.
+
+A parameter set, inputs by `set_real`, outputs by `get_real`, `get_integer` and `get_bool`.
 """
 
 from ecospy import EcosSimulation, EcosSimulationStructure

@@ -1,8 +1,7 @@
-"""fmucontainer of fmu-manipulation-toolbox: two landings in one FMU, the job's and the default
-drop, landed side by side by FMPy.
+"""fmucontainer of fmu-manipulation-toolbox: two landings in one FMU, run by FMPy.
 
-The container's own outputs are `job.NAME` and `other.NAME`; the rows hold the job's and then the
-other's.
+One is the job's, the other the default drop. The container's outputs are `job.NAME` and
+`other.NAME`; the rows hold the job's and then the other's.
 """
 
 import json

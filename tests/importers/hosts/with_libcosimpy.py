@@ -1,5 +1,6 @@
-"""libcosim by libcosimpy: initial values of reals and strings, inputs by an override manipulator,
-outputs by an observer.
+"""libcosim by libcosimpy.
+
+Initial values of reals and strings, inputs by an override manipulator, outputs by an observer.
 """
 
 from job import host
@@ -34,7 +35,8 @@ def land(fmu, job):
     }
     wanted = [variables[name] for name in job["outputs"]]
     for k in range(1, job["steps"] + 1):
-        execution.step()  # returns False in libcosimpy 0.0.4, the last one for Python 3.10, even where the step is made
+        # libcosimpy 0.0.4, the last one for Python 3.10, returns False although the step is made
+        execution.step()
         assert execution.status().current_time == k * step
         values = {}
         for kind, read in readers.items():

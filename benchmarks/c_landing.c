@@ -1,8 +1,10 @@
-/* The landing written by hand in C: the same model, the same exponential method, the same step control as the core's.
+/* The landing written by hand in C: the same model, the same exponential method, the same step
+ * control as the core's.
  *
- * For benchmarks alone: it shows how far the compiled core is from what a C compiler makes of the model. Formulas stand in the order
- * of the core's, so that both take the same steps and give the same numbers but for the last digits; what each means is said there.
- * `yardstick.py` compiles it with -DPARAMETERS=..., the names of the model's numbers in the order in which it passes them.
+ * For benchmarks alone: it shows how far the compiled core is from what a C compiler makes of the
+ * model. The formulas are in the order of the core's, so both take the same steps and their numbers
+ * differ in the last digits only. The core documents them. `c_landing.py` compiles this file with
+ * -DPARAMETERS=..., the names of the model's numbers in the order in which it passes them.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +12,18 @@
 
 enum { X, Y, PITCH, VX, VY, PITCH_RATE, BODY };
 enum { R, H, VR, VH, P1, P2, SX, SZ, LEG };
-enum { E_ORIFICE, E_SEAL, E_STOP, E_AUXILIARY, E_CONTACT, E_FRICTION, W_EXTERNAL, W_GROUND, W_TRANSVERSE, INTEGRALS };
+enum {
+    E_ORIFICE,
+    E_SEAL,
+    E_STOP,
+    E_AUXILIARY,
+    E_CONTACT,
+    E_FRICTION,
+    W_EXTERNAL,
+    W_GROUND,
+    W_TRANSVERSE,
+    INTEGRALS
+};
 enum { FORCE_X, FORCE_Y, MOMENT, HEAVE, HEAVE_RATE, TILT, TILT_RATE, INPUTS };
 enum { MAX_GROUPS = 4, MAX_STATES = BODY + LEG * MAX_GROUPS + INTEGRALS };
 
@@ -25,14 +38,15 @@ typedef struct {
     double sin, cos, count, share_x;
 } Group;
 
-/* What one leg group does to the body and to its own states. */
+/* Effect of one leg group on the body and on its own states. */
 typedef struct {
     double radial, vertical, tangential, body_x, body_y, body_moment;
     double dP1, dP2, dsx, dsz, decay1, decay2;
     double orifice, seal, stop, auxiliary, contact, friction, ground;
 } Loads;
 
-/* Of one leg group: how fast its chambers even out, the driven rates of the stages, the weights of a step. */
+/* Of one leg group: decay rates of its chambers' pressure difference, the driven rates of the
+ * stages, the weights of a step. */
 typedef struct {
     double a1, a2, driven[5];
     double a21, a31, a32, a41, a43, b1, b23, b4;
@@ -53,42 +67,48 @@ typedef struct {
     double dense[4][MAX_STATES];
 } Landing;
 
-/* ---- the model ---- */
-
 typedef struct {
     double v, dv, h;
 } Fluid;
 
-static Fluid fluid(double P, const Parameters *p) {
-    if (P < 1.0) P = 1.0;
+static Fluid fluid(double P, const Parameters *p)
+{
+    if (P < 1.0)
+        P = 1.0;
     double a = 1.0 + p->kB * (P - p->Pa) / p->B0;
     double liquid = (1.0 - p->x_air) * exp(-log(a) / p->kB);
     double air = p->x_air * exp(log(p->Pa / P) / p->n_air);
     Fluid f;
     f.v = liquid + air;
     f.dv = -liquid / (a * p->B0) - air / (p->n_air * P);
-    f.h = p->B0 / (p->kB - 1.0) * (a * liquid - (1.0 - p->x_air)) + p->n_air / (p->n_air - 1.0) * (P * air - p->x_air * p->Pa);
+    f.h = p->B0 / (p->kB - 1.0) * (a * liquid - (1.0 - p->x_air)) +
+          p->n_air / (p->n_air - 1.0) * (P * air - p->x_air * p->Pa);
     return f;
 }
 
-static double seal_friction(double v, double p1, double p2, const Parameters *p) {
+static double seal_friction(double v, double p1, double p2, const Parameters *p)
+{
     double ratio = v / p->v_str;
-    double level = p->Fc + p->kp * 0.5 * (fabs(p1 - p->Pa) + fabs(p2 - p->Pa)) + p->Fs * exp(-ratio * ratio);
+    double level =
+        p->Fc + p->kp * 0.5 * (fabs(p1 - p->Pa) + fabs(p2 - p->Pa)) + p->Fs * exp(-ratio * ratio);
     return level * tanh(v / p->v_sm);
 }
 
-static double stop_force(double s, double v, const Parameters *p, double *power) {
+static double stop_force(double s, double v, const Parameters *p, double *power)
+{
     *power = 0.0;
     if (s < 0.0) {
         double force = -p->K_stop * s * (1.0 - p->c_stop * v);
-        if (force < 0.0) force = 0.0;
+        if (force < 0.0)
+            force = 0.0;
         *power = -(force + p->K_stop * s) * v;
         return -force;
     }
     if (s > p->s_max) {
         double e = s - p->s_max;
         double force = p->K_stop * e * (1.0 + p->c_stop * v);
-        if (force < 0.0) force = 0.0;
+        if (force < 0.0)
+            force = 0.0;
         *power = (force - p->K_stop * e) * v;
         return force;
     }
@@ -96,7 +116,8 @@ static double stop_force(double s, double v, const Parameters *p, double *power)
 }
 
 /* Main strut: force, positive in compression; chambers' rates and powers go to `w`. */
-static double damper(double s, double v, double p1, double p2, const Parameters *p, Loads *w) {
+static double damper(double s, double v, double p1, double p2, const Parameters *p, Loads *w)
+{
     Fluid f1 = fluid(p1, p), f2 = fluid(p2, p);
     double ratio = 0.5 * (1.0 / f1.v + 1.0 / f2.v);
     double dP = p2 - p1;
@@ -117,21 +138,28 @@ static double damper(double s, double v, double p1, double p2, const Parameters 
     return (p2 - p->Pa) * p->A2 - (p1 - p->Pa) * p->A1 + seal + stop;
 }
 
-static double auxiliary(double s, double v, const Parameters *p, Loads *w) {
+static double auxiliary(double s, double v, const Parameters *p, Loads *w)
+{
     double spring = p->Ka * pow(fabs(s), p->ek);
-    if (s < 0.0) spring = -spring;
+    if (s < 0.0)
+        spring = -spring;
     w->auxiliary = p->Ca * v * v;
     return spring + p->Ca * v;
 }
 
-static double damping_ramp(double d, const Parameters *p) {
+static double damping_ramp(double d, const Parameters *p)
+{
     double q = d / p->d_ramp;
-    if (q >= 1.0) return 1.0;
-    if (q <= 0.0) return 0.0;
+    if (q >= 1.0)
+        return 1.0;
+    if (q <= 0.0)
+        return 0.0;
     return q * q * (3.0 - 2.0 * q);
 }
 
-static double friction(double d, double Fn, double mu, double v, double s, const Parameters *p, double *ds) {
+static double friction(double d, double Fn, double mu, double v, double s, const Parameters *p,
+                       double *ds)
+{
     if (d <= 0.0) {
         *ds = -s / p->tau_sr;
         return 0.0;
@@ -151,7 +179,8 @@ typedef struct {
     double stroke, rate, er, eh;
 } Strut;
 
-static Strut strut(double dr, double dh, double vr, double vh, double length) {
+static Strut strut(double dr, double dh, double vr, double vh, double length)
+{
     double now = sqrt(dr * dr + dh * dh), er = dr / now, eh = dh / now;
     return (Strut){length - now, -(vr * er + vh * eh), er, eh};
 }
@@ -160,15 +189,19 @@ typedef struct {
     double sin_p, cos_p, sin_a, cos_a;
 } Angles;
 
-static void leg_loads(const double *y, const double *q, const Group *g, Angles a, const double *u, const Parameters *p, Loads *w) {
+static void leg_loads(const double *y, const double *q, const Group *g, Angles a, const double *u,
+                      const Parameters *p, Loads *w)
+{
     double r = q[R], h = q[H], vr = q[VR], vh = q[VH], rate = y[PITCH_RATE];
-    Strut m = strut(r - p->La, h - p->Lb, vr, vh, p->Lm0), x = strut(r - p->Lc, h - p->Ld, vr, vh, p->Ls0);
+    Strut m = strut(r - p->La, h - p->Lb, vr, vh, p->Lm0),
+          x = strut(r - p->Lc, h - p->Ld, vr, vh, p->Ls0);
     double Fh = damper(m.stroke, m.rate, q[P1], q[P2], p, w);
     double Fa = auxiliary(x.stroke, x.rate, p, w);
 
     double bx = r * g->cos, vbx = vr * g->cos + rate * h, vby = vh - rate * bx;
     double foot_x = y[X] + bx * a.cos_p + h * a.sin_p, foot_y = y[Y] - bx * a.sin_p + h * a.cos_p;
-    double foot_vx = y[VX] + vbx * a.cos_p + vby * a.sin_p, foot_vy = y[VY] - vbx * a.sin_p + vby * a.cos_p;
+    double foot_vx = y[VX] + vbx * a.cos_p + vby * a.sin_p,
+           foot_vy = y[VY] - vbx * a.sin_p + vby * a.cos_p;
     double lifted = foot_y - u[HEAVE];
     double ground_x = u[TILT_RATE] * lifted, ground_y = u[HEAVE_RATE] - u[TILT_RATE] * foot_x;
     double rx = foot_vx - ground_x, ry = foot_vy - ground_y;
@@ -180,7 +213,8 @@ static void leg_loads(const double *y, const double *q, const Group *g, Angles a
     if (d > 0.0) {
         double elastic = p->Kg * pow(d, p->en);
         Fn = elastic + p->Cgmax * damping_ramp(d, p) * dv;
-        if (Fn < 0.0) Fn = 0.0;
+        if (Fn < 0.0)
+            Fn = 0.0;
         w->contact = (Fn - elastic) * dv;
     }
     double rest = p->v_dir * p->v_dir, speed = slip_x * slip_x + slip_z * slip_z + rest;
@@ -190,8 +224,10 @@ static void leg_loads(const double *y, const double *q, const Group *g, Angles a
     double Fz = friction(d, Fn, mu_z, slip_z, q[SZ], p, &w->dsz);
     w->friction = -(Fx * slip_x + Fz * slip_z);
 
-    double Cx = Fx * a.cos_a + Fn * a.sin_a, Cy = Fn * a.cos_a - Fx * a.sin_a, weight = p->m_d * p->g;
-    double body_x = Cx * a.cos_p - (Cy - weight) * a.sin_p, body_y = Cx * a.sin_p + (Cy - weight) * a.cos_p;
+    double Cx = Fx * a.cos_a + Fn * a.sin_a, Cy = Fn * a.cos_a - Fx * a.sin_a,
+           weight = p->m_d * p->g;
+    double body_x = Cx * a.cos_p - (Cy - weight) * a.sin_p,
+           body_y = Cx * a.sin_p + (Cy - weight) * a.cos_p;
     double main_r = Fh * m.er, main_h = Fh * m.eh, aux_r = Fa * x.er, aux_h = Fa * x.eh;
     w->ground = Cx * ground_x + Cy * ground_y;
     w->radial = body_x * g->cos + Fz * g->sin + main_r + aux_r;
@@ -202,24 +238,29 @@ static void leg_loads(const double *y, const double *q, const Group *g, Angles a
     w->body_moment = g->cos * (p->La * main_h - p->Lb * main_r + p->Lc * aux_h - p->Ld * aux_r);
 }
 
-static void right_hand_side(Landing *s, const double *y, const double *u, double *dy) {
+static void right_hand_side(Landing *s, const double *y, const double *u, double *dy)
+{
     const Parameters *p = &s->p;
     int groups = s->groups;
     Angles a = {sin(y[PITCH]), cos(y[PITCH]), sin(p->alpha + u[TILT]), cos(p->alpha + u[TILT])};
     double rate = y[PITCH_RATE], fx = u[FORCE_X], fy = u[FORCE_Y] - p->m_u * p->g;
-    double force_x = fx * a.cos_p - fy * a.sin_p, force_y = fx * a.sin_p + fy * a.cos_p, moment = u[MOMENT];
+    double force_x = fx * a.cos_p - fy * a.sin_p, force_y = fx * a.sin_p + fy * a.cos_p,
+           moment = u[MOMENT];
     double m11 = p->m_u, m12 = 0.0, m21 = 0.0, m22 = p->I_u;
     for (int i = 0; i < groups; i++) {
         const double *q = y + BODY + LEG * i;
         const Group *g = &s->group[i];
         Loads *w = &s->loads[i];
         leg_loads(y, q, g, a, u, p, w);
-        double n = g->count, yn = q[H] + p->at_joint * (p->Ld - q[H]), mass = n * p->m_d * g->sin * g->sin;
+        double n = g->count, yn = q[H] + p->at_joint * (p->Ld - q[H]),
+               mass = n * p->m_d * g->sin * g->sin;
         m11 += mass;
         m12 += mass * q[H];
         m21 += mass * yn;
         m22 += mass * yn * q[H];
-        double bias = n * g->sin * (w->tangential + p->m_d * g->sin * (2.0 * rate * q[VH] - rate * rate * q[R] * g->cos));
+        double bias =
+            n * g->sin *
+            (w->tangential + p->m_d * g->sin * (2.0 * rate * q[VH] - rate * rate * q[R] * g->cos));
         force_x += n * w->body_x - bias;
         force_y += n * w->body_y;
         moment += n * w->body_moment - bias * yn;
@@ -265,32 +306,43 @@ static void right_hand_side(Landing *s, const double *y, const double *u, double
     }
 }
 
-static void slope(Landing *s, double t, const double *y, double *dy) {
+static void slope(Landing *s, double t, const double *y, double *dy)
+{
     double u[INPUTS], dt = t - s->t_input;
-    for (int i = 0; i < INPUTS; i++) u[i] = s->u[i] + s->u_rate[i] * dt;
+    for (int i = 0; i < INPUTS; i++)
+        u[i] = s->u[i] + s->u_rate[i] * dt;
     u[HEAVE] = s->u[HEAVE] + (s->u[HEAVE_RATE] + 0.5 * s->u_rate[HEAVE_RATE] * dt) * dt;
     u[TILT] = s->u[TILT] + (s->u[TILT_RATE] + 0.5 * s->u_rate[TILT_RATE] * dt) * dt;
     right_hand_side(s, y, u, dy);
     s->rhs_calls += 1.0;
 }
 
-/* ---- the method: ETDRK4-B of Krogstad, a linear part of rank one for each leg ---- */
+static double phi1(double z)
+{
+    return z > 0.0 ? -expm1(-z) / z : 1.0;
+}
 
-static double phi1(double z) { return z > 0.0 ? -expm1(-z) / z : 1.0; }
-
-static double phi2(double z, double f1) {
-    if (z > 0.1) return (1.0 - f1) / z;
-    double tail = 1.0 / 720.0 - z * (1.0 / 5040.0 - z * (1.0 / 40320.0 - z * (1.0 / 362880.0 - z / 3628800.0)));
+static double phi2(double z, double f1)
+{
+    if (z > 0.1)
+        return (1.0 - f1) / z;
+    double tail = 1.0 / 720.0 -
+                  z * (1.0 / 5040.0 - z * (1.0 / 40320.0 - z * (1.0 / 362880.0 - z / 3628800.0)));
     return 0.5 - z * (1.0 / 6.0 - z * (1.0 / 24.0 - z * (1.0 / 120.0 - z * tail)));
 }
 
-static double phi3(double z, double f2) {
-    if (z > 0.1) return (0.5 - f2) / z;
-    double tail = 1.0 / 5040.0 - z * (1.0 / 40320.0 - z * (1.0 / 362880.0 - z * (1.0 / 3628800.0 - z / 39916800.0)));
+static double phi3(double z, double f2)
+{
+    if (z > 0.1)
+        return (0.5 - f2) / z;
+    double tail =
+        1.0 / 5040.0 -
+        z * (1.0 / 40320.0 - z * (1.0 / 362880.0 - z * (1.0 / 3628800.0 - z / 39916800.0)));
     return 1.0 / 6.0 - z * (1.0 / 24.0 - z * (1.0 / 120.0 - z * (1.0 / 720.0 - z * tail)));
 }
 
-static void begin(Landing *s) {
+static void freeze_linear_part(Landing *s)
+{
     for (int g = 0; g < s->groups; g++) {
         const double *k = s->k1 + BODY + LEG * g;
         s->stiff[g].a1 = s->loads[g].decay1;
@@ -299,7 +351,8 @@ static void begin(Landing *s) {
     }
 }
 
-static void weigh(Stiff *c, double h) {
+static void phi_weights(Stiff *c, double h)
+{
     double z = h * (c->a1 + c->a2), f1 = phi1(0.5 * z), f2 = phi2(0.5 * z, f1), f3;
     c->a21 = 0.5 * f1;
     c->a31 = 0.5 * f1 - f2;
@@ -315,7 +368,8 @@ static void weigh(Stiff *c, double h) {
 }
 
 /* The right-hand side at a stage, and of it the driven rate of each leg's P2 - P1. */
-static void stage(Landing *s, double t, int number, const double *state, double *k) {
+static void nonlinear_rate(Landing *s, double t, int number, const double *state, double *k)
+{
     slope(s, t, state, k);
     for (int g = 0; g < s->groups; g++) {
         int j = BODY + LEG * g;
@@ -325,66 +379,86 @@ static void stage(Landing *s, double t, int number, const double *state, double 
     }
 }
 
-static void settle(const Stiff *c, double *q, double growth, double plain) {
+static void replace_linear_growth(const Stiff *c, double *q, double growth, double plain)
+{
     double shift = (plain - growth) / (c->a1 + c->a2);
     q[P1] += c->a1 * shift;
     q[P2] -= c->a2 * shift;
 }
 
-static void attempt(Landing *s, double h) {
+static void try_step(Landing *s, double h)
+{
     int n = s->n, groups = s->groups;
     double t = s->t, half = 0.5 * h;
-    double *restrict y = s->y, *restrict z = s->y_stage, *restrict e = s->deviation, *restrict end = s->y_new;
-    double *restrict k1 = s->k1, *restrict k2 = s->k2, *restrict k3 = s->k3, *restrict k4 = s->k4, *restrict k5 = s->k5;
-    for (int g = 0; g < groups; g++) weigh(&s->stiff[g], h);
+    double *restrict y = s->y, *restrict z = s->y_stage, *restrict e = s->deviation,
+                     *restrict end = s->y_new;
+    double *restrict k1 = s->k1, *restrict k2 = s->k2, *restrict k3 = s->k3, *restrict k4 = s->k4,
+                     *restrict k5 = s->k5;
+    for (int g = 0; g < groups; g++)
+        phi_weights(&s->stiff[g], h);
 
-    for (int i = 0; i < n; i++) z[i] = y[i] + half * k1[i];
+    for (int i = 0; i < n; i++)
+        z[i] = y[i] + half * k1[i];
     for (int g = 0, j = BODY; g < groups; g++, j += LEG) {
         const Stiff *c = &s->stiff[g];
-        settle(c, z + j, h * (c->a21 * c->driven[0]), half * (k1[j + P2] - k1[j + P1]));
+        replace_linear_growth(c, z + j, h * (c->a21 * c->driven[0]),
+                              half * (k1[j + P2] - k1[j + P1]));
     }
-    stage(s, t + half, 1, z, k2);
-    for (int i = 0; i < n; i++) z[i] = y[i] + half * k2[i];
+    nonlinear_rate(s, t + half, 1, z, k2);
+    for (int i = 0; i < n; i++)
+        z[i] = y[i] + half * k2[i];
     for (int g = 0, j = BODY; g < groups; g++, j += LEG) {
         const Stiff *c = &s->stiff[g];
-        settle(c, z + j, h * (c->a31 * c->driven[0] + c->a32 * c->driven[1]), half * (k2[j + P2] - k2[j + P1]));
+        replace_linear_growth(c, z + j, h * (c->a31 * c->driven[0] + c->a32 * c->driven[1]),
+                              half * (k2[j + P2] - k2[j + P1]));
     }
-    stage(s, t + half, 2, z, k3);
-    for (int i = 0; i < n; i++) z[i] = y[i] + h * k3[i];
+    nonlinear_rate(s, t + half, 2, z, k3);
+    for (int i = 0; i < n; i++)
+        z[i] = y[i] + h * k3[i];
     for (int g = 0, j = BODY; g < groups; g++, j += LEG) {
         const Stiff *c = &s->stiff[g];
-        settle(c, z + j, h * (c->a41 * c->driven[0] + c->a43 * c->driven[2]), h * (k3[j + P2] - k3[j + P1]));
+        replace_linear_growth(c, z + j, h * (c->a41 * c->driven[0] + c->a43 * c->driven[2]),
+                              h * (k3[j + P2] - k3[j + P1]));
     }
-    stage(s, t + h, 3, z, k4);
-    for (int i = 0; i < n; i++) end[i] = y[i] + h * (1.0 / 6.0 * (k1[i] + k4[i]) + 1.0 / 3.0 * (k2[i] + k3[i]));
+    nonlinear_rate(s, t + h, 3, z, k4);
+    for (int i = 0; i < n; i++)
+        end[i] = y[i] + h * (1.0 / 6.0 * (k1[i] + k4[i]) + 1.0 / 3.0 * (k2[i] + k3[i]));
     for (int g = 0, j = BODY; g < groups; g++, j += LEG) {
         const Stiff *c = &s->stiff[g];
-        double growth = h * (c->b1 * c->driven[0] + c->b23 * (c->driven[1] + c->driven[2]) + c->b4 * c->driven[3]);
-        settle(c, end + j, growth, (end[j + P2] - end[j + P1]) - (y[j + P2] - y[j + P1]));
+        double growth = h * (c->b1 * c->driven[0] + c->b23 * (c->driven[1] + c->driven[2]) +
+                             c->b4 * c->driven[3]);
+        replace_linear_growth(c, end + j, growth,
+                              (end[j + P2] - end[j + P1]) - (y[j + P2] - y[j + P1]));
     }
-    stage(s, t + h, 4, end, k5);
-    for (int i = 0; i < n; i++) e[i] = h * (1.0 / 6.0) * (k4[i] - k5[i]);
+    nonlinear_rate(s, t + h, 4, end, k5);
+    for (int i = 0; i < n; i++)
+        e[i] = h * (1.0 / 6.0) * (k4[i] - k5[i]);
     for (int g = 0, j = BODY; g < groups; g++, j += LEG) {
         const Stiff *c = &s->stiff[g];
-        settle(c, e + j, h * c->b4 * (c->driven[3] - c->driven[4]), e[j + P2] - e[j + P1]);
+        replace_linear_growth(c, e + j, h * c->b4 * (c->driven[3] - c->driven[4]),
+                              e[j + P2] - e[j + P1]);
     }
     for (int i = 0; i < n; i++)
-        if (s->relative[i] == 0.0) e[i] = fabs(e[i]) + 0.3 * h * (1.0 / 6.0) * fabs(k1[i] - k2[i] - k3[i] + k4[i]);
+        if (s->relative[i] == 0.0)
+            e[i] = fabs(e[i]) + 0.3 * h * (1.0 / 6.0) * fabs(k1[i] - k2[i] - k3[i] + k4[i]);
 }
 
-static double error(const Landing *s) {
+static double error(const Landing *s)
+{
     double total = 0.0;
     int m = s->n - INTEGRALS;
     for (int i = 0; i < m; i++) {
         double limit = s->scale[i];
-        if (s->relative[i] > 0.0) limit += MAX(fabs(s->y[i]), fabs(s->y_new[i]));
+        if (s->relative[i] > 0.0)
+            limit += MAX(fabs(s->y[i]), fabs(s->y_new[i]));
         double e = s->deviation[i] / (s->rtol * limit);
         total += e * e;
     }
     return sqrt(total / m);
 }
 
-static void accept(Landing *s, double h) {
+static void accept(Landing *s, double h)
+{
     int n = s->n;
     double limit = s->p.s_r0;
     for (int i = 0; i < n; i++) {
@@ -397,20 +471,23 @@ static void accept(Landing *s, double h) {
         s->k1[i] = s->k5[i];
     }
     for (int g = 0; g < s->groups; g++)
-        for (int i = BODY + LEG * g + SX; i <= BODY + LEG * g + SZ; i++) s->y[i] = MIN(MAX(s->y[i], -limit), limit);
+        for (int i = BODY + LEG * g + SX; i <= BODY + LEG * g + SZ; i++)
+            s->y[i] = MIN(MAX(s->y[i], -limit), limit);
     s->t_old = s->t;
     s->t += h;
     s->steps += 1.0;
-    begin(s);
+    freeze_linear_part(s);
 }
 
-/* ---- what yardstick.py calls ---- */
-
-/* A landing from the state `y` at time 0, under inputs `u` that go on at `u_rate`, until `release`. NULL without memory. */
-Landing *landing(const double *parameters, int groups, const double *group, const double *y, const double *scale,
-                 const double *relative, double rtol, const double *u, const double *u_rate) {
+/* A landing from the state `y` at time 0, under inputs `u` that go on at `u_rate`, until `release`.
+ * NULL without memory. */
+Landing *landing(const double *parameters, int groups, const double *group, const double *y,
+                 const double *scale, const double *relative, double rtol, const double *u,
+                 const double *u_rate)
+{
     Landing *s = calloc(1, sizeof *s);
-    if (!s) return NULL;
+    if (!s)
+        return NULL;
     s->groups = groups;
     s->n = BODY + LEG * groups + INTEGRALS;
     size_t size = (size_t)s->n * sizeof(double);
@@ -426,17 +503,19 @@ Landing *landing(const double *parameters, int groups, const double *group, cons
     s->h = 1e-5;
     s->error_old = 1e-4;
     slope(s, 0.0, s->y, s->k1);
-    begin(s);
+    freeze_linear_part(s);
     return s;
 }
 
 /* Steps until `t_end` is reached; 0 if the step size has collapsed. */
-int advance(Landing *s, double t_end) {
+int advance(Landing *s, double t_end)
+{
     const double exponent = 0.25 - 0.75 * 0.04;
     while (s->t < t_end) {
         double h = s->h;
-        if (h < 1e-16) return 0;
-        attempt(s, h);
+        if (h < 1e-16)
+            return 0;
+        try_step(s, h);
         double e = error(s);
         if (e <= 1.0) {
             accept(s, h);
@@ -454,18 +533,22 @@ int advance(Landing *s, double t_end) {
 }
 
 /* The state at time `t` inside the last step. */
-void interpolate(const Landing *s, double t, double *y) {
+void interpolate(const Landing *s, double t, double *y)
+{
     double span = s->t - s->t_old, a = span > 0.0 ? (t - s->t_old) / span : 0.0, b = 1.0 - a;
-    for (int i = 0; i < s->n; i++) y[i] = s->dense[0][i] + a * (s->dense[1][i] + b * (s->dense[2][i] + a * s->dense[3][i]));
+    for (int i = 0; i < s->n; i++)
+        y[i] = s->dense[0][i] + a * (s->dense[1][i] + b * (s->dense[2][i] + a * s->dense[3][i]));
 }
 
-/* What CVODE takes for a right-hand side of vectors without the energy integrals; `array` is its N_VGetArrayPointer. */
+/* The right-hand side for CVODE, on vectors without the energy integrals; `array` is its
+ * N_VGetArrayPointer. */
 typedef struct {
     Landing *landing;
     double *(*array)(void *vector);
 } Bridge;
 
-int slope_for_cvode(double t, void *y, void *dy, void *bridge) {
+int slope_for_cvode(double t, void *y, void *dy, void *bridge)
+{
     Bridge *b = bridge;
     double all[MAX_STATES];
     slope(b->landing, t, b->array(y), all);
@@ -474,10 +557,14 @@ int slope_for_cvode(double t, void *y, void *dy, void *bridge) {
 }
 
 /* Steps, rejected steps, right-hand sides. */
-void counts(const Landing *s, double *three) {
+void counts(const Landing *s, double *three)
+{
     three[0] = s->steps;
     three[1] = s->rejected;
     three[2] = s->rhs_calls;
 }
 
-void release(Landing *s) { free(s); }
+void release(Landing *s)
+{
+    free(s);
+}

@@ -1,5 +1,6 @@
-"""The landing by hand in C (`yardstick.c`), compiled here by gcc: how fast the machine does what
-the compiled core does.
+"""The landing in hand-written C (`c_landing.c`), compiled here by gcc.
+
+It shows how fast the machine can do what the compiled core does.
 """
 
 from __future__ import annotations
@@ -28,20 +29,21 @@ from fmu_build.core_source import COMPILE_ARGS  # noqa: E402
 # of the core's `BodyModel` and `LegModel`, which are the same for all legs here, in the order of
 # the C struct that is made from them
 PARAMETERS = (
-    "m_u", "I_u", "m_d", "at_joint", "La", "Lb", "Lm0", "A1", "A2", "V10", "V20", "Pa", "rho0", "x_air", "n_air", "B0", "kB",
-    "CdAo_c", "CdAo_r", "dP_lam", "Fc", "kp", "Fs", "v_str", "v_sm", "s_max", "K_stop", "c_stop", "Lc", "Ld", "Ls0", "Ka", "ek", "Ca",
-    "alpha", "Kg", "en", "Cgmax", "d_ramp", "mu", "s_r0", "ar", "b_strib", "Cr", "v_dir", "tau_sr", "g",
+    "m_u", "I_u", "m_d", "at_joint", "La", "Lb", "Lm0", "A1", "A2", "V10", "V20", "Pa", "rho0",
+    "x_air", "n_air", "B0", "kB", "CdAo_c", "CdAo_r", "dP_lam", "Fc", "kp", "Fs", "v_str", "v_sm",
+    "s_max", "K_stop", "c_stop", "Lc", "Ld", "Ls0", "Ka", "ek", "Ca", "alpha", "Kg", "en", "Cgmax",
+    "d_ramp", "mu", "s_r0", "ar", "b_strib", "Cr", "v_dir", "tau_sr", "g",
 )  # fmt: skip
-# the core's own options, and what the machine could do with the digits' equality given up
+# the core's own options, and options that may change the digits
 EXACT: tuple[str, ...] = tuple(COMPILE_ARGS)
 FAST: tuple[str, ...] = ("-O3", "-march=native", "-ffast-math")
 
 
 @cache
 def library(options: tuple[str, ...]) -> CDLL:
-    """`yardstick.c` compiled with `options`."""
+    """`c_landing.c` compiled with `options`."""
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as folder:
-        target = Path(folder) / "yardstick.so"
+        target = Path(folder) / "c_landing.so"
         names = f"-DPARAMETERS={','.join(PARAMETERS)}"
         command = [
             "gcc",
@@ -56,7 +58,7 @@ def library(options: tuple[str, ...]) -> CDLL:
             "-o",
             str(target),
         ]
-        subprocess.run([*command, str(HERE / "yardstick.c"), "-lm"], check=True)
+        subprocess.run([*command, str(HERE / "c_landing.c"), "-lm"], check=True)
         loaded = CDLL(str(target))
     doubles = POINTER(c_double)
     for name, result, arguments in (
@@ -76,11 +78,19 @@ def doubles(values: Any) -> Any:
     return (c_double * len(values))(*values)
 
 
-class Yardstick:
-    """One landing in C, from the start of a landing with the same parameters; `inputs` by name go
-    on at the rates `rates` [unit/s].
+class CLanding:
+    """One landing in C, from the start of a landing with the same parameters.
 
-    Raises MemoryError without memory, ArithmeticError where the step size has collapsed.
+    Args:
+        parameters: The vehicle, its ground and its drop.
+        rtol: Relative tolerance.
+        options: Options of gcc.
+        inputs: Inputs at time 0, by name [SI].
+        rates: Rates at which the inputs change, by name [SI/s].
+
+    Raises:
+        MemoryError: No memory for the landing.
+        ArithmeticError: The step size has collapsed.
     """
 
     def __init__(
@@ -132,7 +142,7 @@ class Yardstick:
             raise ArithmeticError("the step size of the landing in C has collapsed")
 
     def states(self, times: Any) -> np.ndarray:
-        """The states at `times` [s], one a row."""
+        """The states at `times` [s], one row each."""
         rows, one = np.empty((len(times), self.n)), (c_double * self.n)()
         for row, t in zip(rows, times):
             self.advance(t)
@@ -141,7 +151,7 @@ class Yardstick:
         return rows
 
     def statistics(self) -> dict[str, int]:
-        """What the integrator has done so far: steps, rejected steps, calls of the right-hand side."""
+        """Counts as in `Landing.statistics`."""
         three = (c_double * 3)()
         self._library.counts(self._landing, three)
         return dict(zip(("steps", "rejected", "rhs_calls"), map(int, three)))
@@ -150,7 +160,8 @@ class Yardstick:
 def core_states(solver: Solver, times: Any) -> np.ndarray:
     """The states of the core at `times` [s], one a row.
 
-    Raises ArithmeticError where the step size has collapsed.
+    Raises:
+        ArithmeticError: The step size has collapsed.
     """
     rows, one = np.empty((len(times), solver.n)), array("d", bytes(8 * solver.n))
     for row, t in zip(rows, times):
@@ -161,15 +172,22 @@ def core_states(solver: Solver, times: Any) -> np.ndarray:
     return rows
 
 
-def disagreement(solver: Solver, yardstick: Yardstick, until: float) -> float:
-    """Largest difference of any state, less the energy integrals, every millisecond up to `until`
-    [s], relative to that state's largest value; infinite where the two have not taken the same
-    numbers of steps, rejected steps and right-hand sides.
+def disagreement(solver: Solver, c_landing: CLanding, until: float) -> float:
+    """Largest relative difference of any state between core and C, without the energy integrals.
+
+    Args:
+        solver: The core's landing.
+        c_landing: The landing in C from the same start.
+        until: End [s]; states are compared every millisecond.
+
+    Returns:
+        The difference in parts of the state's largest value. Infinite if the numbers of steps,
+        rejected steps or right-hand sides differ.
     """
     times = 1e-3 * np.arange(round(until / 1e-3) + 1)
-    n = yardstick.controlled
-    core, c = (states[:, :n] for states in (core_states(solver, times), yardstick.states(times)))
-    if (solver.steps, solver.rejected, solver.rhs_calls) != tuple(yardstick.statistics().values()):
+    n = c_landing.controlled
+    core, c = (states[:, :n] for states in (core_states(solver, times), c_landing.states(times)))
+    if (solver.steps, solver.rejected, solver.rhs_calls) != tuple(c_landing.statistics().values()):
         return np.inf
     largest = np.abs(core).max(axis=0)
     return float((np.abs(core - c).max(axis=0) / np.where(largest > 0.0, largest, 1.0)).max())

@@ -1,11 +1,9 @@
-"""Solvers that we did not write, on the core's compiled right-hand side, and MuJoCo's own model of
-the vehicle.
+"""Solvers by others on the core's compiled right-hand side, and MuJoCo's model of the vehicle.
 
 Solvers in Python call `Solver.derivatives` through one Python function that copies the state in and
-the derivatives out. All integrate without the energy integrals, which the core carries along, with
-the core's absolute tolerances and its longest step. Only the core takes off what friction
-displacements gather beyond their limit; others run on with it, and their errors are what they then
-get.
+the derivatives out. All integrate without the energy integrals, with the core's absolute tolerances
+and its longest step. Only the core clamps the friction displacements to their limit after a step.
+The others continue with what they have gathered beyond it, which shows in their errors.
 """
 
 from __future__ import annotations
@@ -36,9 +34,9 @@ from mujoco_vehicle import DAMPING, STIFFNESS, build
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 3e-7, 1e-7, 1e-8)
 FEW_TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 3e-7)
 LSODA_TOLERANCES = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6)
-# after which a landing is given up
+# limits after which a landing is abandoned
 MOST_STEPS, MOST_SECONDS = 500_000, 3.0
-# where a plain landing is read
+# times at which a plain landing is read
 ENDS = np.array([0.0, 0.5 * UNTIL, UNTIL])
 # MuJoCo: time constant [s] and damping ratio of its contact, about those of 4.2 kg on the model's
 # ground under 4 kN
@@ -52,7 +50,7 @@ Solve = Callable[["RightHandSide", np.ndarray, float], np.ndarray]
 
 @contextmanager
 def time_limit(seconds: float) -> Iterator[None]:
-    """Raises TimeoutError in what takes more than `seconds` of processor time."""
+    """Raise TimeoutError in a block that takes more than `seconds` of processor time."""
 
     def stop(number: int, frame: object) -> None:
         raise TimeoutError(f"no end after {seconds:g} s of processor time")
@@ -67,8 +65,9 @@ def time_limit(seconds: float) -> Iterator[None]:
 
 
 class RightHandSide:
-    """The core's right-hand side for solvers in Python: `fresh(t, y)` returns a new array, `into(t,
-    y, dy)` fills one.
+    """The core's right-hand side for solvers in Python.
+
+    `derivatives(t, y)` returns a new array, `fill_derivatives(t, y, dy)` writes to one.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -77,49 +76,49 @@ class RightHandSide:
         self.start = self.solver.rhs_calls
         m = problem.m
         y, dy = np.zeros(problem.n), np.zeros(problem.n)
-        head, found, derivatives = y[:m], dy[:m], self.solver.derivatives
+        head, found, core_derivatives = y[:m], dy[:m], self.solver.derivatives
 
-        def fresh(t: float, state: Any) -> np.ndarray:
+        def derivatives(t: float, state: Any) -> np.ndarray:
             head[:] = state
-            derivatives(t, y, dy)
+            core_derivatives(t, y, dy)
             return found.copy()
 
-        def into(t: float, state: Any, target: Any) -> None:
+        def fill_derivatives(t: float, state: Any, target: Any) -> None:
             head[:] = state
-            derivatives(t, y, dy)
+            core_derivatives(t, y, dy)
             target[:] = found
 
-        self.fresh, self.into = fresh, into
+        self.derivatives, self.fill_derivatives = derivatives, fill_derivatives
 
     def jacobian(self, t: float, state: np.ndarray) -> np.ndarray:
-        """Forward differences.
+        """Jacobian by forward differences.
 
-        Scipy's own overflow here: its increments grow without end for a state that changes nothing.
+        scipy's own increments overflow: they grow without bound for a state that changes nothing.
         """
         y, m, scale = state.copy(), self.problem.m, self.problem.scale
         increments = 1.5e-8 * np.maximum(np.abs(y), scale)
-        matrix, base = np.empty((m, m)), self.fresh(t, y)
+        matrix, base = np.empty((m, m)), self.derivatives(t, y)
         for i in range(m):
             y[i] += increments[i]
-            matrix[:, i] = self.fresh(t, y)
+            matrix[:, i] = self.derivatives(t, y)
             y[i] = state[i]
         matrix -= base[:, None]
         matrix /= increments
         return matrix
 
     def calls(self) -> int:
-        """How often it was called."""
+        """Number of calls so far."""
         return int(self.solver.rhs_calls - self.start)
 
 
 def by_scipy(method: str) -> Solve:
-    """`solve_ivp`."""
+    """A method of `solve_ivp`."""
 
     def solve(f: RightHandSide, times: np.ndarray, rtol: float) -> np.ndarray:
         options: dict[str, Any] = {"jac": f.jacobian} if method in ("Radau", "BDF") else {}
         p = f.problem
         options |= {"rtol": rtol, "atol": rtol * p.scale, "max_step": LONGEST_STEP}
-        done = solve_ivp(f.fresh, (0.0, UNTIL), p.state, method, times, **options)
+        done = solve_ivp(f.derivatives, (0.0, UNTIL), p.state, method, times, **options)
         if not done.success:
             raise ArithmeticError(done.message)
         return done.y.T
@@ -133,7 +132,7 @@ def by_odeint(f: RightHandSide, times: np.ndarray, rtol: float) -> np.ndarray:
         warnings.simplefilter("error")
         atol = rtol * f.problem.scale
         return odeint(
-            f.fresh,
+            f.derivatives,
             f.problem.state,
             times,
             tfirst=True,
@@ -150,7 +149,7 @@ def by_sundae(method: str) -> Solve:
     def solve(f: RightHandSide, times: np.ndarray, rtol: float) -> np.ndarray:
         p = f.problem
         solver = CVODE(
-            f.into,
+            f.fill_derivatives,
             method=method,
             rtol=rtol,
             atol=rtol * p.scale,
@@ -179,11 +178,11 @@ def in_python(name: str, solve: Solve, tolerances: tuple[float, ...] = TOLERANCE
         with time_limit(MOST_SECONDS):
             return solve(f, times, rtol)
 
-    return Peer(name, "foreign", tolerances, task, deviation)
+    return Peer(name, "other", tolerances, task, deviation)
 
 
 def cvode_in_c(name: str, method: int) -> Peer:
-    """CVODE with the right-hand side of `yardstick.c`, no Python in its loop."""
+    """CVODE on the right-hand side of `c_landing.c`, with no Python in its loop."""
 
     def solver(problem: Problem, rtol: float) -> CvodeInC:
         return CvodeInC(problem, rtol, method, LONGEST_STEP, MOST_STEPS)
@@ -202,8 +201,12 @@ def cvode_in_c(name: str, method: int) -> Peer:
 
 
 class MujocoLanding:
-    """The vehicle of `tests/independent/mujoco_vehicle.py` on MuJoCo's own contact, in time steps
-    of `step` [s].
+    """The vehicle of `tests/independent/mujoco_vehicle.py` on MuJoCo's own contact.
+
+    Args:
+        problem: The landing.
+        step: Time step [s].
+        integrator: One of MuJoCo's.
     """
 
     def __init__(self, problem: Problem, step: float, integrator: int = IMPLICIT) -> None:
@@ -245,7 +248,7 @@ def mujoco_reference(problem: Problem) -> np.ndarray:
 
 
 def by_mujoco(name: str, integrator: int, steps: tuple[float, ...]) -> Peer:
-    """Its error is that against MuJoCo's own reference; its calls are steps."""
+    """MuJoCo; its error is against its own reference, its calls are steps."""
 
     def task(problem: Problem, step: float) -> Task:
         landing = MujocoLanding(problem, step, integrator)
@@ -257,7 +260,7 @@ def by_mujoco(name: str, integrator: int, steps: tuple[float, ...]) -> Peer:
     return Peer(name, "simulator", steps, task, deviation)
 
 
-FOREIGN = (
+OTHERS = (
     cvode_in_c("C, CVODE BDF", BDF),
     cvode_in_c("C, CVODE Adams", ADAMS),
     in_python("CVODE BDF by scikit-sundae", by_sundae("BDF")),

@@ -1,4 +1,7 @@
-"""The benchmarks' landing in C is the core's: without that, its time would say nothing of the core."""
+"""The benchmarks' landing in C computes what the core computes.
+
+Otherwise its time would say nothing about the core.
+"""
 
 import sys
 from pathlib import Path
@@ -10,9 +13,9 @@ from rlv_landing.assembly import new_solver
 from rlv_landing.quantities import INPUT_NAMES
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "benchmarks"))
+from c_landing import CLanding, disagreement
 from cvode_in_c import ADAMS, BDF, CvodeInC
 from problem import TIMES, Problem
-from yardstick import Yardstick, disagreement
 
 # a load and a deck, all of them changing
 INPUTS = {
@@ -28,11 +31,11 @@ RATES = {"external.force_y": 500.0, "ground.heave_rate": -0.3, "ground.tilt_rate
 @pytest.mark.parametrize("rtol", [1e-3, 1e-5])
 def test_the_landing_in_c_takes_the_cores_steps_to_the_same_states(mode, rtol):
     parameters = load_preset("yue2022-figures", mode)
-    assert disagreement(new_solver(parameters, rtol), Yardstick(parameters, rtol), 0.5) < 1e-9
+    assert disagreement(new_solver(parameters, rtol), CLanding(parameters, rtol), 0.5) < 1e-9
 
 
 def test_the_landing_in_c_has_the_cores_inputs_slope_and_stops(mode):
-    """With the transverse load at the footpads, on a slope, so fast that a strut reaches both ends."""
+    """Covers the transverse load at the footpads, a slope and both end stops."""
     values = {
         "vehicle.transverse_load_at": "footpad",
         "ground.slope": 0.03,
@@ -45,7 +48,7 @@ def test_the_landing_in_c_has_the_cores_inputs_slope_and_stops(mode):
         solver.u[i], solver.u_rate[i] = INPUTS.get(name, 0.0), RATES.get(name, 0.0)
     solver.restart(0.0)
     solver.rhs_calls = 1.0  # the C landing starts with the inputs, so it has no restart
-    assert disagreement(solver, Yardstick(parameters, 1e-4, inputs=INPUTS, rates=RATES), 0.3) < 1e-9
+    assert disagreement(solver, CLanding(parameters, 1e-4, inputs=INPUTS, rates=RATES), 0.3) < 1e-9
     watched = Landing(parameters, mode, 1e-4)
     watched.set_inputs(INPUTS, RATES)
     stroke = watched.run(0.3)["leg[1].main_strut.stroke"]
@@ -56,13 +59,14 @@ def test_the_landing_in_c_has_the_cores_inputs_slope_and_stops(mode):
 def test_a_landing_in_c_of_another_vehicle_is_told_from_the_cores(mode):
     parameters = load_preset("yue2022-figures", mode)
     heavier = parameters.with_values({"vehicle.inertia": 250.0})
-    assert disagreement(new_solver(parameters, 1e-5), Yardstick(heavier, 1e-5), 0.2) > 1e-3
+    assert disagreement(new_solver(parameters, 1e-5), CLanding(heavier, 1e-5), 0.2) > 1e-3
 
 
 @pytest.mark.parametrize("method", [ADAMS, BDF])
 def test_cvode_lands_as_the_core_does(mode, method):
-    """An integrator that shares nothing with ours finds the same peaks; friction lets late strokes
-    differ by some micrometres.
+    """CVODE, which shares no code with the core, finds the same peaks.
+
+    Friction lets late strokes differ by some micrometres.
     """
     problem = Problem(mode)
     found = problem.error(CvodeInC(problem, 1e-8, method, 2e-3, 500_000).states(TIMES))

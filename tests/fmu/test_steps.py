@@ -1,0 +1,73 @@
+"""Communication steps of any length, and the status functions."""
+
+from __future__ import annotations
+
+from ctypes import byref, c_char_p, c_double, c_int
+
+import numpy as np
+import pytest
+from fmpy import fmi2
+from fmu_instance import DISCARD, OK, assert_lands_like_landing
+
+from rlv_landing import Landing
+from rlv_landing.quantities import OUTPUT_NAMES
+
+
+def test_status_functions_answer_what_they_can_and_discard_the_rest(instance):
+    status, time, flag, number, text = c_int(9), c_double(), c_int(9), c_int(), c_char_p()
+    instance.start()
+    instance.steps(0, 3)
+    assert instance.status("fmi2GetStatus", fmi2.fmi2DoStepStatus, byref(status)) == OK
+    assert status.value == OK
+    assert instance.step(3e-3, -1.0) == DISCARD
+    assert instance.status("fmi2GetStatus", fmi2.fmi2DoStepStatus, byref(status)) == OK
+    assert status.value == DISCARD
+    assert instance.status("fmi2GetRealStatus", fmi2.fmi2LastSuccessfulTime, byref(time)) == OK
+    assert time.value == pytest.approx(3e-3, abs=1e-15)
+    assert instance.status("fmi2GetBooleanStatus", fmi2.fmi2Terminated, byref(flag)) == OK
+    assert flag.value == 0
+    assert instance.status("fmi2GetStringStatus", fmi2.fmi2PendingStatus, byref(text)) == OK
+    assert text.value == b""
+    for function, kind, place in (
+        ("fmi2GetStatus", fmi2.fmi2Terminated, status),
+        ("fmi2GetRealStatus", fmi2.fmi2Terminated, time),
+        ("fmi2GetBooleanStatus", fmi2.fmi2LastSuccessfulTime, flag),
+        ("fmi2GetIntegerStatus", fmi2.fmi2LastSuccessfulTime, number),
+        ("fmi2GetStringStatus", fmi2.fmi2Terminated, text),
+    ):
+        assert instance.status(function, kind, byref(place)) == DISCARD
+        assert f"{function}: this function does not answer status kind {kind}" in instance.reason()
+    assert_lands_like_landing(instance, 3)
+
+
+def test_results_are_the_same_for_steps_from_10_us_to_100_ms_in_any_order(make):
+    """At common times, every 0.1 s, to 1e-9 of each quantity's largest value."""
+    generator = np.random.default_rng(20240501)
+    reals = [n for n in OUTPUT_NAMES if n != "status.phase" and not n.endswith("contact.active")]
+    landing, rows = Landing(), []
+    for k in range(1, 11):
+        landing.advance_to(k * 0.1)
+        rows.append([landing.get(n) for n in reals])
+    expected = np.array(rows)
+    for longest in (1e-5, 1e-3, 1e-2, 1e-1):
+        instance = make()
+        instance.start()
+        vrs, time, found = [instance.vr[n] for n in reals], 0.0, []
+        for k in range(1, 11):
+            if longest == 1e-5:
+                times = [
+                    *(k * 0.1 - 0.1 + 1e-5 * generator.uniform(1.0, 2.0, 200).cumsum()),
+                    k * 0.1,
+                ]
+            else:
+                cuts = generator.uniform(k * 0.1 - 0.1, k * 0.1, int(0.1 / longest))
+                times = [*np.unique(cuts), k * 0.1]
+            for goal in times:
+                if goal > time:
+                    instance.slave.doStep(time, goal - time)
+                    time = goal
+            found.append(instance.slave.getReal(vrs))
+        assert np.all(
+            np.abs(np.array(found) - expected)
+            <= 1e-9 * np.maximum(1.0, np.abs(expected).max(axis=0))
+        )

@@ -1,0 +1,60 @@
+"""The pages in docs, the README and the examples' pages: links, index, and the map of the code."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+INDEX = ROOT / "docs" / "README.md"
+PAGES = sorted(
+    [
+        ROOT / "README.md",
+        ROOT / "CHANGELOG.md",
+        *(ROOT / "docs").glob("*.md"),
+        *(ROOT / "examples").glob("*/README.md"),
+    ]
+)
+PACKAGES = (ROOT / "fmu_src" / "rlv_landing", ROOT / "ros_bridge" / "rlv_ros_bridge")
+MAP = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+# a code span with a slash is a path from the project's folder
+PATHS = {span for span in re.findall(r"`([^`\s]+)`", MAP) if "/" in span}
+
+
+def name_of(path: Path) -> str:
+    return path.relative_to(ROOT).as_posix()
+
+
+def anchors(page: Path) -> set[str]:
+    """The anchors that a renderer makes from the headings of a page."""
+    headings = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.M)
+    return {re.sub(r"[^\w\- ]", "", h.lower()).replace(" ", "-") for h in headings}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_every_link_leads_to_a_file_and_a_heading_that_exist(page):
+    for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8")):
+        if target.startswith("https://"):
+            continue
+        file, _, anchor = target.partition("#")
+        linked = (page.parent / file).resolve() if file else page
+        assert linked.is_file(), target
+        assert not anchor or anchor in anchors(linked), target
+
+
+def test_the_index_lists_every_page():
+    targets = re.findall(r"\]\(([^)\s]+)\)", INDEX.read_text(encoding="utf-8"))
+    listed = {(INDEX.parent / target).resolve() for target in targets}
+    assert listed == {page for page in PAGES if page != INDEX}
+
+
+def test_every_path_on_the_map_exists():
+    assert PATHS
+    assert [path for path in sorted(PATHS) if not (ROOT / path).exists()] == []
+
+
+def test_the_map_names_every_folder_of_both_packages():
+    folders = {
+        name_of(init.parent) for package in PACKAGES for init in package.rglob("__init__.py")
+    }
+    assert folders - PATHS == set()
