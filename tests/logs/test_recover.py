@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 import zstandard
-from bridge_tools import TIMEOUT, command, environment, one_error_line, run
+from bridge_tools import HERE, TIMEOUT, command, environment, one_error_line, run
 from log_tools import CDR, messages_of, rewrite, small_log, write_with_chunk
 from mcap.reader import make_reader
 from mcap.records import Chunk, Message
@@ -243,7 +243,7 @@ def test_mutated_logs_break_neither_info_nor_recover_and_nothing_is_invented(
         tmp_path / "short",
         lambda r: None if isinstance(r, tuple) and r[1].log_time > 20_000_000 else r,
     )
-    worker = Path(__file__).with_name("mutations.py")
+    worker = HERE / "mutations.py"
     count = many(300)
     line = [sys.executable, str(worker), str(short), str(count), "1", str(tmp_path)]
     done = subprocess.run(

@@ -1,20 +1,16 @@
-"""Fixtures of the viewer's tests: those of the bridge's, a browser, and what a viewer shows in it."""
+"""Fixtures of the viewer's tests: a browser, and a started viewer."""
 
 from __future__ import annotations
 
 import os
 import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
+from bridge_tools import new_domain, start
 from playwright.sync_api import Browser, Page, sync_playwright
-
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "ros"))
-
-from bridge_tools import log, new_domain, one_log, processes, start  # noqa: F401
 from sight import HEIGHT, WIDTH, Outside, Started, free_port
 
 CHROMIUM = Path(
@@ -68,7 +64,7 @@ def page(browser: Browser) -> Page:
 
 
 @pytest.fixture
-def viewing(processes: list[subprocess.Popen[str]]) -> Callable[..., Started]:  # noqa: F811
+def viewing(processes: list[subprocess.Popen[str]]) -> Callable[..., Started]:
     """`viewing(*arguments)`: the command `view`, started; its process, the address that it told,
     and its port.
     """
