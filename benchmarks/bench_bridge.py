@@ -35,7 +35,7 @@ from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
 from rlv_ros_bridge.messages.qos import TELEMETRY
 from rlv_ros_bridge.messages.samples import SampleBytes
 from rlv_ros_bridge.messages.topics import SAMPLED
-from rlv_ros_bridge.node.pacer import spread
+from rlv_ros_bridge.node.pacer import lateness_percentiles
 
 STEP = 1e-3
 FAST_SECONDS, REPEATS = 10.0, 5
@@ -48,7 +48,7 @@ from rlv_ros_bridge.node.land import land
 from rlv_ros_bridge.node.landing_run import LandingRun
 from rlv_ros_bridge.ros.setup import StopFlag
 
-found, go_on = {}, LandingRun.go_on
+found, run_landing = {}, LandingRun.run
 
 def measured(run, interrupted):
     start = run._pacer.start
@@ -56,12 +56,12 @@ def measured(run, interrupted):
         found.update(thread=time.thread_time(), process=time.process_time())
         start(*arguments)
     run._pacer.start = begin
-    go_on(run, interrupted)
+    run_landing(run, interrupted)
     found["thread"] = (time.thread_time() - found["thread"]) / run.samples
     found["process"] = (time.process_time() - found["process"]) / run.samples
     found["lateness"] = list(run._pacer.lateness)
 
-LandingRun.go_on = measured
+LandingRun.run = measured
 with StopFlag() as stop:
     summary = land(json.loads(sys.argv[1]), [], stop)
 print(json.dumps({**found, "samples": summary.samples, "factor": summary.realtime_factor, "late_steps": summary.late_steps}))
@@ -251,7 +251,7 @@ def punctual(folder: Path) -> list[dict[str, Any]]:
         lateness["plain loop, awake"] += plain_loop(ROUND_SECONDS, SPIN_SECONDS)
     names = ("median", "p99", "largest")
     return [
-        {"case": f"bridge lateness: {case}", "samples": len(v), **dict(zip(names, spread(v)))}
+        {"case": f"bridge lateness: {case}", "samples": len(v), **dict(zip(names, lateness_percentiles(v)))}
         for case, v in lateness.items()
     ]
 

@@ -136,7 +136,7 @@ def test_a_full_disk_does_not_stop_the_landing_and_what_was_written_is_readable(
     assert "finished: 3001 samples" in done.stdout
     told = [line for line in done.stderr.splitlines() if "stopped after" in line]
     assert len(told) == 2, done.stderr
-    assert "the landing goes on unrecorded" in told[0]
+    assert "the landing continues without recording" in told[0]
     assert told[1].startswith("error: recording to")
     assert "File too large" in told[1]
     (file,) = folder.iterdir()
@@ -214,7 +214,7 @@ def test_the_landing_goes_on_when_its_log_is_removed_and_says_so_at_once_and_at_
     assert "finished: 2001 samples" in out
     told = [line for line in err.splitlines() if "removed or moved away" in line]
     assert len(told) == 2, err
-    assert "the landing goes on unrecorded" in told[0]
+    assert "the landing continues without recording" in told[0]
     assert told[1].startswith("error: recording to")
     assert not folder.exists()
 

@@ -25,7 +25,7 @@ from rlv_ros_bridge.messages.inputs import HEAVE, TILT, WRENCH
 from rlv_ros_bridge.messages.qos import TELEMETRY
 from rlv_ros_bridge.messages.samples import SampleBytes
 from rlv_ros_bridge.messages.topics import APPLIED, APPLIED_GROUND, APPLIED_WRENCH, SAMPLED, Topic
-from rlv_ros_bridge.node.input_queue import Applied
+from rlv_ros_bridge.node.input_queue import InputChange
 
 AT = 300_000_000
 GROUND = (*HEAVE, *TILT)
@@ -245,14 +245,14 @@ def steer(whole: Path, folder: Path) -> LogReader:
             (APPLIED_GROUND, GROUND, (1e-3, 0.1, 1e-3, 0.02)),
         ):
             if random.random() < 0.1:
-                applied = Applied(
+                change = InputChange(
                     topic,
                     k * 1_000_000,
                     {name: random.uniform(-s, s) for name, s in zip(names, sizes)},
                 )
-                landing.set_inputs(applied.values)
+                landing.set_inputs(change.values)
                 recorder.write(
-                    f"/landing/{topic.name}", k * 1_000_000, serialize_message(applied.message())
+                    f"/landing/{topic.name}", k * 1_000_000, serialize_message(change.message())
                 )
     recorder.close()
     return LogReader(folder)
@@ -296,7 +296,7 @@ def test_a_steered_run_differs_without_one_of_its_inputs(
 def test_inputs_whose_times_were_changed_are_refused(
     one_log: Path, tmp_path: Path, log_time: int, reason: str
 ) -> None:
-    message = Applied(APPLIED_WRENCH, 500_000_001, dict.fromkeys(WRENCH, 1.0)).message()
+    message = InputChange(APPLIED_WRENCH, 500_000_001, dict.fromkeys(WRENCH, 1.0)).message()
     with pytest.raises(LandingError) as e:
         verify(with_input(one_log, tmp_path / "log", log_time, serialize_message(message)))
     assert reason in str(e.value)
@@ -304,7 +304,7 @@ def test_inputs_whose_times_were_changed_are_refused(
 
 @pytest.mark.parametrize("force", [1e12, math.nan])
 def test_inputs_that_cannot_be_are_refused(one_log: Path, tmp_path: Path, force: float) -> None:
-    message = Applied(APPLIED_WRENCH, 500_000_000, dict.fromkeys(WRENCH, force)).message()
+    message = InputChange(APPLIED_WRENCH, 500_000_000, dict.fromkeys(WRENCH, force)).message()
     with pytest.raises(LandingError) as e:
         verify(with_input(one_log, tmp_path / "log", 500_000_000, serialize_message(message)))
     assert (

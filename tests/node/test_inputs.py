@@ -27,7 +27,7 @@ from rlv_ros_bridge.logs.reader import Decoder, LogReader
 from rlv_ros_bridge.logs.verify import verify
 from rlv_ros_bridge.messages.inputs import HEAVE, READINGS, TILT, WRENCH, read_ground, read_wrench
 from rlv_ros_bridge.messages.topics import APPLIED_GROUND, APPLIED_WRENCH
-from rlv_ros_bridge.node.input_queue import Applied
+from rlv_ros_bridge.node.input_queue import InputChange
 
 FORCE, MOTION = st.floats(-1e7, 1e7), st.floats(-1.0, 1.0)
 
@@ -57,8 +57,8 @@ def test_a_wrench_in_ros_axes_is_the_papers_and_back_digit_for_digit(
     # Forward stays forward, the paper's up (y) is ROS's up (z), clockwise (nose down) is positive
     # about +y.
     assert read_wrench(wrench(x=x, z=y, torque=moment)) == dict(zip(WRENCH, (x, y, moment)))
-    applied = Applied(APPLIED_WRENCH, 5, dict(zip(WRENCH, (x, y, moment))))
-    assert READINGS[APPLIED_WRENCH.name](applied.message()) == applied.values
+    change = InputChange(APPLIED_WRENCH, 5, dict(zip(WRENCH, (x, y, moment))))
+    assert READINGS[APPLIED_WRENCH.name](change.message()) == change.values
 
 
 @given(MOTION, MOTION, MOTION, MOTION)
@@ -67,7 +67,7 @@ def test_a_ground_message_is_the_decks_motion_and_back_digit_for_digit(
 ) -> None:
     values = dict(zip((*HEAVE, *TILT), (a, b, c, d)))
     assert read_ground(ground(a, b, c, d)) == values
-    assert READINGS[APPLIED_GROUND.name](Applied(APPLIED_GROUND, 5, values).message()) == values
+    assert READINGS[APPLIED_GROUND.name](InputChange(APPLIED_GROUND, 5, values).message()) == values
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from rlv_ros_bridge.messages.inputs import HEAVE, READINGS, TILT, WRENCH
 from rlv_ros_bridge.messages.message_types import message_class
 from rlv_ros_bridge.messages.qos import TELEMETRY
 from rlv_ros_bridge.messages.topics import APPLIED, APPLIED_GROUND, APPLIED_WRENCH
-from rlv_ros_bridge.node.input_queue import Applied
+from rlv_ros_bridge.node.input_queue import InputChange
 
 Change = tuple[str, dict[str, float]]
 
@@ -37,13 +37,13 @@ def make_inputs(folder: Path) -> list[Change]:
     for k in range(20):
         topic, names = ((APPLIED_WRENCH, WRENCH), (APPLIED_GROUND, (*HEAVE, *TILT)))[k % 2]
         size = 100.0 if topic is APPLIED_WRENCH else 1e-4
-        applied = Applied(
+        change = InputChange(
             topic, k * 20_000_000, {name: size * (k + 1 + i) for i, name in enumerate(names)}
         )
         recorder.write(
-            f"/landing/{topic.name}", applied.nanoseconds, serialize_message(applied.message())
+            f"/landing/{topic.name}", change.nanoseconds, serialize_message(change.message())
         )
-        changes.append((topic.name, dict(applied.values)))
+        changes.append((topic.name, dict(change.values)))
     recorder.close()
     return changes
 

@@ -15,7 +15,7 @@ from rlv_landing.commands.options import check_writable, parameter_options
 from rlv_landing.errors import LandingError
 
 from ..logs.libraries import require_log_readers
-from ..ros.interruption import ends_tidily
+from ..ros.interruption import exit_on_sigterm
 from .log import EXIT_CUT, WIDE
 
 if TYPE_CHECKING:
@@ -96,7 +96,10 @@ def animate(
     else:
         history, parameters = _landed(given, film["end"])
         title = f"{parameters.drop.mode} landing"
-    with ends_tidily(), tqdm(unit="frame", desc="drawing", disable=not sys.stderr.isatty()) as bar:
+    with (
+        exit_on_sigterm(),
+        tqdm(unit="frame", desc="drawing", disable=not sys.stderr.isatty()) as bar,
+    ):
 
         def tell(done: int, frames: int) -> None:
             bar.total = frames

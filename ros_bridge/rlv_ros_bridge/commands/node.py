@@ -12,12 +12,12 @@ from rlv_landing.choices import parse_pairs
 from rlv_landing.errors import LandingError
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 
-from ..ros.arguments import PASS_ON, split_ros_args
+from ..ros.arguments import ROS_COMMAND_SETTINGS, split_ros_args
 
 EXIT_RECORDING_FAILED = 1
 
 
-@click.command(context_settings=PASS_ON)
+@click.command(context_settings=ROS_COMMAND_SETTINGS)
 @click.option(
     "--mode", metavar="2-2|1-2-1", help="Landing mode. Default: the parameters' own (2-2)."
 )

@@ -9,11 +9,11 @@ from typing import Any
 
 import click
 
-from ..ros.arguments import PASS_ON, split_ros_args
+from ..ros.arguments import ROS_COMMAND_SETTINGS, split_ros_args
 from .log import tell_cut
 
 
-@click.command(context_settings=PASS_ON)
+@click.command(context_settings=ROS_COMMAND_SETTINGS)
 @click.argument("log", type=click.Path(path_type=Path))
 @click.option(
     "--rate",

@@ -16,7 +16,7 @@ import click
 from rlv_landing.commands.options import check_writable, parameter_options
 from rlv_landing.errors import LandingError
 
-from ..ros.interruption import ends_tidily
+from ..ros.interruption import exit_on_sigterm
 from ..ros.setup import StopFlag, require_ros
 from .animate import landing_of_log, tell_drawn
 from .log import EXIT_CUT, WIDE
@@ -87,7 +87,7 @@ def view(
             "live topics need no vehicle named; leave --preset, --parameters, --mode and --set out"
         )
     require_viewer()
-    with ends_tidily():
+    with exit_on_sigterm():
         if log is None:
             ended = (
                 _record(namespace, save) if save is not None else _show(namespace, port, no_browser)

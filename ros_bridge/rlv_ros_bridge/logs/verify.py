@@ -13,7 +13,7 @@ from typing import Any
 
 from rlv_landing.errors import LandingError
 
-from ..fmu.builds import why_not_exact
+from ..fmu.builds import inexact_reason
 from ..messages.fields import FIELDS, expected_fields, leaves
 from ..messages.topics import resolve
 from .reader import Decoder, LogMessage, LogReader
@@ -113,7 +113,7 @@ def verify(reader: LogReader, fmu: Path | None = None) -> Verification:
     # A log has at least as many messages as instants, whatever its times say.
     most_instants = sum(1 for _ in reader.messages())
     run = Run(reader, fmu)
-    not_exact = why_not_exact(reader.metadata, fmu)
+    not_exact = inexact_reason(reader.metadata, fmu)
     found = Verification(
         str(reader.path), not_exact, TOLERANCE if not_exact else 0.0, stop_time=run.stop_time
     )

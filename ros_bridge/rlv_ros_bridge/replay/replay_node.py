@@ -30,7 +30,7 @@ from ..messages.qos import CLOCK, parse_qos
 from ..messages.rclpy_qos import qos_profile
 from ..messages.restamp import Restamper
 from ..messages.samples import set_stamp
-from ..node.pacer import spread
+from ..node.pacer import lateness_percentiles
 from ..ros.setup import StopFlag, ros_context, wait_for_acknowledgement, wait_for_subscribers
 from .clock import ReplayClock
 from .keyboard import Keyboard
@@ -157,7 +157,7 @@ class ReplayNode(Node):
         acknowledged = wait_for_acknowledgement(
             list(self._outlets.values()), interrupted=bool(stop)
         )
-        median, p99, largest = spread(self._lateness)
+        median, p99, largest = lateness_percentiles(self._lateness)
         return ReplaySummary(
             messages=played,
             turns=turns,
