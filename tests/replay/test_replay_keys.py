@@ -141,7 +141,7 @@ def test_a_step_plays_one_message_and_moves_time_to_it() -> None:
     clock.start(50.0)
     assert clock.step()
     assert clock.due(3.0) == -math.inf
-    clock.passed(3.0)
+    clock.mark_played(3.0)
     assert clock.due(4.0) == math.inf
     clock.resume(60.0)
     assert clock.due(4.0) == 61.0
@@ -162,8 +162,8 @@ def test_another_rate_counts_from_where_it_was_set_on_and_stays_in_bounds() -> N
 def test_only_a_stall_is_given_up() -> None:
     clock = ReplayClock(1.0)
     clock.start(0.0)
-    clock.give_up(0.5 * STALL_SECONDS)
-    clock.give_up(math.inf)
+    clock.skip_stall(0.5 * STALL_SECONDS)
+    clock.skip_stall(math.inf)
     assert (clock.lost, clock.due(1.0)) == (0.0, 1.0)
-    clock.give_up(5.0)
+    clock.skip_stall(5.0)
     assert (clock.lost, clock.due(1.0)) == (5.0, 6.0)
