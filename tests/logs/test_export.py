@@ -20,7 +20,7 @@ from rlv_landing.history import History
 from rlv_landing.summary import summarise
 from rlv_landing.tables.landing import comparison_table
 from rlv_landing.validation.measures import leg_work
-from rlv_ros_bridge.logs.export import part
+from rlv_ros_bridge.logs.export import select_rows
 from rlv_ros_bridge.logs.history import log_history
 from rlv_ros_bridge.logs.reader import LogReader
 
@@ -158,8 +158,8 @@ def test_topics_span_and_step_choose_rows_and_columns(one_log: Path, tmp_path: P
     assert [round(1e3 * float(row.split(",")[0])) for row in rows[1:]] == list(range(100, 501, 10))
     whole = log_history(one_log)
     # Every 2.5 ms of 1 ms samples: the first instant in each, none made up between.
-    assert np.allclose(part(whole, every=0.0025).time[:5], [0.0, 0.003, 0.005, 0.008, 0.01])
-    same(part(whole, every=1e-9), whole)
+    assert np.allclose(select_rows(whole, every=0.0025).time[:5], [0.0, 0.003, 0.005, 0.008, 0.01])
+    same(select_rows(whole, every=1e-9), whole)
 
 
 def test_a_cut_log_is_exported_as_far_as_it_goes(one_log: Path, tmp_path: Path) -> None:

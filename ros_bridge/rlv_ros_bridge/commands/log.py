@@ -169,7 +169,7 @@ def export(
     Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged.
     """
     from ..logs.bag_reader import open_log
-    from ..logs.export import ENDINGS, part, write_history
+    from ..logs.export import ENDINGS, select_rows, write_history
     from ..logs.history import read_history
 
     if output is None and plot is None:
@@ -186,7 +186,7 @@ def export(
     history, notes = read_history(
         reader, [name.strip() for given in topics for name in given.split(",") if name.strip()]
     )
-    history = part(history, start, end, every)
+    history = select_rows(history, start, end, every)
     if output is not None:
         write_history(history, output)
         click.echo(

@@ -37,8 +37,8 @@ from .selection import ReplayOptions, Selection
 # The system ends a sleep up to some hundred microseconds late, so the last part of a wait is a busy
 # loop [s].
 BUSY_WAIT_SECONDS = 300e-6
-# Serving the node's services once costs half a millisecond. It is done every SERVICE_SECONDS where
-# the next message is not due for SERVICE_GAP_SECONDS, and every LONGEST_SERVICE_SECONDS in any case.
+# Serving the node's services once costs half a millisecond. It is done every SERVICE_SECONDS if the
+# next message is not due for SERVICE_GAP_SECONDS, else every LONGEST_SERVICE_SECONDS.
 SERVICE_SECONDS = 0.05
 SERVICE_GAP_SECONDS = 2e-3
 LONGEST_SERVICE_SECONDS = 0.5

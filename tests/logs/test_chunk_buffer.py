@@ -11,7 +11,7 @@ import pytest
 from log_tools import CDR, CLOCK_TYPE, messages_of
 from mcap.reader import make_reader
 
-from rlv_ros_bridge.logs.open_chunk import TIMES
+from rlv_ros_bridge.logs.chunk_buffer import MESSAGE_TIMES
 from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
 from rlv_ros_bridge.messages.qos import TELEMETRY
 
@@ -33,12 +33,15 @@ def record(folder: Path, chunk_messages: int, by_the_library: bool) -> tuple[Pat
     if by_the_library:
         recorder._chunk._builder = None
     expected: MESSAGES = {name: [] for name in (*SIZES, SINGLE)}
-    heads = recorder.begin_samples(SIZES)
+    prefixes = recorder.begin_samples(SIZES)
     for k in range(1500):
         time = 1000 * k
         data = [CDR + random.randbytes(size - len(CDR)) for size in SIZES.values()]
         recorder.write_sample(
-            time, b"".join(head + TIMES.pack(k, time, time) + d for head, d in zip(heads, data))
+            time,
+            b"".join(
+                prefix + MESSAGE_TIMES.pack(k, time, time) + d for prefix, d in zip(prefixes, data)
+            ),
         )
         for name, d in zip(SIZES, data):
             expected[name].append((time, d))
