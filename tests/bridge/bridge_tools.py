@@ -1,6 +1,4 @@
-"""What the tests of nodes and logs share: commands in processes of their own, a listener in another
-one, a ROS domain for each test.
-"""
+"""Tools for tests of nodes and logs: commands and listeners as processes, ROS domains, fixtures."""
 
 from __future__ import annotations
 
@@ -89,8 +87,8 @@ def record(fmu: Path, folder: Path, *arguments: object) -> Path:
 
 
 @dataclass(frozen=True)
-class Heard:
-    """A message that the listener received: source and receive time [ns] are Fast DDS's own."""
+class ReceivedMessage:
+    """A message that the listener received; both times are Fast DDS's own [ns]."""
 
     topic: str
     source_time: int
@@ -99,11 +97,17 @@ class Heard:
 
 
 class Listener:
-    """Another process that subscribes to `topics` (name -> type), reliably, and keeps the bytes
-    that it receives.
+    """Another process that subscribes to topics, reliably, and keeps the bytes that it receives.
 
-    With `expected` (name -> count) it ends by itself once it has heard them all; else when `finish`
-    is called and it has grown silent.
+    With `expected` it ends once it has received them all. Otherwise it ends when `finish` is called
+    and no more messages come.
+
+    Args:
+        topics: name -> type.
+        folder: where it writes them.
+        domain: ROS domain.
+        expected: name -> number of messages.
+        announce: number of messages of the last topic for `wait_for_announcement`.
     """
 
     def __init__(
@@ -114,7 +118,7 @@ class Listener:
         expected: Mapping[str, int] | None = None,
         announce: int = 0,
     ) -> None:
-        self.output = folder / f"heard-{domain}.pickle"
+        self.output = folder / f"received-{domain}.pickle"
         pairs = [f"{name}={kind}={(expected or {}).get(name, 0)}" for name, kind in topics.items()]
         self.process = subprocess.Popen(
             [sys.executable, str(HERE / "listener.py"), str(self.output), str(announce), *pairs],
@@ -131,15 +135,15 @@ class Listener:
         return output.readline().strip()
 
     def wait_for_announcement(self) -> None:
-        """Returns once `announce` messages of the last topic have been heard."""
+        """Waits until `announce` messages of the last topic have been received."""
         assert self._line() == "announced"
 
-    def finish(self) -> list[Heard]:
-        """What was heard, in the order in which it was sent."""
+    def finish(self) -> list[ReceivedMessage]:
+        """The received messages, in the order in which they were sent."""
         self.process.communicate(timeout=TIMEOUT)
         with self.output.open("rb") as f:
-            heard = [Heard(*entry) for entry in pickle.load(f)]
-        return sorted(heard, key=lambda h: h.source_time)
+            received = [ReceivedMessage(*entry) for entry in pickle.load(f)]
+        return sorted(received, key=lambda m: m.source_time)
 
     def stop(self) -> None:
         """Ends the process if it still runs."""
@@ -148,7 +152,7 @@ class Listener:
             self.process.communicate(timeout=TIMEOUT)
 
 
-def by_topic(messages: Sequence[Heard]) -> dict[str, list[bytes]]:
+def by_topic(messages: Sequence[ReceivedMessage]) -> dict[str, list[bytes]]:
     """The bytes of each topic, in order."""
     found: dict[str, list[bytes]] = {}
     for m in messages:
@@ -162,9 +166,7 @@ def complaints(stderr: str) -> list[str]:
 
 
 def only_stalls(stderr: str) -> bool:
-    """Whether nothing is on stderr but, on a machine that is busy with other things, that wall time
-    was lost.
-    """
+    """Whether nothing is on stderr but warnings of lost wall time, as on a busy machine."""
     return all(
         line.startswith("warning: ") and "lost to stalls" in line for line in complaints(stderr)
     )

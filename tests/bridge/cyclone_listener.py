@@ -1,8 +1,7 @@
-"""A participant that is no ROS and no Fast DDS: `cyclone_listener.py OUTPUT COUNT` hears
-`rt/landing/struts` by Cyclone DDS.
+"""A participant without ROS and Fast DDS: `cyclone_listener.py OUTPUT COUNT`.
 
-Prints `matched` once its reader has found the writer. Ends when it has had COUNT samples, and
-writes stamps, positions and forces as JSON.
+Receives `rt/landing/struts` by Cyclone DDS. Prints `matched` once its reader has found the writer.
+Ends after COUNT samples, and writes stamps, positions and forces as JSON.
 """
 
 import json
@@ -54,10 +53,10 @@ def main(output: str, count: int) -> None:
     reader = DataReader(
         participant, Topic(participant, "rt/landing/struts", JointState), qos=qos, listener=matched
     )
-    heard: list[tuple[int, list[str], list[float], list[float]]] = []
-    while len(heard) < count:
+    received: list[tuple[int, list[str], list[float], list[float]]] = []
+    while len(received) < count:
         for m in reader.take_iter(timeout=duration(seconds=60)):
-            heard.append(
+            received.append(
                 (
                     m.header.stamp.sec * 10**9 + m.header.stamp.nanosec,
                     list(m.name),
@@ -65,11 +64,11 @@ def main(output: str, count: int) -> None:
                     list(m.effort),
                 )
             )
-            if len(heard) == count:
+            if len(received) == count:
                 break
         else:
             break
-    Path(output).write_text(json.dumps(heard), encoding="utf-8")
+    Path(output).write_text(json.dumps(received), encoding="utf-8")
 
 
 if __name__ == "__main__":

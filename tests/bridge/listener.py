@@ -21,18 +21,18 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
-HEARD: list[tuple[str, int, int, bytes]] = []
+RECEIVED: list[tuple[str, int, int, bytes]] = []
 COUNTS: dict[str, int] = {}
 
 
-def hear(topic: str, message: bytes, info: Any) -> None:
-    HEARD.append((topic, info["source_timestamp"], info["received_timestamp"], message))
+def receive(topic: str, message: bytes, info: Any) -> None:
+    RECEIVED.append((topic, info["source_timestamp"], info["received_timestamp"], message))
     COUNTS[topic] += 1
 
 
 def two_arguments(topic: str) -> Any:
     # rclpy counts the callback's arguments to see whether it wants the message's info.
-    return lambda message, info: hear(topic, message, info)
+    return lambda message, info: receive(topic, message, info)
 
 
 def main(output: str, announce: int, topics: list[list[str]]) -> None:
@@ -51,14 +51,14 @@ def main(output: str, announce: int, topics: list[list[str]]) -> None:
         executor.add_node(node)
         print("listening", flush=True)
         threading.Thread(target=partial(wait_for_end, closed), daemon=True).start()
-        last, quiet_since, told = topics[-1][0], time.monotonic(), False
+        last, quiet_since, announced = topics[-1][0], time.monotonic(), False
         while True:
-            before = len(HEARD)
+            before = len(RECEIVED)
             executor.spin_once(timeout_sec=0.1)
-            if len(HEARD) > before:
+            if len(RECEIVED) > before:
                 quiet_since = time.monotonic()
-            if announce and not told and COUNTS[last] >= announce:
-                told = True
+            if announce and not announced and COUNTS[last] >= announce:
+                announced = True
                 print("announced", flush=True)
             if any(expected.values()) and all(
                 COUNTS[name] >= count for name, count in expected.items()
@@ -69,7 +69,7 @@ def main(output: str, announce: int, topics: list[list[str]]) -> None:
         executor.shutdown()
         node.destroy_node()
     with Path(output).open("wb") as f:
-        pickle.dump(HEARD, f)
+        pickle.dump(RECEIVED, f)
 
 
 def wait_for_end(closed: threading.Event) -> None:

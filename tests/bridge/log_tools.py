@@ -1,6 +1,4 @@
-"""What the tests of logs share: small logs, cut ones, changed ones, made with MCAP's own writer and
-readers.
-"""
+"""Tools for tests of logs: small, cut and changed logs, made with MCAP's own writer and readers."""
 
 from __future__ import annotations
 
@@ -49,8 +47,9 @@ def small_log(folder: Path, chunks: int = 4, messages: int = 12) -> Path:
 
 
 def messages_of(file: Path) -> list[tuple[str, int, int, bytes]]:
-    """Topic, time, sequence and bytes of every message, by MCAP's seeking reader, in the file's
-    order.
+    """Topic, time, sequence and bytes of every message, in the file's order.
+
+    MCAP's own seeking reader reads them.
     """
     with file.open("rb") as f:
         found = make_reader(f, validate_crcs=True).iter_messages(log_time_order=False)
@@ -58,8 +57,9 @@ def messages_of(file: Path) -> list[tuple[str, int, int, bytes]]:
 
 
 def rewrite(source: Path, folder: Path, change: Change = lambda record: record) -> Path:
-    """A complete log in which `change` was applied to every message, attachment and metadata of
-    `source`; None leaves one out.
+    """A complete log: `source` with `change` applied to messages, attachments and metadata.
+
+    A record for which `change` returns None is left out.
     """
     folder.mkdir()
     target = folder / f"{folder.name}_0.mcap"

@@ -1,8 +1,7 @@
-"""Reads and recovers mutated copies of a log, in a process of its own with little memory:
-mutations.py FILE COUNT SEED FOLDER.
+"""Reads and recovers mutated copies of a log: mutations.py FILE COUNT SEED FOLDER.
 
-Any exception but an error for the user ends it, as does a case that takes a minute. What is
-recovered must be in the log.
+Runs as a process with little memory. Any exception but an error for the user ends it, as does a
+case that takes a minute. All that is recovered must be in the log.
 """
 
 from __future__ import annotations
@@ -27,31 +26,29 @@ MEMORY = 2 * 1024**3
 
 
 def mutated(data: bytes, generator: random.Random) -> bytes:
-    """`data` with one to four bits flipped, bytes put in, taken out, repeated, or made a huge
-    length; or cut.
-    """
-    spoilt = bytearray(data)
+    """`data` after random mutations: bits flipped, bytes inserted, removed or repeated, a cut."""
+    mutant = bytearray(data)
     for _ in range(generator.choice((1, 1, 1, 2, 4))):
-        at = generator.randrange(len(spoilt))
+        at = generator.randrange(len(mutant))
         length = generator.choice((1, 2, 9, 100, 3000))
         kind = generator.randrange(6)
         if kind == 0:
-            spoilt[at] ^= 1 << generator.randrange(8)
+            mutant[at] ^= 1 << generator.randrange(8)
         elif kind == 1:
-            spoilt[at:at] = generator.randbytes(length)
-        elif kind == 2 and len(spoilt) > length:
-            del spoilt[at : at + length]
+            mutant[at:at] = generator.randbytes(length)
+        elif kind == 2 and len(mutant) > length:
+            del mutant[at : at + length]
         elif kind == 3:
-            spoilt[at:at] = spoilt[at : at + length]
+            mutant[at:at] = mutant[at : at + length]
         elif kind == 4:
-            spoilt[at : at + 8] = generator.choice((2**63, 2**40, 2**31, 0)).to_bytes(8, "little")
-        elif len(spoilt) > 1000:
-            del spoilt[at:]
-    return bytes(spoilt)
+            mutant[at : at + 8] = generator.choice((2**63, 2**40, 2**31, 0)).to_bytes(8, "little")
+        elif len(mutant) > 1000:
+            del mutant[at:]
+    return bytes(mutant)
 
 
 def attempt(action: Callable[[Path], str], path: Path) -> bool:
-    """Whether it was done, or refused in one line."""
+    """Whether the action was done; false if it was refused in one line."""
     try:
         return bool(action(path))
     except LandingError as e:
@@ -61,10 +58,10 @@ def attempt(action: Callable[[Path], str], path: Path) -> bool:
 
 
 def main(file: Path, count: int, seed: int, folder: Path) -> dict[str, int]:
-    """How many cases there were, and what became of them."""
+    """The number of cases, and of those that were read and recovered."""
     original = file.read_bytes()
     wanted = set(messages_of(file))
-    told = {"cases": 0, "read": 0, "recovered": 0}
+    counts = {"cases": 0, "read": 0, "recovered": 0}
     for case in range(count):
         faulthandler.dump_traceback_later(60.0, exit=True)
         generator = random.Random(f"{seed}-{case}")
@@ -75,14 +72,14 @@ def main(file: Path, count: int, seed: int, folder: Path) -> dict[str, int]:
         (source / f"run_0{generator.choice(('.mcap', '.mcap.part'))}").write_bytes(
             mutated(original, generator)
         )
-        told["cases"] += 1
-        told["read"] += attempt(lambda path: log_info(open_log(path)).text(), source)
-        told["recovered"] += attempt(lambda path: recover(path).text(), source)
+        counts["cases"] += 1
+        counts["read"] += attempt(lambda path: log_info(open_log(path)).text(), source)
+        counts["recovered"] += attempt(lambda path: recover(path).text(), source)
         if target.exists():
-            invented = set(messages_of(target / "mutated-recovered_0.mcap")) - wanted
-            assert not invented, f"case {case}: {len(invented)} messages are not in the log"
+            foreign = set(messages_of(target / "mutated-recovered_0.mcap")) - wanted
+            assert not foreign, f"case {case}: {len(foreign)} messages are not in the log"
     faulthandler.cancel_dump_traceback_later()
-    return told
+    return counts
 
 
 if __name__ == "__main__":

@@ -1,6 +1,4 @@
-"""The landing node as another participant sees it: its services, parameters, inputs and lifecycle,
-called from this process.
-"""
+"""The landing node as another participant sees it: services, parameters, inputs and lifecycle."""
 
 from __future__ import annotations
 
@@ -76,7 +74,7 @@ class Remote:
         return future.result()
 
     def change(self, transition: int) -> bool:
-        """Whether the lifecycle's transition succeeded."""
+        """Triggers a transition of the lifecycle; whether it succeeded."""
         return bool(
             self.call(
                 ChangeState,
@@ -100,12 +98,12 @@ class Remote:
         return str(self.call(GetState, "get_state", GetState.Request()).current_state.label)
 
     def trigger(self, service: str) -> tuple[bool, str]:
-        """What `~/reset` or `~/step` answers."""
+        """The answer of `~/reset` or `~/step`: success and message."""
         answer = self.call(Trigger, service, Trigger.Request())
         return bool(answer.success), str(answer.message)
 
     def set(self, **values: Any) -> list[SetParametersResult]:
-        """What setting parameters one by one gives; `__` in a name stands for a dot."""
+        """Sets parameters one by one, and gives the results; `__` in a name stands for a dot."""
         return list(
             self.call(
                 SetParameters,
@@ -115,7 +113,7 @@ class Remote:
         )
 
     def set_together(self, **values: Any) -> SetParametersResult:
-        """What setting parameters at once gives."""
+        """Sets parameters at once, and gives the result."""
         request = SetParametersAtomically.Request(parameters=parameters(values))
         return self.call(SetParametersAtomically, "set_parameters_atomically", request).result
 
@@ -144,11 +142,11 @@ class Remote:
 
     def first(self, kind: Any, topic: str, qos: Any = LATCHED) -> Any:
         """The first message that comes on `topic`."""
-        heard: list[Any] = []
-        subscription = self.node.create_subscription(kind, topic, heard.append, qos)
-        self.until(lambda: bool(heard))
+        received: list[Any] = []
+        subscription = self.node.create_subscription(kind, topic, received.append, qos)
+        self.until(lambda: bool(received))
         self.node.destroy_subscription(subscription)
-        return heard[0]
+        return received[0]
 
     def until(self, happened: Any) -> None:
         """Spins until `happened()` is true."""

@@ -1,6 +1,4 @@
-"""A command of the bridge on a terminal of its own (a pseudo-terminal), with job control as a shell
-has it.
-"""
+"""A command of the bridge on a pseudo-terminal of its own, with job control as in a shell."""
 
 from __future__ import annotations
 
@@ -19,8 +17,8 @@ from types import TracebackType
 
 from bridge_tools import TIMEOUT, command, environment
 
-# Stands for the shell: starts the command as a job in the foreground of the terminal, and tells on
-# file 3 when it stops or ends.
+# Stands for the shell: starts the command as a job in the foreground of the terminal, and writes
+# to file 3 when it stops or ends.
 SHELL = """
 import fcntl, os, signal, sys, termios
 signal.signal(signal.SIGTTOU, signal.SIG_IGN)
@@ -53,19 +51,24 @@ class Terminal:
         fcntl.ioctl(self.slave, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 150, 0, 0))
         self.settings = termios.tcgetattr(self.slave)
         self.shown = ""
-        told, tell = os.pipe()
-        self._told = os.fdopen(told)
+        status_read, status_write = os.pipe()
+        self._status_pipe = os.fdopen(status_read)
         self._shell = subprocess.Popen(
-            [sys.executable, "-c", f"import os; os.dup2({tell}, 3)\n{SHELL}", *command(*arguments)],
+            [
+                sys.executable,
+                "-c",
+                f"import os; os.dup2({status_write}, 3)\n{SHELL}",
+                *command(*arguments),
+            ],
             env=environment(domain, PYTHONUNBUFFERED="1"),
             stdin=self.slave,
             stdout=self.slave,
             stderr=self.slave,
             start_new_session=True,
-            pass_fds=(tell,),
+            pass_fds=(status_write,),
         )
-        os.close(tell)
-        self.pid = int(self._told.readline())
+        os.close(status_write)
+        self.pid = int(self._status_pipe.readline())
 
     def __enter__(self) -> Terminal:
         return self
@@ -82,7 +85,7 @@ class Terminal:
         self._shell.wait(TIMEOUT)
         os.close(self.master)
         os.close(self.slave)
-        self._told.close()
+        self._status_pipe.close()
 
     def press(self, keys: str) -> None:
         """Types `keys`."""
@@ -101,22 +104,22 @@ class Terminal:
     def status(self) -> int:
         """The wait status of the command's next stop, or of its end.
 
-        What it shows meanwhile is read, lest it waits for that.
+        Its output is read meanwhile, so that it never waits for that.
         """
-        while not select.select([self._told], [], [], 0.0)[0]:
+        while not select.select([self._status_pipe], [], [], 0.0)[0]:
             if (
-                select.select([self.master, self._told], [], [], TIMEOUT)[0]
+                select.select([self.master, self._status_pipe], [], [], TIMEOUT)[0]
                 and select.select([self.master], [], [], 0.0)[0]
             ):
                 self.shown += os.read(self.master, 65536).decode(errors="replace")
-        return int(self._told.readline())
+        return int(self._status_pipe.readline())
 
     @property
     def is_as_it_was(self) -> bool:
-        """Whether the terminal has the settings that it had at first."""
+        """Whether the terminal has its first settings."""
         return termios.tcgetattr(self.slave) == self.settings
 
     @property
     def line_by_line(self) -> bool:
-        """Whether the terminal hands on whole lines, as it does for a shell, not single keys."""
+        """Whether the terminal passes on whole lines, as for a shell, not single keys."""
         return bool(termios.tcgetattr(self.slave)[3] & termios.ICANON)

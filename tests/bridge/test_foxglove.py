@@ -38,7 +38,7 @@ def last(one_log: Path) -> dict[str, Any]:
 
 
 def at(path: str, last: dict[str, Any]) -> list[Any]:
-    """What Foxglove finds at a message path such as `/topic.field[0].list[:]{key=="name"}.value`."""
+    """The values at a message path of Foxglove, `/topic.field[0].list[:]{key=="name"}.value`."""
     topic = re.match(r"[/\w]+", path)
     assert topic is not None
     found, end = [last[topic[0]]], topic.end()
@@ -114,7 +114,7 @@ def test_every_message_path_leads_to_one_value_in_a_log(
 def test_legs_have_their_own_struts_and_colours(
     layout: dict[str, Any], last: dict[str, Any]
 ) -> None:
-    told = []
+    coloured = []
     for panel, how in layout["configById"].items():
         for path in how.get("paths", ()):
             if path["label"] in LEGS_OF:
@@ -126,5 +126,5 @@ def test_legs_have_their_own_struts_and_colours(
                 assert index is None or name.endswith(
                     panel.split("!")[1].rsplit("-", 1)[0].replace("-", "_")
                 )
-                told.append(panel)
-    assert len(told) == 4 * len(set(told)) == 16
+                coloured.append(panel)
+    assert len(coloured) == 4 * len(set(coloured)) == 16

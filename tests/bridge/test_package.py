@@ -92,7 +92,7 @@ def test_the_package_says_its_version_and_all_that_it_imports() -> None:
     assert package.findtext("version") == rlv_landing.__version__
     named = {e.text for e in package.iter("exec_depend")}
     imported = set()
-    for file in (*(PACKAGE / "rlv_ros_bridge").glob("*.py"), LAUNCH):
+    for file in (*(PACKAGE / "rlv_ros_bridge").rglob("*.py"), LAUNCH):
         for node in ast.walk(ast.parse(file.read_text())):
             if isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
                 imported.add(node.module.split(".")[0])
@@ -111,14 +111,14 @@ def test_the_launch_file_and_its_parameter_file_ask_for_what_the_node_has() -> N
     # ROS 2's launch is not on PyPI: what can be seen without running it.
     tree = ast.parse(LAUNCH.read_text())
     compile(tree, str(LAUNCH), "exec")
-    (asked,) = (
+    (given,) = (
         node
         for node in ast.walk(tree)
         if isinstance(node, ast.keyword) and node.arg == "parameters"
     )
     keys = {
         key.value
-        for d in ast.walk(asked)
+        for d in ast.walk(given)
         if isinstance(d, ast.Dict)
         for key in d.keys
         if isinstance(key, ast.Constant)

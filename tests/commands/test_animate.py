@@ -46,8 +46,9 @@ def frames_of(path: Path) -> NDArray[np.uint8]:
 
 
 def places_of_the_mark(frames: NDArray[np.uint8]) -> NDArray[np.intp]:
-    """The pixel column of the time mark in each frame: in the right half, the one that is darkest
-    beyond what is dark in all frames.
+    """The pixel column of the time mark in each frame.
+
+    It is the one in the right half that is darkest beyond what is dark in all frames.
     """
     half = frames.shape[2] // 2
     dark = (frames[:, :, half:].max(axis=3) < DARK).sum(axis=1)
@@ -149,7 +150,7 @@ def test_a_log_without_parameters_takes_those_that_are_named(one_log: Path, tmp_
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "expected"),
     [
         (("l.avi",), "must end in .gif or .mp4"),
         ((), "name one to write"),
@@ -168,12 +169,12 @@ def test_a_log_without_parameters_takes_those_that_are_named(one_log: Path, tmp_
     ],
 )  # fmt: skip
 def test_bad_input_is_one_line_and_leaves_nothing(
-    tmp_path: Path, arguments: tuple[str, ...], said: str
+    tmp_path: Path, arguments: tuple[str, ...], expected: str
 ) -> None:
     (tmp_path / "there.gif").write_bytes(b"mine")
     done = run("animate", *arguments, cwd=tmp_path)
     assert done.returncode == 2
-    assert said in one_error_line(done)
+    assert expected in one_error_line(done)
     assert [(p.name, p.read_bytes()) for p in tmp_path.iterdir()] == [("there.gif", b"mine")]
 
 
@@ -218,10 +219,10 @@ def test_a_signal_leaves_no_half_film(tmp_path: Path, number: signal.Signals, co
         assert time.monotonic() < deadline
         time.sleep(0.01)
     os.killpg(process.pid, number)
-    _, told = process.communicate(timeout=TIMEOUT)
+    _, stderr = process.communicate(timeout=TIMEOUT)
     assert process.returncode == code
-    assert [line for line in told.splitlines() if "Traceback" in line or "error" in line] == []
-    assert number is signal.SIGTERM or told.splitlines()[-1] == "interrupted"
+    assert [line for line in stderr.splitlines() if "Traceback" in line or "error" in line] == []
+    assert number is signal.SIGTERM or stderr.splitlines()[-1] == "interrupted"
     assert not list(tmp_path.iterdir())
 
 

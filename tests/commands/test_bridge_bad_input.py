@@ -71,10 +71,10 @@ def test_node_refuses_what_is_not_our_fmu(fmu: Path, tmp_path: Path) -> None:
     text.write_text("not a zip")
     with zipfile.ZipFile(archive, "w") as z:
         z.writestr("readme.txt", "no model here")
-    with zipfile.ZipFile(fmu) as ours, zipfile.ZipFile(foreign, "w") as z:
+    with zipfile.ZipFile(fmu) as source, zipfile.ZipFile(foreign, "w") as z:
         z.writestr(
             "modelDescription.xml",
-            ours.read("modelDescription.xml").replace(
+            source.read("modelDescription.xml").replace(
                 b'modelName="RlvLanding"', b'modelName="Pendulum"'
             ),
         )
@@ -93,16 +93,16 @@ def test_node_refuses_what_is_not_our_fmu(fmu: Path, tmp_path: Path) -> None:
 
 
 def test_node_never_overwrites_and_says_what_cannot_be_written(fmu: Path, tmp_path: Path) -> None:
-    taken, file = tmp_path / "taken", tmp_path / "file"
-    taken.mkdir()
+    existing, file = tmp_path / "existing", tmp_path / "file"
+    existing.mkdir()
     file.write_text("here")
-    done = run("node", "--fmu", fmu, "--record", taken)
+    done = run("node", "--fmu", fmu, "--record", existing)
     assert "exists; logs are never overwritten" in one_error_line(done)
     assert done.returncode == 2
     done = run("node", "--fmu", fmu, "--log-root", file / "logs")
     assert "cannot be made" in one_error_line(done)
     assert done.returncode == 2
-    assert list(taken.iterdir()) == []
+    assert list(existing.iterdir()) == []
     assert file.read_text() == "here"
 
 

@@ -1,5 +1,6 @@
-"""A checksum of 0, which MCAP takes for none: damage where the log's writer gives checksums, and no
-obstacle where it does not.
+"""A checksum of 0, which in MCAP means that there is none.
+
+It is damage in a log whose writer gives checksums, and accepted in another.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ PER_CHUNK = 12
 
 def foreign_log(
     file: Path,
+    *,
     checksums: bool,
     chunked: bool = True,
     compression: CompressionType = CompressionType.ZSTD,
@@ -61,15 +63,16 @@ def chunks_of(file: Path) -> list[ChunkIndex]:
 
 
 def without_checksum(data: bytes, chunk: ChunkIndex, flip: int | None) -> bytes:
-    """`data` with the chunk's checksum zeroed and, at the byte `flip` of its record, one bit
-    changed.
+    """`data` with the chunk's checksum set to 0.
+
+    Also one bit at the byte `flip` of the chunk's record is changed; None: no other change.
     """
-    spoilt = bytearray(data)
+    changed = bytearray(data)
     at = chunk.chunk_start_offset
-    spoilt[at + CHECKSUM : at + CHECKSUM + 4] = bytes(4)
+    changed[at + CHECKSUM : at + CHECKSUM + 4] = bytes(4)
     if flip is not None:
-        spoilt[at + flip] ^= 1 << (flip % 8)
-    return bytes(spoilt)
+        changed[at + flip] ^= 1 << (flip % 8)
+    return bytes(changed)
 
 
 def recovered(file: Path, folder: Path) -> list[tuple[str, int, int, bytes]]:
@@ -78,8 +81,9 @@ def recovered(file: Path, folder: Path) -> list[tuple[str, int, int, bytes]]:
 
 
 def decompresses(data: bytes, chunk: ChunkIndex) -> bool:
-    """Whether the damaged chunk still yields as many bytes as it should: then only the checksum can
-    tell.
+    """Whether the damaged chunk still gives as many bytes as it should.
+
+    Then only the checksum shows the damage.
     """
     start = chunk.chunk_start_offset
     try:
@@ -93,27 +97,27 @@ def decompresses(data: bytes, chunk: ChunkIndex) -> bool:
 
 @pytest.mark.parametrize("ours", [True, False])
 def test_nothing_is_invented_where_a_checksum_was_zeroed_and_a_bit_of_the_chunk_changed(
-    tmp_path: Path, ours: bool
+    tmp_path: Path, *, ours: bool
 ) -> None:
     file = (
         small_log(tmp_path / "log", chunks=3, messages=PER_CHUNK)
         if ours
         else foreign_log(tmp_path / "log.mcap", checksums=True)
     )
-    data, wanted, spoilt_file = file.read_bytes(), messages_of(file), tmp_path / "spoilt.mcap"
+    data, wanted, changed_file = file.read_bytes(), messages_of(file), tmp_path / "changed.mcap"
     tried = 0
     for hit, chunk in enumerate(chunks_of(file)):
         assert data[chunk.chunk_start_offset + CHECKSUM :][:4] != bytes(4)
-        # A checksum that is all that was changed may go, too: nothing vouches for the chunk then.
+        # A checksum set to 0 alone may also cost the chunk, for nothing shows that it is right.
         places = [None, *range(DATA, chunk.chunk_length)]
-        spoilt = [without_checksum(data, chunk, place) for place in places]
+        changed = [without_checksum(data, chunk, place) for place in places]
         plausible = [
-            s for s, place in zip(spoilt, places) if place is None or decompresses(s, chunk)
+            s for s, place in zip(changed, places) if place is None or decompresses(s, chunk)
         ]
         tried += len(plausible)
         for number, bytes_now in enumerate(plausible):
-            spoilt_file.write_bytes(bytes_now)
-            stream = RecordStream(spoilt_file)
+            changed_file.write_bytes(bytes_now)
+            stream = RecordStream(changed_file)
             found = [m.sequence for m in stream if isinstance(m, Message)]
             assert found == [
                 sequence for i, (*_, sequence, _) in enumerate(wanted) if i // PER_CHUNK != hit
@@ -121,7 +125,7 @@ def test_nothing_is_invented_where_a_checksum_was_zeroed_and_a_bit_of_the_chunk_
             assert any("chunk" in text for text in stream.damage)
             if number in (0, len(plausible) // 2, len(plausible) - 1):
                 kept = [m for i, m in enumerate(wanted) if i // PER_CHUNK != hit]
-                assert recovered(spoilt_file, tmp_path / f"out-{hit}-{number}") == kept
+                assert recovered(changed_file, tmp_path / f"out-{hit}-{number}") == kept
     # Many a flip is noticed by zstd itself; these were not.
     assert tried > 50
 
@@ -137,7 +141,7 @@ def test_nothing_is_left_of_our_log_whose_only_chunk_lost_its_checksum(tmp_path:
 @pytest.mark.parametrize("compression", [CompressionType.ZSTD, CompressionType.NONE])
 @pytest.mark.parametrize("chunked", [True, False])
 def test_logs_of_others_without_checksums_are_read_and_recovered(
-    tmp_path: Path, compression: CompressionType, chunked: bool
+    tmp_path: Path, compression: CompressionType, *, chunked: bool
 ) -> None:
     file = foreign_log(
         tmp_path / "log.mcap", checksums=False, chunked=chunked, compression=compression
@@ -167,10 +171,10 @@ def test_an_index_of_our_log_that_turned_into_a_message_is_none(tmp_path: Path) 
     wanted, data = messages_of(file), file.read_bytes()
     for number, chunk in enumerate(chunks_of(file)):
         for channel, at in chunk.message_index_offsets.items():
-            spoilt = bytearray(data)
+            changed = bytearray(data)
             # One bit makes a message index, opcode 7, a message, opcode 5.
-            spoilt[at] ^= 2
-            file.write_bytes(spoilt)
+            changed[at] ^= 2
+            file.write_bytes(changed)
             assert recovered(file, tmp_path / f"out-{number}-{channel}") == wanted
     assert number == 3
 

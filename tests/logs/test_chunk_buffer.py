@@ -1,6 +1,4 @@
-"""Messages that are recorded a sample at a time are those that MCAP's own writer would have
-written, one by one.
-"""
+"""Messages recorded a sample at a time are byte for byte what MCAP's own writer writes."""
 
 from __future__ import annotations
 
@@ -20,9 +18,10 @@ SINGLE = "/single"
 MESSAGES = dict[str, list[tuple[int, bytes]]]
 
 
-def record(folder: Path, chunk_messages: int, by_the_library: bool) -> tuple[Path, MESSAGES]:
-    """A log of 1500 samples and single messages between them, and what it must hold; a chunk is
-    written every so many samples.
+def record(folder: Path, chunk_messages: int, *, by_the_library: bool) -> tuple[Path, MESSAGES]:
+    """A log of 1500 samples and single messages between them, and its expected messages.
+
+    A chunk is written every `chunk_messages` samples.
     """
     random = Random(3)
     recorder = Recorder(
@@ -71,9 +70,9 @@ def test_a_log_is_byte_for_byte_what_mcaps_own_writer_makes_of_its_messages(
 
 @pytest.mark.parametrize("by_the_library", [False, True])
 def test_every_message_is_in_a_chunk_of_at_most_64_kib_and_found_by_its_index(
-    tmp_path: Path, by_the_library: bool
+    tmp_path: Path, *, by_the_library: bool
 ) -> None:
-    path, expected = record(tmp_path / "log", 10**9, by_the_library)
+    path, expected = record(tmp_path / "log", 10**9, by_the_library=by_the_library)
     found = messages_of(path)
     for name, messages in expected.items():
         assert [

@@ -21,10 +21,10 @@ from rlv_ros_bridge.logs.reader import LogReader
 def test_log_info_sums_a_complete_log_up(log: Path, mode: str) -> None:
     done = run("log", "info", log, "--json")
     assert (done.returncode, done.stderr) == (0, "")
-    told = json.loads(done.stdout)
-    assert told["complete"]
-    assert (told["start"], told["duration"]) == (0.0, 1.0)
-    struts = next(t for t in told["topics"] if t["name"] == "/landing/struts")
+    report = json.loads(done.stdout)
+    assert report["complete"]
+    assert (report["start"], report["duration"]) == (0.0, 1.0)
+    struts = next(t for t in report["topics"] if t["name"] == "/landing/struts")
     assert struts == {
         "name": "/landing/struts",
         "type": "sensor_msgs/msg/JointState",
@@ -32,7 +32,7 @@ def test_log_info_sums_a_complete_log_up(log: Path, mode: str) -> None:
         "rate": 1000.0,
     }
     history = history_of(LogReader(log))
-    landing = told["landing"]
+    landing = report["landing"]
     assert (
         landing["outcome"]
         == OUTCOMES[int(Landing(load_preset("yue2022-figures"), mode).run(1.0)["status.phase"][-1])]
@@ -90,10 +90,10 @@ def test_damaged_bytes_never_break_the_reader(one_log: Path, tmp_path: Path) -> 
     damaged = tmp_path / "damaged.mcap"
     refused: list[str] = []
     for _ in range(60):
-        spoilt = bytearray(data)
+        changed = bytearray(data)
         for _ in range(generator.randrange(1, 20)):
-            spoilt[generator.randrange(8, len(spoilt))] = generator.randrange(256)
-        damaged.write_bytes(spoilt)
+            changed[generator.randrange(8, len(changed))] = generator.randrange(256)
+        damaged.write_bytes(changed)
         try:
             reader = LogReader(damaged)
             assert sum(1 for _ in reader.messages()) >= 0

@@ -34,8 +34,9 @@ def same(a: History, b: History) -> None:
 
 
 def recorded_by_others(log: Path, folder: Path, plugin: StoragePlugin, without: str = "") -> Path:
-    """What a recorder elsewhere makes of the same topics: its own clock, each topic late by another
-    time, one more topic.
+    """A recording of the same topics by another recorder.
+
+    It has its own clock, a different delay for each topic, and one more topic.
     """
     store = get_typestore(Stores.ROS2_JAZZY)
     reader = LogReader(log)

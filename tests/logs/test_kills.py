@@ -1,6 +1,4 @@
-"""Nodes that are ended by a signal at random moments: what is in their logs, held against what a
-subscriber had heard before.
-"""
+"""Nodes ended by a signal at random moments: their logs against what a subscriber received."""
 
 from __future__ import annotations
 
@@ -34,17 +32,17 @@ def stamps(messages: list[bytes]) -> list[float]:
 
 
 def ended(
-    fmu: Path, folder: Path, number: signal.Signals, heard: int, delay: float
+    fmu: Path, folder: Path, number: signal.Signals, received: int, delay: float
 ) -> tuple[float, int]:
-    """A node that records to `folder` and gets the signal once a subscriber has `heard` so many
-    samples, and `delay` [s] later.
+    """Ends a node that records to `folder` by a signal.
 
-    What was published last [s of simulation time] as the subscriber has it, -1 for nothing; and the
-    node's exit code.
+    The signal is sent `delay` [s] after a subscriber has received `received` samples. Returns the
+    simulation time of the last sample that the subscriber has [s], -1 for none, and the node's
+    exit code.
     """
     domain = new_domain()
-    listener = Listener(STRUTS, folder.parent, domain, announce=heard) if heard else None
-    waits = ("--wait-for-subscribers", 1) if heard else ()
+    listener = Listener(STRUTS, folder.parent, domain, announce=received) if received else None
+    waits = ("--wait-for-subscribers", 1) if received else ()
     node = start(
         "node",
         "--fmu",
@@ -76,7 +74,7 @@ def ended(
 
 
 def messages_of_stream_reader(file: Path) -> int:
-    """How many messages MCAP's own stream reader finds in a file that has no end."""
+    """The number of messages that MCAP's own stream reader finds in a file without an end."""
     count = 0
     with file.open("rb") as f:
         records = iter(StreamReader(f).records)
@@ -96,8 +94,9 @@ def last_of(folder: Path) -> float:
 
 
 def recovered(folder: Path) -> Path | None:
-    """The log that `log recover` makes of what a killed node has left, as rosbags opens it; None
-    where nothing whole was left.
+    """The log that `log recover` makes from a killed node's, opened by rosbags.
+
+    None where nothing whole was left.
     """
     target = folder.with_name("recovered")
     done = run("log", "recover", folder, "--output", target)
@@ -125,14 +124,14 @@ def test_a_node_ended_at_any_moment_leaves_a_log_that_lacks_at_most_half_a_secon
         generator = random.Random(f"{number.name}-{case}")
         # Every fourth while it starts, with nobody listening.
         early = case % 4 == 1
-        heard, delay = (
+        received, delay = (
             (0, generator.uniform(0.0, 2.5))
             if early
             else (generator.randint(1, 800), generator.uniform(0.0, 0.3))
         )
         folder = tmp_path / f"case-{case}" / "log"
         folder.parent.mkdir()
-        published, code = ended(fmu, folder, number, heard, delay)
+        published, code = ended(fmu, folder, number, received, delay)
         if early and not (folder.exists() and any(folder.iterdir())):
             continue
         if number is signal.SIGKILL:
@@ -161,10 +160,10 @@ def test_info_tells_what_a_killed_node_has_left(fmu: Path, tmp_path: Path) -> No
         done.stderr.strip()
         == f"warning: {folder} is cut: its writer did not finish it; all up to there was read"
     )
-    told = json.loads(done.stdout)
-    assert not told["complete"]
-    assert told["metadata"]["mode"] == "2-2"
-    assert published - LOSS <= told["start"] + told["duration"] <= published + 0.1
+    report = json.loads(done.stdout)
+    assert not report["complete"]
+    assert report["metadata"]["mode"] == "2-2"
+    assert published - LOSS <= report["start"] + report["duration"] <= published + 0.1
     (file,) = folder.iterdir()
-    assert messages_of_stream_reader(file) == told["messages"]
+    assert messages_of_stream_reader(file) == report["messages"]
     assert len(history_of(LogReader(folder))) > 1000 * (published - LOSS)

@@ -1,4 +1,4 @@
-"""The log, read by readers that are not ours, is the landing to the bit."""
+"""The log, read by independent readers, is the landing bit for bit."""
 
 from __future__ import annotations
 
@@ -106,16 +106,16 @@ def test_the_diagnostics_tell_phase_balance_pace_and_what_the_integrator_has_don
         decoded = make_reader(f, decoder_factories=[DecoderFactory()]).iter_decoded_messages(
             ["/diagnostics"]
         )
-        told = [
+        diagnostics = [
             (message.log_time, {v.key: v.value for v in array.status[0].values})
             for _, _, message, array in decoded
         ]
-    assert [time for time, _ in told] == [k * 10**8 for k in range(11)]
+    assert [time for time, _ in diagnostics] == [k * 10**8 for k in range(11)]
     landing = Landing(load_preset("yue2022-figures"), mode)
     for k in range(1001):
         landing.advance_to(k * 1e-3)
         if k % 100 == 0:
-            _, values = told[k // 100]
+            _, values = diagnostics[k // 100]
             assert {name: values[f"solver.{name}"] for name in landing.statistics} == {
                 n: str(c) for n, c in landing.statistics.items()
             }

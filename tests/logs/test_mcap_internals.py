@@ -1,4 +1,4 @@
-"""The private parts of MCAP's writer still are what the recorder takes them for."""
+"""The private parts of MCAP's writer have the meaning that the recorder relies on."""
 
 from __future__ import annotations
 

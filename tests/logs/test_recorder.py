@@ -1,4 +1,4 @@
-"""The recorder: rosbag2's layout, no overwriting, nothing half-written, and a disk that fills up."""
+"""The recorder: rosbag2's layout, no overwriting, nothing half-written, a full disk."""
 
 from __future__ import annotations
 
@@ -134,20 +134,20 @@ def test_a_full_disk_does_not_stop_the_landing_and_what_was_written_is_readable(
     )
     assert done.returncode == 1, done.stderr
     assert "finished: 3001 samples" in done.stdout
-    told = [line for line in done.stderr.splitlines() if "stopped after" in line]
-    assert len(told) == 2, done.stderr
-    assert "the landing continues without recording" in told[0]
-    assert told[1].startswith("error: recording to")
-    assert "File too large" in told[1]
+    lines = [line for line in done.stderr.splitlines() if "stopped after" in line]
+    assert len(lines) == 2, done.stderr
+    assert "the landing continues without recording" in lines[0]
+    assert lines[1].startswith("error: recording to")
+    assert "File too large" in lines[1]
     (file,) = folder.iterdir()
     reader = LogReader(folder)
     count = sum(1 for _ in reader.messages())
     assert reader.cut
     assert reader.metadata["mode"] == "2-2"
     # All but the chunk that did not fit any more.
-    announced = int(told[1].split("stopped after ")[1].split()[0])
+    reported = int(lines[1].split("stopped after ")[1].split()[0])
     # The message at which the disk was full may have been the last of a chunk that is on it.
-    assert announced - 1000 < count <= announced + 1
+    assert reported - 1000 < count <= reported + 1
     seen = 0
     # Half a record at the end: the stream reader's word for it depends on where it is cut.
     with file.open("rb") as f, suppress(EndOfFile, struct.error, ZstdError):
@@ -212,10 +212,10 @@ def test_the_landing_goes_on_when_its_log_is_removed_and_says_so_at_once_and_at_
         node.communicate(timeout=TIMEOUT)
     assert node.returncode == 1, err
     assert "finished: 2001 samples" in out
-    told = [line for line in err.splitlines() if "removed or moved away" in line]
-    assert len(told) == 2, err
-    assert "the landing continues without recording" in told[0]
-    assert told[1].startswith("error: recording to")
+    lines = [line for line in err.splitlines() if "removed or moved away" in line]
+    assert len(lines) == 2, err
+    assert "the landing continues without recording" in lines[0]
+    assert lines[1].startswith("error: recording to")
     assert not folder.exists()
 
 
@@ -229,8 +229,11 @@ def test_a_file_has_its_temporary_name_until_it_is_finished(tmp_path: Path) -> N
 
 
 def test_info_on_such_a_log_needs_no_ros(one_log: Path) -> None:
-    code = "import sys; from rlv_ros_bridge.__main__ import main; main(['log', 'info', sys.argv[1]], standalone_mode=False); "
-    code += "print('rclpy' in sys.modules)"
+    code = (
+        "import sys; from rlv_ros_bridge.__main__ import main\n"
+        "main(['log', 'info', sys.argv[1]], standalone_mode=False)\n"
+        "print('rclpy' in sys.modules)"
+    )
     done = subprocess.run(
         [sys.executable, "-c", code, str(one_log)],
         env=environment(),

@@ -1,6 +1,4 @@
-"""`log recover`: all that is whole of a cut or damaged log, nothing else, in a log that every
-reader opens.
-"""
+"""`log recover` saves all that is whole of a cut or damaged log, and nothing else."""
 
 from __future__ import annotations
 
@@ -36,9 +34,7 @@ Found = list[tuple[str, int, int, bytes]]
 
 
 class Whole:
-    """What a complete file's own index says of its chunks: where they end, and which messages they
-    hold.
-    """
+    """The chunks of a complete file by its own index: where they end, and their messages."""
 
     def __init__(self, file: Path) -> None:
         self.messages = messages_of(file)
@@ -150,8 +146,8 @@ def test_the_command_says_what_was_saved_and_what_is_missing_and_never_overwrite
     again = run("log", "recover", folder)
     assert "logs are never overwritten" in one_error_line(again)
     other = run("log", "recover", folder, "--output", tmp_path / "other", "--json")
-    told = json.loads(other.stdout)
-    assert told["messages"] == sum(1 for _ in LogReader(folder).messages())
+    report = json.loads(other.stdout)
+    assert report["messages"] == sum(1 for _ in LogReader(folder).messages())
     assert (tmp_path / "other" / "metadata.yaml").is_file()
 
 
@@ -210,7 +206,7 @@ def test_damage_in_the_middle_costs_only_the_chunk_that_it_hits(tmp_path: Path) 
     for hit, chunk in enumerate(whole.chunks):
         # Within the compressed bytes, in the length, and by a byte too many: the last two hide
         # where the next record begins.
-        for name, spoilt in (
+        for name, changed in (
             ("flip", flipped(data, chunk.chunk_start_offset + chunk.chunk_length - 5)),
             ("length", flipped(data, chunk.chunk_start_offset + 2)),
             (
@@ -222,7 +218,7 @@ def test_damage_in_the_middle_costs_only_the_chunk_that_it_hits(tmp_path: Path) 
         ):
             folder = tmp_path / f"{name}-{hit}"
             folder.mkdir()
-            (folder / "log_0.mcap").write_bytes(spoilt)
+            (folder / "log_0.mcap").write_bytes(changed)
             assert recover(folder).damage
             out = tmp_path / f"{name}-{hit}-recovered"
             assert messages_of(out / f"{out.name}_0.mcap") == [
@@ -251,10 +247,10 @@ def test_mutated_logs_break_neither_info_nor_recover_and_nothing_is_invented(
         line, env=environment(OMP_NUM_THREADS="1"), capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
-    told = json.loads(done.stdout)
-    assert told["cases"] == count
+    report = json.loads(done.stdout)
+    assert report["cases"] == count
     # Mutations of every kind were met: such as leave something to save, and such as do not.
-    assert count // 2 < told["recovered"] < count
+    assert count // 2 < report["recovered"] < count
 
 
 @pytest.mark.parametrize("what", ["metadata", "attachment", "end", "summary"])
@@ -281,11 +277,14 @@ def test_a_chunk_that_claims_gigabytes_does_not_fill_the_memory(tmp_path: Path) 
     small = replace(chunk, uncompressed_size=1000)
     for name, record in (("honest", chunk), ("lying", small)):
         write_with_chunk(tmp_path / f"{name}.mcap", record)
+    # VmHWM is this process's own; getrusage would also hold its parent's.
     code = (
-        "import re, sys; from rlv_ros_bridge.logs.mcap_stream import RecordStream; from pathlib import Path\n"
+        "import re, sys; from pathlib import Path\n"
+        "from rlv_ros_bridge.logs.mcap_stream import RecordStream\n"
         "for name in sys.argv[1:]:\n"
-        "    stream = RecordStream(Path(name)); assert len(list(stream)) == 1; assert len(stream.damage) == 1, stream.damage\n"
-        "print(re.search('VmHWM:\\\\s+(\\\\d+) kB', Path('/proc/self/status').read_text())[1])"  # getrusage tells the parent's, too
+        "    stream = RecordStream(Path(name)); assert len(list(stream)) == 1\n"
+        "    assert len(stream.damage) == 1, stream.damage\n"
+        "print(re.search('VmHWM:\\\\s+(\\\\d+) kB', Path('/proc/self/status').read_text())[1])"
     )
     files = [str(tmp_path / "honest.mcap"), str(tmp_path / "lying.mcap")]
     done = subprocess.run(

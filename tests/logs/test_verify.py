@@ -1,4 +1,4 @@
-"""`log verify` repeats the run that a log tells of, and says where the two differ."""
+"""`log verify` repeats the run of a log, and reports the first difference."""
 
 from __future__ import annotations
 
@@ -48,9 +48,9 @@ def position_x(data: bytes) -> float:
 
 def with_position_x(factor: float) -> Callable[[bytes], bytes]:
     def change(data: bytes) -> bytes:
-        spoilt = bytearray(data)
-        struct.pack_into("<d", spoilt, POSITION, factor * position_x(data))
-        return bytes(spoilt)
+        changed_data = bytearray(data)
+        struct.pack_into("<d", changed_data, POSITION, factor * position_x(data))
+        return bytes(changed_data)
 
     return change
 
@@ -74,9 +74,9 @@ def test_one_changed_bit_is_found_with_topic_field_and_time(one_log: Path, tmp_p
     file = rewrite(only_file(one_log), tmp_path / "changed", in_message("/landing/pose", AT, flip))
     done = run("log", "verify", file, "--json")
     assert done.returncode == 1
-    told = json.loads(done.stdout)
-    assert not told["same"]
-    first = told["first"]
+    report = json.loads(done.stdout)
+    assert not report["same"]
+    first = report["first"]
     assert (first["topic"], first["field"], first["time"]) == (
         "/landing/pose",
         "pose.position.x",
@@ -134,11 +134,11 @@ def test_times_that_were_made_huge_differ_and_end_the_comparison(
             record[1].log_time = 2**62 // 1_000_000 * 1_000_000
         return record
 
-    alter, told = (
+    alter, annotate = (
         in_message("/landing/pose", AT, with_position_x(1.0 + 1e-12)),
         in_metadata({"machine": "another", "stop_time": "1e8"}),
     )
-    found = changed(one_log, tmp_path, lambda record: told(far(alter(record))))
+    found = changed(one_log, tmp_path, lambda record: annotate(far(alter(record))))
     assert found.first is not None
     assert (found.first.topic, found.first.time) == ("/landing/odom", 1.0)
 
@@ -172,14 +172,18 @@ def test_another_build_is_held_to_the_tolerance_and_the_reason_is_said(
     metadata: dict[str, str | None],
     reason: str,
     factor: float,
+    *,
     same: bool,
 ) -> None:
     # The largest value of the field, so that the factor is the share of it.
     reader = LogReader(one_log)
     x = {m.log_time: position_x(m.data) for m in reader.messages(["/landing/pose"])}
     at = max(x, key=lambda time: abs(x[time]))
-    alter, told = in_message("/landing/pose", at, with_position_x(factor)), in_metadata(metadata)
-    found = changed(one_log, tmp_path, lambda record: told(alter(record)))
+    alter, annotate = (
+        in_message("/landing/pose", at, with_position_x(factor)),
+        in_metadata(metadata),
+    )
+    found = changed(one_log, tmp_path, lambda record: annotate(alter(record)))
     assert found.same == same
     assert reason in found.not_exact
     assert reason in found.text()
@@ -222,9 +226,7 @@ def test_what_cannot_be_repeated_is_refused_with_what_is_missing(
 
 
 def steer(whole: Path, folder: Path) -> LogReader:
-    """A log as the node writes it, of the parameters of the log `whole` and inputs at random times
-    and sizes.
-    """
+    """A log as the node writes it, with the parameters of the log `whole` and random inputs."""
     reader = LogReader(whole)
     reader.read_through()
     parameters, random = reader.parameters(), Random(7)
@@ -260,7 +262,7 @@ def steer(whole: Path, folder: Path) -> LogReader:
 
 @pytest.mark.parametrize("by_fmu", [False, True])
 def test_a_steered_run_is_repeated_bit_for_bit_with_its_inputs(
-    log: Path, fmu: Path, tmp_path: Path, by_fmu: bool
+    log: Path, fmu: Path, tmp_path: Path, *, by_fmu: bool
 ) -> None:
     reader = steer(log, tmp_path / "steered")
     found = verify(reader, fmu if by_fmu else None)
@@ -307,10 +309,8 @@ def test_inputs_that_cannot_be_are_refused(one_log: Path, tmp_path: Path, force:
     message = InputChange(APPLIED_WRENCH, 500_000_000, dict.fromkeys(WRENCH, force)).message()
     with pytest.raises(LandingError) as e:
         verify(with_input(one_log, tmp_path / "log", 500_000_000, serialize_message(message)))
-    assert (
-        f"its input /landing/applied/external_wrench at 0.5 s cannot be: external.force_x = {force:g} N"
-        in str(e.value)
-    )
+    expected = "its input /landing/applied/external_wrench at 0.5 s cannot be: "
+    assert f"{expected}external.force_x = {force:g} N" in str(e.value)
 
 
 def test_inputs_of_another_type_are_refused(one_log: Path, tmp_path: Path) -> None:

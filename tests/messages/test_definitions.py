@@ -22,7 +22,10 @@ def test_hash_and_fields_agree_with_an_independent_type_store(name: str) -> None
 
 
 def test_arrays_bounds_constants_and_comments_are_read_as_ros_does() -> None:
-    text = "uint8 A=1\nPose[] poses # Twist t\nstd_msgs/Header header\nfloat64<=3[4] x\nstring<=5 name\nPoint<=2[<=3] p\n# Point q\n"
+    text = (
+        "uint8 A=1\nPose[] poses # Twist t\nstd_msgs/Header header\n"
+        "float64<=3[4] x\nstring<=5 name\nPoint<=2[<=3] p\n# Point q\n"
+    )
     assert dependencies("geometry_msgs/msg/Any", text) == [
         "geometry_msgs/msg/Pose",
         "std_msgs/msg/Header",

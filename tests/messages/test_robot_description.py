@@ -1,4 +1,4 @@
-"""The vehicle's URDF, read by a parser that is not ours."""
+"""The vehicle's URDF, read by an independent parser."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""`/tf` in a log: read by readers that are not ours, held against `odom`, and against the URDF by a
-parser that is not ours.
-"""
+"""`/tf` in a log, by independent readers, against `odom` and against an independent URDF parser."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""A DDS participant that knows nothing of ROS or Fast DDS hears the landing, with the profile that
-is shipped for it.
-"""
+"""A DDS participant without ROS or Fast DDS receives the landing, with the shipped profile."""
 
 from __future__ import annotations
 
@@ -17,15 +15,18 @@ from rlv_ros_bridge.logs.reader import Decoder, LogReader
 PROFILE = ROOT / "ros_bridge" / "config" / "foreign_dds.xml"
 # Cyclone DDS on this machine only, as the node is by ROS_AUTOMATIC_DISCOVERY_RANGE.
 LOCAL = (
-    '<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="lo" multicast="true"/></Interfaces></General>'
-    '<Discovery><Peers><Peer Address="127.0.0.1"/></Peers><ParticipantIndex>auto</ParticipantIndex></Discovery></Domain></CycloneDDS>'
+    "<CycloneDDS><Domain>"
+    '<General><Interfaces><NetworkInterface name="lo" multicast="true"/></Interfaces></General>'
+    '<Discovery><Peers><Peer Address="127.0.0.1"/></Peers>'
+    "<ParticipantIndex>auto</ParticipantIndex></Discovery>"
+    "</Domain></CycloneDDS>"
 )
 
 
 def test_cyclone_dds_in_another_process_gets_every_joint_state(
     fmu: Path, tmp_path: Path, domain: int, processes: list[subprocess.Popen[str]]
 ) -> None:
-    output = tmp_path / "heard.json"
+    output = tmp_path / "received.json"
     listener = subprocess.Popen(
         [sys.executable, str(HERE / "cyclone_listener.py"), str(output), "1001"],
         env=environment(domain, CYCLONEDDS_URI=LOCAL),
@@ -55,8 +56,10 @@ def test_cyclone_dds_in_another_process_gets_every_joint_state(
     assert node.returncode == 0, err
     _, err = listener.communicate(timeout=TIMEOUT)
     assert listener.returncode == 0, err
-    heard = json.loads(output.read_text())
+    received = json.loads(output.read_text())
     reader = LogReader(tmp_path / "log")
     decode = Decoder(reader)
     logged = [(m.log_time, decode(m)) for m in reader.messages(["/landing/struts"])]
-    assert heard == [[stamp, list(m.name), list(m.position), list(m.effort)] for stamp, m in logged]
+    assert received == [
+        [stamp, list(m.name), list(m.position), list(m.effort)] for stamp, m in logged
+    ]

@@ -1,6 +1,4 @@
-"""Loads and deck motion as topics: applied, given up in silence, refused, and recorded so that a
-run can be repeated.
-"""
+"""Loads and deck motion as topics: applied, ended by a timeout, refused, and recorded."""
 
 from __future__ import annotations
 
@@ -170,9 +168,7 @@ def test_inputs_act_are_given_up_and_repeat_the_run_from_its_log(
 
 
 def assert_repeats(log: Path) -> None:
-    """The model, given the log's parameters and inputs at their times, lands as the log says, digit
-    for digit.
-    """
+    """The model with the log's parameters and inputs gives the log's landing bit for bit."""
     reader = LogReader(log)
     decode = Decoder(reader)
     names = {f"/landing/{name}": name for name in READINGS}
@@ -214,19 +210,21 @@ def test_bad_inputs_are_counted_in_the_diagnostics_and_change_nothing(
 ) -> None:
     node, remote = stepped
     assert remote.set(step_count=100)[0].successful
-    told: list[dict[str, str]] = []
+    diagnostics: list[dict[str, str]] = []
     remote.node.create_subscription(
         DiagnosticArray,
         "/diagnostics",
-        lambda m: told.append({v.key: v.value for v in m.status[0].values}),
+        lambda m: diagnostics.append({v.key: v.value for v in m.status[0].values}),
         10,
     )
     pushing = remote.node.create_publisher(WrenchStamped, "/landing/external_wrench", 10)
     remote.until(lambda: pushing.get_subscription_count() > 0)
     for _ in range(5):
         pushing.publish(wrench(x=math.nan))
-    step_until(remote, lambda: None, lambda: bool(told) and told[-1]["inputs refused"] == "5")
-    assert told[-1]["inputs received"] == "0"
+    step_until(
+        remote, lambda: None, lambda: bool(diagnostics) and diagnostics[-1]["inputs refused"] == "5"
+    )
+    assert diagnostics[-1]["inputs received"] == "0"
     node.send_signal(signal.SIGINT)
     _, err = node.communicate(timeout=TIMEOUT)
     warnings = [line for line in err.splitlines() if "input refused" in line]

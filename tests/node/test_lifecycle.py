@@ -194,7 +194,8 @@ def test_parameters_are_described_checked_and_kept_while_landing(
 def test_a_parameter_file_gives_them_too(fmu: Path, tmp_path: Path) -> None:
     file = tmp_path / "landing.yaml"
     file.write_text(
-        "/**:\n  ros__parameters:\n    stop_time: 0.05\n    vehicle: {mass: 200}\n    drop: {tilt: -0.02}\n"
+        "/**:\n  ros__parameters:\n"
+        "    stop_time: 0.05\n    vehicle: {mass: 200}\n    drop: {tilt: -0.02}\n"
     )
     done = run(
         "node",

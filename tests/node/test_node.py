@@ -51,19 +51,19 @@ def test_a_subscriber_in_another_process_gets_every_sample_as_it_is_in_the_log(
             "node", "--fmu", fmu, "--record", folder, "--wait-for-subscribers", 1, domain=domain
         )
         assert done.returncode == 0, done.stderr
-        heard = listener.finish()
+        received = listener.finish()
     finally:
         listener.stop()
     logged: dict[str, list[bytes]] = {}
     for message in LogReader(folder).messages():
         if message.topic in TOPICS:
             logged.setdefault(message.topic, []).append(message.data)
-    received = by_topic(heard)
-    assert {name: len(messages) for name, messages in received.items()} == {
+    by_name = by_topic(received)
+    assert {name: len(messages) for name, messages in by_name.items()} == {
         name: len(messages) for name, messages in logged.items()
     }
-    assert sum(len(messages) == SAMPLES for messages in received.values()) == 11
-    assert received == logged
+    assert sum(len(messages) == SAMPLES for messages in by_name.values()) == 11
+    assert by_name == logged
 
 
 def test_the_clock_goes_out_with_every_step_and_carries_simulation_time(
@@ -77,13 +77,13 @@ def test_the_clock_goes_out_with_every_step_and_carries_simulation_time(
         more = ("--stop-time", 0.1, "--realtime-factor", 0.1, "--no-record")
         done = run("node", "--fmu", fmu, "--wait-for-subscribers", 1, *more, domain=domain)
         assert done.returncode == 0, done.stderr
-        heard = by_topic(listener.finish())
+        received = by_topic(listener.finish())
     finally:
         listener.stop()
-    assert [struct.unpack_from("<iI", data, 4) for data in heard["/clock"]] == [
+    assert [struct.unpack_from("<iI", data, 4) for data in received["/clock"]] == [
         (0, k * 1_000_000) for k in range(101)
     ]
-    assert len(heard["/landing/struts"]) == 101
+    assert len(received["/landing/struts"]) == 101
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
@@ -114,7 +114,7 @@ def test_a_signal_in_mid_landing_leaves_a_complete_log(
         listener.wait_for_announcement()
         node.send_signal(number)
         out, err = node.communicate(timeout=TIMEOUT)
-        heard = by_topic(listener.finish())["/landing/struts"]
+        received = by_topic(listener.finish())["/landing/struts"]
     finally:
         listener.stop()
     assert node.returncode == code, err
@@ -126,8 +126,8 @@ def test_a_signal_in_mid_landing_leaves_a_complete_log(
     assert not reader.cut
     assert (folder / "metadata.yaml").is_file()
     assert 300 <= len(logged) < 20000
-    assert heard == logged[: len(heard)]
-    assert cut_off or len(heard) == len(logged)
+    assert received == logged[: len(received)]
+    assert cut_off or len(received) == len(logged)
     assert f"interrupted: {len(logged)} samples" in out
 
 
@@ -206,12 +206,12 @@ def test_two_nodes_land_side_by_side_in_their_namespaces(
         for node in nodes:
             _, err = node.communicate(timeout=TIMEOUT)
             assert node.returncode == 0, err
-        heard = by_topic(listener.finish())
+        received = by_topic(listener.finish())
     finally:
         listener.stop()
     for name, mode in (("first", "2-2"), ("second", "1-2-1")):
         reader = LogReader(tmp_path / name)
-        assert [m.data for m in reader.messages([f"/{name}/struts"])] == heard[f"/{name}/struts"]
+        assert [m.data for m in reader.messages([f"/{name}/struts"])] == received[f"/{name}/struts"]
         assert reader.metadata["mode"] == mode
 
 
@@ -235,12 +235,12 @@ def test_topics_are_thinned_out_live_and_whole_in_the_log(
         )
         done = run("node", "--fmu", fmu, "--record", tmp_path / "log", *more, domain=domain)
         assert done.returncode == 0, done.stderr
-        heard = by_topic(listener.finish())
+        received = by_topic(listener.finish())
     finally:
         listener.stop()
     logged = [m.data for m in LogReader(tmp_path / "log").messages(["/landing/pose"])]
-    assert (len(heard["/landing/struts"]), len(logged)) == (101, 101)
-    assert heard["/landing/pose"] == logged[::10]
+    assert (len(received["/landing/struts"]), len(logged)) == (101, 101)
+    assert received["/landing/pose"] == logged[::10]
 
 
 RELIABILITY = {
@@ -323,10 +323,13 @@ def test_settings_come_by_ros_arguments_too(fmu: Path, tmp_path: Path) -> None:
 
 
 def test_help_teaches_without_loading_ros(tmp_path: Path) -> None:
-    line = "import sys; from rlv_ros_bridge.__main__ import main; main(['node', '--help'], standalone_mode=False); "
-    line += "print(sorted({'rclpy', 'fmpy', 'mcap'} & set(sys.modules)))"
+    code = (
+        "import sys; from rlv_ros_bridge.__main__ import main\n"
+        "main(['node', '--help'], standalone_mode=False)\n"
+        "print(sorted({'rclpy', 'fmpy', 'mcap'} & set(sys.modules)))"
+    )
     done = subprocess.run(
-        [sys.executable, "-c", line],
+        [sys.executable, "-c", code],
         env=environment(),
         capture_output=True,
         text=True,

@@ -1,4 +1,4 @@
-"""The private parts of rclpy still give what the node takes from them."""
+"""The private parts of rclpy give what the node relies on."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
-from bridge_tools import TIMEOUT, Heard, Listener, by_topic, run, start
+from bridge_tools import TIMEOUT, Listener, ReceivedMessage, by_topic, run, start
 
 from rlv_ros_bridge.logs.reader import LogMessage, LogReader
 from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
@@ -18,8 +18,9 @@ from rlv_ros_bridge.messages.topics import CLOCK, TF
 
 
 def contents(log: Path) -> tuple[list[LogMessage], dict[str, str]]:
-    """The messages of a log that can be published here, all but `/tf`, and their topics' types,
-    `struts` last.
+    """The messages of a log that can be published here, and their topics' types, `struts` last.
+
+    All but `/tf` can.
     """
     reader = LogReader(log)
     messages = [message for message in reader.messages() if message.topic != TF.name]
@@ -35,8 +36,8 @@ def play(
     folder: Path,
     domain: int,
     *options: object,
-) -> list[Heard]:
-    """What another process hears of a replay."""
+) -> list[ReceivedMessage]:
+    """The messages that another process receives from a replay."""
     listener = Listener(types, folder, domain, expected)
     try:
         done = run("replay", log, "--wait-for-subscribers", 1, *options, domain=domain)
@@ -50,11 +51,11 @@ def test_a_replay_recorded_again_is_the_same_log_with_the_same_timing(
     one_log: Path, tmp_path: Path, domain: int
 ) -> None:
     original, types = contents(one_log)
-    heard = play(one_log, types, dict(Counter(m.topic for m in original)), tmp_path, domain)
+    received = play(one_log, types, dict(Counter(m.topic for m in original)), tmp_path, domain)
     recorder = Recorder(
         tmp_path / "again", [RecordedTopic(name, kind, TELEMETRY) for name, kind in types.items()]
     )
-    for message in heard:
+    for message in received:
         recorder.write(message.topic, message.receive_time, message.data)
     recorder.close()
     again, _ = contents(tmp_path / "again")
@@ -89,9 +90,9 @@ def test_a_part_of_the_log_can_be_played_at_another_rate(
         "--topics",
         "struts,/landing/pose",
     )
-    heard = play(one_log, types, dict.fromkeys(types, 101), tmp_path, domain, *options)
-    assert [(m.topic, m.data) for m in heard] == [(m.topic, m.data) for m in chosen]
-    struts = [m.source_time for m in heard if m.topic == "/landing/struts"]
+    received = play(one_log, types, dict.fromkeys(types, 101), tmp_path, domain, *options)
+    assert [(m.topic, m.data) for m in received] == [(m.topic, m.data) for m in chosen]
+    struts = [m.source_time for m in received if m.topic == "/landing/struts"]
     assert np.median(np.abs(np.diff(struts) - 4e6)) < 1e6
 
 
@@ -106,10 +107,10 @@ def test_topics_are_played_under_other_names(one_log: Path, tmp_path: Path, doma
         "/landing/recorded/struts": kind,
     }
     expected = {"/elsewhere": 1001, "/landing/recorded/struts": 1001}
-    heard = play(
+    received = play(
         one_log, heard_types, expected, tmp_path, domain, "--topics", "struts,pose", *remap
     )
-    assert [(m.topic, m.data) for m in heard] == [
+    assert [(m.topic, m.data) for m in received] == [
         (names[m.topic], m.data) for m in original if m.topic in names
     ]
 
@@ -140,17 +141,17 @@ def test_time_never_runs_backwards_when_a_replay_loops(
         listener.wait_for_announcement()
         node.send_signal(signal.SIGINT)
         _, err = node.communicate(timeout=TIMEOUT)
-        heard = by_topic(listener.finish())
+        received = by_topic(listener.finish())
     finally:
         listener.stop()
     assert (node.returncode, err) == (130, "")
     for topic, offset in ((CLOCK.name, 4), ("/landing/struts", 4), ("/landing/markers", 8)):
-        stamps = [struct.unpack_from("<iI", data, offset) for data in heard[topic]]
+        stamps = [struct.unpack_from("<iI", data, offset) for data in received[topic]]
         assert stamps == sorted(stamps), topic
         assert stamps[-1] > (0, 300_000_000)
     stamps = [
         s * 10**9 + ns
-        for s, ns in (struct.unpack_from("<iI", data, 4) for data in heard["/landing/struts"])
+        for s, ns in (struct.unpack_from("<iI", data, 4) for data in received["/landing/struts"])
     ]
     assert set(np.diff(stamps)) == {1_000_000}
 

@@ -25,9 +25,7 @@ Change = tuple[str, dict[str, float]]
 
 
 def make_inputs(folder: Path) -> list[Change]:
-    """A log of ten wrenches and ten movements of the ground within 0.4 s, as a node records them;
-    what it says.
-    """
+    """A log of ten wrenches and ten movements of the ground within 0.4 s, and its changes."""
     recorder = Recorder(
         folder,
         [RecordedTopic(f"/landing/{t.name}", t.type_name, TELEMETRY) for t in APPLIED],
@@ -95,11 +93,11 @@ def test_the_inputs_of_a_log_steer_another_landing(
     processes += [node, replay]
     with Remote(domain) as remote, Remote(domain, "/replay_node") as player:
         assert remote.change(CONFIGURE)
-        told: list[dict[str, str]] = []
+        diagnostics: list[dict[str, str]] = []
         remote.node.create_subscription(
             DiagnosticArray,
             "/diagnostics",
-            lambda m: told.append({v.key: v.value for v in m.status[0].values}),
+            lambda m: diagnostics.append({v.key: v.value for v in m.status[0].values}),
             10,
         )
         assert player.trigger("pause") == (False, "the replay is paused already")
@@ -108,7 +106,7 @@ def test_the_inputs_of_a_log_steer_another_landing(
         out, err = replay.communicate(timeout=TIMEOUT)
         assert (replay.returncode, err) == (0, "")
         assert "played 20 messages" in out
-        remote.until(lambda: bool(told) and told[-1]["inputs received"] == "20")
+        remote.until(lambda: bool(diagnostics) and diagnostics[-1]["inputs received"] == "20")
         assert remote.change(DEACTIVATE)
         assert remote.change(CLEANUP)
         node.send_signal(signal.SIGINT)

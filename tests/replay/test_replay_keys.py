@@ -1,4 +1,4 @@
-"""Replay on a terminal: keys, the progress line, and a terminal that is left as it was found."""
+"""Replay on a terminal: keys, the progress line, and the terminal's settings afterwards."""
 
 from __future__ import annotations
 
@@ -84,9 +84,9 @@ def test_the_terminal_is_left_as_it_was_found(
         else:
             os.kill(terminal.pid, end)
         status = terminal.status()
-        told = os.waitstatus_to_exitcode(status)
+        code = os.waitstatus_to_exitcode(status)
         assert (
-            told
+            code
             == {
                 "q": 0,
                 "\x03": 130,

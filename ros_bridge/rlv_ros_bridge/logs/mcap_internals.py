@@ -12,7 +12,7 @@ from typing import Any
 
 
 def chunk_builder(writer: Any) -> Any:
-    """What gathers the records of the chunk that `writer`, an `mcap.writer.Writer`, has open."""
+    """The gathered records of the chunk that `writer`, an `mcap.writer.Writer`, has open."""
     return getattr(writer, "_Writer__chunk_builder", None)
 
 

@@ -107,10 +107,10 @@ class RecordStream:
     def _resume_position(
         self, file: IO[bytes], position: int, size: int, following: int | None
     ) -> int | None:
-        """Where to continue after a damaged record at `position`; None: nowhere.
+        """The position to continue at after a damaged record at `position`; None: there is none.
 
-        Its length may be what is damaged. So a whole chunk before `following`, the next record by
-        that length, comes first.
+        The record's length may be what is damaged. So a whole chunk before `following`, the next
+        record by that length, comes first.
         """
         chunk = find_chunk(
             file,

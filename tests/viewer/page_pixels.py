@@ -1,6 +1,4 @@
-"""What a viewer's page shows, told from its pixels; and a proxy that stands for the rest of the
-world.
-"""
+"""Pixels of a viewer's page, and a proxy in the place of all other machines."""
 
 from __future__ import annotations
 
@@ -20,7 +18,7 @@ WIDTH, HEIGHT = 640, 460
 TOP, BOTTOM, TITLE = 36, 28, 29
 PLOTS = 5
 Pixels = NDArray[np.int16]
-# The command `view`, the address that it told, and its port.
+# The command `view`, the printed address, and its port.
 Started = tuple["subprocess.Popen[str]", str, int]
 
 
@@ -44,7 +42,7 @@ def plot_of(pixels: Pixels, number: int) -> Pixels:
     ]
 
 
-def painted(
+def pixels_of_colour(
     pixels: Pixels, colour: str, within: int = 30
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Rows and columns of the pixels that have `colour` (#rrggbb), each part `within` so much."""
@@ -65,13 +63,13 @@ def free_port() -> int:
         return port
 
 
-class Outside:
-    """A proxy that answers nothing: `asked` has the first line of each request that came to it."""
+class NotingProxy:
+    """A proxy that answers nothing; `requests` holds the first line of each request."""
 
     def __init__(self) -> None:
         self._socket = socket.create_server(("127.0.0.1", 0))
         self.address = f"http://127.0.0.1:{self._socket.getsockname()[1]}"
-        self.asked: list[str] = []
+        self.requests: list[str] = []
         self._thread = threading.Thread(target=self._listen, daemon=True)
 
     def _listen(self) -> None:
@@ -81,12 +79,12 @@ class Outside:
             except OSError:
                 return
             with connection, connection.makefile("rb") as request:
-                self.asked.append(request.readline().decode("latin-1").strip())
+                self.requests.append(request.readline().decode("latin-1").strip())
                 connection.sendall(
-                    b"HTTP/1.1 502 Nobody is there\r\nContent-Length: 0\r\nConnection: close\r\n\r\n"
+                    b"HTTP/1.1 502 Bad Gateway\r\nContent-Length: 0\r\nConnection: close\r\n\r\n"
                 )
 
-    def __enter__(self) -> Outside:
+    def __enter__(self) -> NotingProxy:
         self._thread.start()
         return self
 
