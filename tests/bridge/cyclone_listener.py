@@ -43,8 +43,7 @@ class JointState(IdlStruct, typename="sensor_msgs::msg::dds_::JointState_"):
 def main(output: str, count: int) -> None:
     participant = DomainParticipant(int(os.environ["ROS_DOMAIN_ID"]))
     qos = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepAll)
-    # a volatile reader gets what is written after it has found the writer, whatever the writer
-    # knows of it by then
+    # A volatile reader gets what is written after it has found the writer.
     matched = Listener(
         on_subscription_matched=lambda _reader, status: (
             print("matched", flush=True) if status.current_count else None

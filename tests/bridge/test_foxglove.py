@@ -105,7 +105,7 @@ def test_every_message_path_leads_to_one_value_in_a_log(
         assert isinstance(value, (str, bytes, int) if panel.startswith("State") else float), path[
             "value"
         ]
-    # The drop test's last word, at 1 s: it is still moving, below what counts as settled.
+    # The end of the drop test, at 1 s: the vehicle still moves.
     assert at(layout["configById"]["StateTransitions!phase"]["paths"][0]["value"], last) == [
         "contact"
     ]

@@ -87,7 +87,7 @@ def test_colcon_builds_the_package_and_its_node_lands(fmu: Path, tmp_path: Path)
     assert len(history_of(LogReader(log))) == 1001
 
 
-def test_the_package_says_its_version_and_all_that_it_imports() -> None:
+def test_the_package_declares_its_version_and_all_that_it_imports() -> None:
     package = ElementTree.parse(PACKAGE / "package.xml")
     assert package.findtext("version") == rlv_landing.__version__
     named = {e.text for e in package.iter("exec_depend")}
@@ -107,7 +107,7 @@ def test_the_package_says_its_version_and_all_that_it_imports() -> None:
     assert ros <= named, ros - named
 
 
-def test_the_launch_file_and_its_parameter_file_ask_for_what_the_node_has() -> None:
+def test_the_launch_file_and_its_parameter_file_name_parameters_of_the_node() -> None:
     # ROS 2's launch is not on PyPI: what can be seen without running it.
     tree = ast.parse(LAUNCH.read_text())
     compile(tree, str(LAUNCH), "exec")

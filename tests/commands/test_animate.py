@@ -56,7 +56,7 @@ def places_of_the_mark(frames: NDArray[np.uint8]) -> NDArray[np.intp]:
 
 
 @pytest.mark.parametrize("ending", [".gif", ".mp4"])
-def test_a_log_becomes_a_film_whose_mark_moves_evenly_and_whose_vehicle_moves(
+def test_a_log_becomes_an_animation_whose_mark_moves_evenly_and_whose_vehicle_moves(
     log: Path, tmp_path: Path, ending: str
 ) -> None:
     film = tmp_path / f"landing{ending}"
@@ -85,7 +85,7 @@ def test_a_log_becomes_a_film_whose_mark_moves_evenly_and_whose_vehicle_moves(
 
 
 @pytest.mark.parametrize("view", ["side", "3d"])
-def test_a_landing_becomes_a_film_without_a_log(tmp_path: Path, mode: str, view: str) -> None:
+def test_a_landing_becomes_an_animation_without_a_log(tmp_path: Path, mode: str, view: str) -> None:
     film = tmp_path / "landing.gif"
     done = run("animate", "--mode", mode, film, "--view", view, *FILM)
     assert done.returncode == 0, done.stderr
@@ -117,7 +117,7 @@ def test_every_frame_shows_the_sample_nearest_to_its_time() -> None:
     assert np.array_equal(rows, [np.argmin(np.abs(time - t)) for t in wanted])
 
 
-def test_a_gif_says_the_rate_that_it_can_hold(tmp_path: Path, drop_test: History) -> None:
+def test_a_gif_reports_the_frame_rate_that_it_can_hold(tmp_path: Path, drop_test: History) -> None:
     made = save_animation(
         drop_test,
         drop_test.parameters,
@@ -195,7 +195,9 @@ def test_without_ffmpeg_the_error_says_what_to_install(
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_a_signal_leaves_no_half_film(tmp_path: Path, number: signal.Signals, code: int) -> None:
+def test_a_signal_leaves_no_unfinished_animation(
+    tmp_path: Path, number: signal.Signals, code: int
+) -> None:
     program = [
         sys.executable,
         "-c",

@@ -96,7 +96,7 @@ def decompresses(data: bytes, chunk: ChunkIndex) -> bool:
 
 
 @pytest.mark.parametrize("ours", [True, False])
-def test_nothing_is_invented_where_a_checksum_was_zeroed_and_a_bit_of_the_chunk_changed(
+def test_no_wrong_message_is_read_where_a_checksum_was_zeroed_and_a_bit_of_the_chunk_changed(
     tmp_path: Path, *, ours: bool
 ) -> None:
     file = (
@@ -126,7 +126,7 @@ def test_nothing_is_invented_where_a_checksum_was_zeroed_and_a_bit_of_the_chunk_
             if number in (0, len(plausible) // 2, len(plausible) - 1):
                 kept = [m for i, m in enumerate(wanted) if i // PER_CHUNK != hit]
                 assert recovered(changed_file, tmp_path / f"out-{hit}-{number}") == kept
-    # Many a flip is noticed by zstd itself; these were not.
+    # zstd itself detects many flips; it did not detect these.
     assert tried > 50
 
 
@@ -140,7 +140,7 @@ def test_nothing_is_left_of_our_log_whose_only_chunk_lost_its_checksum(tmp_path:
 
 @pytest.mark.parametrize("compression", [CompressionType.ZSTD, CompressionType.NONE])
 @pytest.mark.parametrize("chunked", [True, False])
-def test_logs_of_others_without_checksums_are_read_and_recovered(
+def test_foreign_logs_without_checksums_are_read_and_recovered(
     tmp_path: Path, compression: CompressionType, *, chunked: bool
 ) -> None:
     file = foreign_log(
@@ -155,18 +155,18 @@ def test_logs_of_others_without_checksums_are_read_and_recovered(
     assert len(wanted) == 3 * PER_CHUNK
 
 
-def test_in_a_log_of_others_without_checksums_damage_costs_only_the_chunk_that_it_hits(
+def test_in_a_foreign_log_without_checksums_damage_costs_only_its_chunk(
     tmp_path: Path,
 ) -> None:
     file = foreign_log(tmp_path / "log.mcap", checksums=False)
     wanted, data = messages_of(file), bytearray(file.read_bytes())
-    # What was a missing checksum is a wrong one now.
+    # The missing checksum becomes a wrong one.
     data[chunks_of(file)[1].chunk_start_offset + CHECKSUM] = 1
     file.write_bytes(data)
     assert recovered(file, tmp_path / "out") == wanted[:PER_CHUNK] + wanted[2 * PER_CHUNK :]
 
 
-def test_an_index_of_our_log_that_turned_into_a_message_is_none(tmp_path: Path) -> None:
+def test_an_index_of_our_log_that_turned_into_a_message_is_not_read_as_one(tmp_path: Path) -> None:
     file = small_log(tmp_path / "log")
     wanted, data = messages_of(file), file.read_bytes()
     for number, chunk in enumerate(chunks_of(file)):

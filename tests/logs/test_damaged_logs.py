@@ -18,7 +18,7 @@ from rlv_ros_bridge.logs.info import log_info
 from rlv_ros_bridge.logs.reader import LogReader
 
 
-def test_log_info_sums_a_complete_log_up(log: Path, mode: str) -> None:
+def test_log_info_summarises_a_complete_log(log: Path, mode: str) -> None:
     done = run("log", "info", log, "--json")
     assert (done.returncode, done.stderr) == (0, "")
     report = json.loads(done.stdout)

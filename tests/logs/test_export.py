@@ -87,14 +87,14 @@ def pick(landing: History, history: History) -> np.ndarray:
 
 
 @pytest.mark.parametrize("plugin", [StoragePlugin.SQLITE3, StoragePlugin.MCAP])
-def test_a_recording_by_others_gives_the_same_history(
+def test_a_recording_by_another_recorder_gives_the_same_history(
     one_log: Path, tmp_path: Path, plugin: StoragePlugin
 ) -> None:
     folder = recorded_by_others(one_log, tmp_path / "theirs", plugin)
     found, expected = log_history(folder), log_history(one_log)
     assert found.names == expected.names
     assert np.array_equal(found.data.view(np.uint64), expected.data.view(np.uint64))
-    # They do not say the step, so times are the stamps, in ns.
+    # These recordings do not hold the step, so times are the stamps.
     assert np.array_equal(found.time, np.arange(1001) / 1e3)
     save_overview(found, tmp_path / "theirs.png", "theirs")
     done = run("log", "export", folder, tmp_path / "theirs.csv")
@@ -158,7 +158,7 @@ def test_topics_span_and_step_choose_rows_and_columns(one_log: Path, tmp_path: P
     assert rows[0] == "time,body.x,body.y,body.pitch"
     assert [round(1e3 * float(row.split(",")[0])) for row in rows[1:]] == list(range(100, 501, 10))
     whole = log_history(one_log)
-    # Every 2.5 ms of 1 ms samples: the first instant in each, none made up between.
+    # Every 2.5 ms of 1 ms samples: the first instant in each, none interpolated.
     assert np.allclose(select_rows(whole, every=0.0025).time[:5], [0.0, 0.003, 0.005, 0.008, 0.01])
     same(select_rows(whole, every=1e-9), whole)
 
@@ -218,7 +218,7 @@ def test_a_full_disk_leaves_no_half_file(one_log: Path, tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_what_is_no_recording_is_refused_in_one_line(tmp_path: Path) -> None:
+def test_a_file_that_is_no_recording_is_refused_in_one_line(tmp_path: Path) -> None:
     broken, lonely = tmp_path / "broken", tmp_path / "lonely.db3"
     broken.mkdir()
     (broken / "metadata.yaml").write_text("nothing: [")

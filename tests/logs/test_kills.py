@@ -58,7 +58,7 @@ def ended(
     try:
         if listener is not None:
             listener.wait_for_announcement()
-        # The moment is what is tried here, not waited for.
+        # The delay is the tested quantity; nothing is waited for.
         time.sleep(delay)
         node.send_signal(number)
         node.communicate(timeout=TIMEOUT)
@@ -82,7 +82,7 @@ def messages_of_stream_reader(file: Path) -> int:
             try:
                 count += type(next(records)).__name__ == "Message"
             except EndOfFile:
-                # The stream reader's own word for a file without an end.
+                # The stream reader's own error for a file without an end.
                 return count
 
 
@@ -122,7 +122,7 @@ def test_a_node_ended_at_any_moment_leaves_a_log_that_lacks_at_most_half_a_secon
     losses = []
     for case in range(many(2)):
         generator = random.Random(f"{number.name}-{case}")
-        # Every fourth while it starts, with nobody listening.
+        # Every fourth during the start, without a subscriber.
         early = case % 4 == 1
         received, delay = (
             (0, generator.uniform(0.0, 2.5))
@@ -151,7 +151,7 @@ def test_a_node_ended_at_any_moment_leaves_a_log_that_lacks_at_most_half_a_secon
     record_property("largest loss [s]", max(losses))
 
 
-def test_info_tells_what_a_killed_node_has_left(fmu: Path, tmp_path: Path) -> None:
+def test_info_summarises_the_log_of_a_killed_node(fmu: Path, tmp_path: Path) -> None:
     folder = tmp_path / "log"
     published, _ = ended(fmu, folder, signal.SIGKILL, 1200, 0.0)
     done = run("log", "info", folder, "--json")

@@ -98,7 +98,7 @@ def test_mcap_ros2_support_reads_the_landing_bit_for_bit(log: Path, mode: str) -
     assert len(read["/diagnostics"]) == 11
 
 
-def test_the_diagnostics_tell_phase_balance_pace_and_what_the_integrator_has_done(
+def test_the_diagnostics_hold_phase_energy_balance_pacing_and_the_integrators_counters(
     log: Path, mode: str
 ) -> None:
     (file,) = log.glob("*.mcap")
@@ -137,7 +137,7 @@ def test_our_reader_gives_the_landing_back_with_its_parameters(log: Path, mode: 
     assert dict(history.parameters.items()) == dict(load_preset("yue2022-figures", mode).items())
 
 
-def test_the_log_carries_what_it_takes_to_repeat_the_run(log: Path, mode: str, fmu: Path) -> None:
+def test_the_log_carries_all_that_repeating_the_run_needs(log: Path, mode: str, fmu: Path) -> None:
     from fmpy import read_model_description
 
     reader = LogReader(log)

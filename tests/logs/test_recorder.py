@@ -144,12 +144,12 @@ def test_a_full_disk_does_not_stop_the_landing_and_what_was_written_is_readable(
     count = sum(1 for _ in reader.messages())
     assert reader.cut
     assert reader.metadata["mode"] == "2-2"
-    # All but the chunk that did not fit any more.
+    # All but the chunk that did not fit.
     reported = int(lines[1].split("stopped after ")[1].split()[0])
     # The message at which the disk was full may have been the last of a chunk that is on it.
     assert reported - 1000 < count <= reported + 1
     seen = 0
-    # Half a record at the end: the stream reader's word for it depends on where it is cut.
+    # The file ends in a record; the stream reader's error depends on where.
     with file.open("rb") as f, suppress(EndOfFile, struct.error, ZstdError):
         for record in StreamReader(f).records:
             seen += type(record).__name__ == "Message"
@@ -157,7 +157,7 @@ def test_a_full_disk_does_not_stop_the_landing_and_what_was_written_is_readable(
 
 
 @pytest.mark.parametrize("how", ["removed", "moved"])
-def test_a_folder_that_goes_away_is_noticed_at_the_next_flush_and_at_the_end(
+def test_a_removed_folder_is_noticed_at_the_next_flush_and_at_the_end(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, how: str
 ) -> None:
     for flushed in (True, False):
@@ -182,7 +182,7 @@ def test_a_folder_that_goes_away_is_noticed_at_the_next_flush_and_at_the_end(
             assert [m.log_time for m in LogReader(away).messages()][:2] == [1, 2]
 
 
-def test_the_landing_goes_on_when_its_log_is_removed_and_says_so_at_once_and_at_the_end(
+def test_the_landing_continues_when_its_log_is_removed_and_reports_it_at_once_and_at_the_end(
     fmu: Path, tmp_path: Path
 ) -> None:
     folder = tmp_path / "log"

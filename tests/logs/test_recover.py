@@ -85,7 +85,7 @@ def test_recover_saves_exactly_the_whole_chunks_into_a_log_that_every_reader_ope
     file = small_log(tmp_path / "log")
     size, whole = file.stat().st_size, Whole(file)
     refused = 0
-    # A step that is prime to the records' lengths comes by every kind of place.
+    # A step that is prime to the records' lengths cuts at every kind of place.
     for length in range(8, size, 97):
         folder = cut_to(file, tmp_path / "cut", length)
         out = tmp_path / "cut-recovered"
@@ -200,7 +200,7 @@ def test_whole_messages_of_an_unfinished_uncompressed_chunk_are_saved(tmp_path: 
         ] == list(range(7))
 
 
-def test_damage_in_the_middle_costs_only_the_chunk_that_it_hits(tmp_path: Path) -> None:
+def test_damage_in_the_middle_costs_only_its_chunk(tmp_path: Path) -> None:
     file = small_log(tmp_path / "log")
     whole, data = Whole(file), file.read_bytes()
     for hit, chunk in enumerate(whole.chunks):
@@ -231,7 +231,7 @@ def flipped(data: bytes, at: int) -> bytes:
 
 
 @pytest.mark.torture
-def test_mutated_logs_break_neither_info_nor_recover_and_nothing_is_invented(
+def test_mutated_logs_break_neither_info_nor_recover_and_give_no_wrong_message(
     one_log: Path, tmp_path: Path, many: Callable[[int], int]
 ) -> None:
     (file,) = one_log.glob("*.mcap")
@@ -249,7 +249,7 @@ def test_mutated_logs_break_neither_info_nor_recover_and_nothing_is_invented(
     assert done.returncode == 0, done.stderr
     report = json.loads(done.stdout)
     assert report["cases"] == count
-    # Mutations of every kind were met: such as leave something to save, and such as do not.
+    # There were mutations after which something can be saved, and others.
     assert count // 2 < report["recovered"] < count
 
 

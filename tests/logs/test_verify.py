@@ -122,9 +122,7 @@ def test_a_message_too_many_is_found(one_log: Path, tmp_path: Path) -> None:
     assert "/landing/rpy at 0.299 s: a message more than the repeated run has" in found.text()
 
 
-def test_times_that_were_made_huge_differ_and_end_the_comparison(
-    one_log: Path, tmp_path: Path
-) -> None:
+def test_huge_times_differ_and_end_the_comparison(one_log: Path, tmp_path: Path) -> None:
     def far(record: Any) -> Any:
         if (
             isinstance(record, tuple)
@@ -166,7 +164,7 @@ def test_a_log_of_other_parameters_differs(one_log: Path, tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("factor", "same"), [(1.0, True), (1.0 - 0.5 * TOLERANCE, True), (1.0 - 2.0 * TOLERANCE, False)]
 )
-def test_another_build_is_held_to_the_tolerance_and_the_reason_is_said(
+def test_another_build_is_compared_within_the_tolerance_and_the_reason_is_reported(
     one_log: Path,
     tmp_path: Path,
     metadata: dict[str, str | None],
@@ -225,7 +223,7 @@ def test_what_cannot_be_repeated_is_refused_with_what_is_missing(
     assert "\n" not in str(e.value)
 
 
-def steer(whole: Path, folder: Path) -> LogReader:
+def log_with_inputs(whole: Path, folder: Path) -> LogReader:
     """A log as the node writes it, with the parameters of the log `whole` and random inputs."""
     reader = LogReader(whole)
     reader.read_through()
@@ -261,10 +259,10 @@ def steer(whole: Path, folder: Path) -> LogReader:
 
 
 @pytest.mark.parametrize("by_fmu", [False, True])
-def test_a_steered_run_is_repeated_bit_for_bit_with_its_inputs(
+def test_a_run_with_inputs_is_repeated_bit_for_bit(
     log: Path, fmu: Path, tmp_path: Path, *, by_fmu: bool
 ) -> None:
-    reader = steer(log, tmp_path / "steered")
+    reader = log_with_inputs(log, tmp_path / "inputs")
     found = verify(reader, fmu if by_fmu else None)
     assert (found.first, found.other_bits, found.messages) == (None, 0, 11011)
     assert (
@@ -272,18 +270,18 @@ def test_a_steered_run_is_repeated_bit_for_bit_with_its_inputs(
         == sum(1 for _ in reader.messages([f"/landing/{t.name}" for t in APPLIED]))
         > 150
     )
-    assert f"steered   by {found.inputs} inputs, repeated at their times" in found.text()
+    assert f"inputs    {found.inputs}, repeated at their times" in found.text()
 
 
 @pytest.mark.parametrize("topic", [APPLIED_WRENCH, APPLIED_GROUND])
-def test_a_steered_run_differs_without_one_of_its_inputs(
+def test_a_run_with_inputs_differs_without_one_of_them(
     one_log: Path, tmp_path: Path, topic: Topic
 ) -> None:
-    steered = steer(one_log, tmp_path / "steered")
-    times = [m.log_time for m in steered.messages([f"/landing/{topic.name}"])]
-    assert verify(LogReader(rewrite(steered.files[0], tmp_path / "same"))).same
+    changed_log = log_with_inputs(one_log, tmp_path / "inputs")
+    times = [m.log_time for m in changed_log.messages([f"/landing/{topic.name}"])]
+    assert verify(LogReader(rewrite(changed_log.files[0], tmp_path / "same"))).same
     gone = in_message(f"/landing/{topic.name}", times[len(times) // 2], lambda data: None)
-    found = verify(LogReader(rewrite(steered.files[0], tmp_path / "gone", gone)))
+    found = verify(LogReader(rewrite(changed_log.files[0], tmp_path / "gone", gone)))
     assert found.first is not None
     assert found.first.time > times[len(times) // 2] / 1e9
 
@@ -305,7 +303,7 @@ def test_inputs_whose_times_were_changed_are_refused(
 
 
 @pytest.mark.parametrize("force", [1e12, math.nan])
-def test_inputs_that_cannot_be_are_refused(one_log: Path, tmp_path: Path, force: float) -> None:
+def test_inputs_out_of_bounds_are_refused(one_log: Path, tmp_path: Path, force: float) -> None:
     message = InputChange(APPLIED_WRENCH, 500_000_000, dict.fromkeys(WRENCH, force)).message()
     with pytest.raises(LandingError) as e:
         verify(with_input(one_log, tmp_path / "log", 500_000_000, serialize_message(message)))

@@ -47,7 +47,7 @@ def by_mcap(folder: Path) -> dict[str, list[tuple[int, Any]]]:
     return found
 
 
-def test_how_often_can_be_chosen(fmu: Path, tmp_path: Path) -> None:
+def test_the_rate_of_tf_can_be_chosen(fmu: Path, tmp_path: Path) -> None:
     folder = record(
         fmu, tmp_path / "log", "--stop-time", "0.1", "--ros-args", "-p", "publish_every.tf:=50"
     )

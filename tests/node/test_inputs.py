@@ -124,7 +124,7 @@ def step_until(remote: Remote, publish: Callable[[], None], happened: Callable[[
     raise AssertionError("it did not happen")
 
 
-def test_inputs_act_are_given_up_and_repeat_the_run_from_its_log(
+def test_inputs_act_until_the_timeout_and_repeat_the_run_from_its_log(
     stepped: tuple[subprocess.Popen[str], Remote], tmp_path: Path
 ) -> None:
     node, remote = stepped
@@ -149,7 +149,7 @@ def test_inputs_act_are_given_up_and_repeat_the_run_from_its_log(
         -300.0,
         40.0,
     )
-    # Nobody says anything any more: after half a second the load is gone and the deck stands.
+    # Without messages, after half a second the load is 0 and the deck stands still.
     silent: Callable[[], None] = lambda: None  # noqa: E731
     step_until(
         remote,

@@ -33,7 +33,7 @@ def managed(
     Its logs and temporary files are below `tmp_path`.
     """
     (tmp_path / "tmp").mkdir()
-    # What it says at each configuration would fill the pipe in a thousand of them.
+    # Its output of a thousand configurations would fill the pipe.
     quiet = ("--ros-args", "--log-level", "warn")
     options = (
         "--managed",
@@ -115,7 +115,7 @@ def test_transitions_load_land_pause_and_free(
         assert np.array_equal(found[name], expected[name]), name
 
 
-def test_a_reset_takes_the_parameters_that_were_set_meanwhile(
+def test_a_reset_applies_the_parameters_that_were_set_before_it(
     managed: tuple[subprocess.Popen[str], Remote], tmp_path: Path
 ) -> None:
     node, remote = managed
@@ -191,7 +191,7 @@ def test_parameters_are_described_checked_and_kept_while_landing(
     assert ended(node)[0] == 130
 
 
-def test_a_parameter_file_gives_them_too(fmu: Path, tmp_path: Path) -> None:
+def test_parameters_come_from_a_parameter_file_too(fmu: Path, tmp_path: Path) -> None:
     file = tmp_path / "landing.yaml"
     file.write_text(
         "/**:\n  ros__parameters:\n"
@@ -215,7 +215,7 @@ def test_a_parameter_file_gives_them_too(fmu: Path, tmp_path: Path) -> None:
     assert (parameters.vehicle.mass, parameters.drop.tilt) == (200.0, -0.02)
 
 
-def test_what_cannot_be_configured_is_said_and_can_be_mended(
+def test_a_failed_configuration_is_reported_and_can_be_corrected(
     managed: tuple[subprocess.Popen[str], Remote], fmu: Path, tmp_path: Path
 ) -> None:
     node, remote = managed
@@ -244,7 +244,7 @@ def resources(process: int) -> tuple[int, int, int]:
 
 
 @pytest.mark.torture
-def test_a_node_goes_round_its_lifecycle_without_leaving_anything(
+def test_repeated_lifecycles_leave_no_memory_files_or_threads_behind(
     managed: tuple[subprocess.Popen[str], Remote], tmp_path: Path, many: Callable[[int], int]
 ) -> None:
     node, remote = managed
@@ -287,7 +287,7 @@ def test_the_folder_of_a_killed_node_is_removed_by_the_next(
         assert remote.change(CONFIGURE)
         (kept,) = tmp_path.glob("rlv-landing-fmu-*")
         assert kept != left
-        # One that lives keeps its own.
+        # The folder of a running process stays.
         third = run(
             "node", "--fmu", fmu, "--no-record", "--realtime-factor", 0, "--stop-time", 0.01
         )

@@ -66,10 +66,10 @@ def test_a_subscriber_in_another_process_gets_every_sample_as_it_is_in_the_log(
     assert by_name == logged
 
 
-def test_the_clock_goes_out_with_every_step_and_carries_simulation_time(
+def test_the_clock_is_published_at_every_step_and_carries_simulation_time(
     fmu: Path, tmp_path: Path, domain: int
 ) -> None:
-    # Best effort by its nature: a depth of 1. At a tenth of real time each one arrives.
+    # The clock has a depth of 1. At a tenth of real time every message arrives.
     listener = Listener(
         {CLOCK.name: CLOCK.type_name, "/landing/struts": STRUTS.type_name}, tmp_path, domain
     )
@@ -118,7 +118,7 @@ def test_a_signal_in_mid_landing_leaves_a_complete_log(
     finally:
         listener.stop()
     assert node.returncode == code, err
-    # Ctrl-C does not wait long for slow subscribers; the node tells whether they had everything.
+    # After Ctrl-C the node waits only briefly for slow subscribers, and reports what is missing.
     cut_off = [line for line in complaints(err) if "acknowledged" in line]
     assert only_stalls("\n".join(line for line in err.splitlines() if line not in cut_off)), err
     reader = LogReader(folder)
@@ -136,7 +136,7 @@ def wall(out: str) -> float:
     return float(re.search(r"s in ([0-9.]+) s", out)[1])  # type: ignore[index]
 
 
-def test_a_subscriber_that_freezes_neither_slows_the_node_down_nor_costs_the_log_anything(
+def test_a_frozen_subscriber_neither_slows_the_node_down_nor_makes_the_log_incomplete(
     fmu: Path, tmp_path: Path, domain: int, processes: list[subprocess.Popen[str]]
 ) -> None:
     walls = []
@@ -163,14 +163,14 @@ def test_a_subscriber_that_freezes_neither_slows_the_node_down_nor_costs_the_log
         assert node.returncode == 0, err
         assert "finished: 5001 samples" in out
         walls.append(wall(out))
-    # Written to without regard, a frozen subscriber makes each of the last three seconds take four.
+    # Plain writes to a frozen subscriber would make each of the last three seconds take four.
     assert walls[1] < 1.25 * walls[0] + 1.0
     assert "not published in time" in err
     assert "not every reliable subscriber has acknowledged" in err
     assert len(list(LogReader(tmp_path / "log-True").messages(["/landing/struts"]))) == 5001
 
 
-def test_two_nodes_land_side_by_side_in_their_namespaces(
+def test_two_nodes_land_at_the_same_time_in_their_namespaces(
     fmu: Path, tmp_path: Path, domain: int, processes: list[subprocess.Popen[str]]
 ) -> None:
     types = {"/first/struts": STRUTS.type_name, "/second/struts": STRUTS.type_name}
@@ -215,9 +215,7 @@ def test_two_nodes_land_side_by_side_in_their_namespaces(
         assert reader.metadata["mode"] == mode
 
 
-def test_topics_are_thinned_out_live_and_whole_in_the_log(
-    fmu: Path, tmp_path: Path, domain: int
-) -> None:
+def test_downsampled_topics_are_complete_in_the_log(fmu: Path, tmp_path: Path, domain: int) -> None:
     listener = Listener(
         {"/landing/pose": "geometry_msgs/msg/PoseStamped", "/landing/struts": STRUTS.type_name},
         tmp_path,
@@ -250,7 +248,7 @@ RELIABILITY = {
 
 
 @pytest.mark.parametrize("qos", RELIABILITY)
-def test_the_quality_of_service_is_what_was_asked_for_and_is_in_the_log(
+def test_the_quality_of_service_is_the_requested_one_and_is_in_the_log(
     qos: str, fmu: Path, tmp_path: Path, domain: int, processes: list[subprocess.Popen[str]]
 ) -> None:
     options = (
@@ -271,7 +269,7 @@ def test_the_quality_of_service_is_what_was_asked_for_and_is_in_the_log(
         assert remote.change(CONFIGURE)
         (offered,) = remote.node.get_publishers_info_by_topic("/landing/struts")
         assert offered.qos_profile.reliability == RELIABILITY[qos]
-        # Who comes late still learns what the vehicle looks like.
+        # A late subscriber still gets the description.
         assert "leg_1_main_strut" in remote.first(String, "/landing/robot_description").data
         assert remote.change(ACTIVATE)
         remote.until((tmp_path / "log" / "metadata.yaml").is_file)
@@ -322,7 +320,7 @@ def test_settings_come_by_ros_arguments_too(fmu: Path, tmp_path: Path) -> None:
     assert reader.namespace == "/tests"
 
 
-def test_help_teaches_without_loading_ros(tmp_path: Path) -> None:
+def test_help_shows_without_loading_ros(tmp_path: Path) -> None:
     code = (
         "import sys; from rlv_ros_bridge.__main__ import main\n"
         "main(['node', '--help'], standalone_mode=False)\n"

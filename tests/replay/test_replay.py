@@ -156,7 +156,7 @@ def test_time_never_runs_backwards_when_a_replay_loops(
     assert set(np.diff(stamps)) == {1_000_000}
 
 
-def test_a_cut_log_is_played_as_far_as_it_goes_and_said_to_be_cut(
+def test_a_cut_log_is_played_as_far_as_it_goes_and_reported_as_cut(
     one_log: Path, tmp_path: Path, domain: int
 ) -> None:
     (whole,) = one_log.glob("*.mcap")

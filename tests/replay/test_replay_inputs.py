@@ -58,7 +58,7 @@ def recorded_inputs(log: Path) -> list[tuple[int, Change]]:
     ]
 
 
-def test_the_inputs_of_a_log_steer_another_landing(
+def test_the_inputs_of_a_log_act_on_another_landing(
     fmu: Path, one_log: Path, tmp_path: Path, domain: int, processes: list[subprocess.Popen[str]]
 ) -> None:
     changes = make_inputs(tmp_path / "inputs")
@@ -68,7 +68,7 @@ def test_the_inputs_of_a_log_steer_another_landing(
         "--stop-time",
         2,
         "--record",
-        tmp_path / "steered",
+        tmp_path / "landing",
         "--ros-args",
         "-p",
         "input_timeout:=0.0",
@@ -111,7 +111,7 @@ def test_the_inputs_of_a_log_steer_another_landing(
         assert remote.change(CLEANUP)
         node.send_signal(signal.SIGINT)
         assert node.wait(TIMEOUT) == 130
-    arrived = recorded_inputs(tmp_path / "steered")
+    arrived = recorded_inputs(tmp_path / "landing")
     for topic in READINGS:
         # Of two that arrive within one step the last one counts.
         acted, sent = (
@@ -120,11 +120,11 @@ def test_the_inputs_of_a_log_steer_another_landing(
         )
         assert acted[-1] == sent[-1]
         assert [values for values in sent if values in acted] == acted
-    steered = LogReader(tmp_path / "steered")
-    found = verify(steered)
+    landing = LogReader(tmp_path / "landing")
+    found = verify(landing)
     assert (found.first, found.other_bits, found.inputs) == (None, 0, len(arrived))
     alone = history_of(LogReader(one_log))
-    together = history_of(steered)
+    together = history_of(landing)
     last = min(len(together), len(alone)) - 1
     assert abs(together["body.x"][last] - alone["body.x"][last]) > 1e-3
 
@@ -139,7 +139,7 @@ def test_inputs_are_played_one_by_one_in_lock_step_with_a_landing(
         "--fmu",
         fmu,
         "--record",
-        tmp_path / "steered",
+        tmp_path / "landing",
         "--ros-args",
         "-p",
         "input_timeout:=0.0",
@@ -179,10 +179,10 @@ def test_inputs_are_played_one_by_one_in_lock_step_with_a_landing(
         assert remote.change(CLEANUP)
         node.send_signal(signal.SIGINT)
         assert node.wait(TIMEOUT) == 130
-    arrived = recorded_inputs(tmp_path / "steered")
+    arrived = recorded_inputs(tmp_path / "landing")
     assert [change for _, change in arrived] == changes[:5]
     assert len({time for time, _ in arrived}) == 5
-    found = verify(LogReader(tmp_path / "steered"))
+    found = verify(LogReader(tmp_path / "landing"))
     assert (found.first, found.other_bits, found.inputs) == (None, 0, 5)
 
 

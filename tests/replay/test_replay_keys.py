@@ -55,7 +55,7 @@ def test_only_steps_are_played_in_a_pause(one_log: Path, tmp_path: Path, domain:
         listener.stop()
 
 
-def test_keys_pause_go_on_and_change_the_rate(one_log: Path, domain: int) -> None:
+def test_keys_pause_resume_and_change_the_rate(one_log: Path, domain: int) -> None:
     with Terminal("replay", one_log, "--rate", 0.01, domain=domain) as terminal:
         terminal.until("rate 0.01")
         for key, shown in (
@@ -73,7 +73,7 @@ def test_keys_pause_go_on_and_change_the_rate(one_log: Path, domain: int) -> Non
 
 
 @pytest.mark.parametrize("end", ["q", "\x03", "\x1c", signal.SIGTERM, signal.SIGHUP])
-def test_the_terminal_is_left_as_it_was_found(
+def test_the_terminals_settings_are_restored(
     one_log: Path, domain: int, end: str | signal.Signals
 ) -> None:
     with Terminal("replay", one_log, "--rate", 0.01, domain=domain) as terminal:
@@ -98,7 +98,7 @@ def test_the_terminal_is_left_as_it_was_found(
         assert terminal.is_as_it_was
 
 
-def test_an_error_leaves_the_terminal_as_it_was_found(one_log: Path, domain: int) -> None:
+def test_an_error_restores_the_terminals_settings(one_log: Path, domain: int) -> None:
     with Terminal(
         "replay", one_log, "--wait-for-subscribers", 1, "--wait-timeout", 0.5, domain=domain
     ) as terminal:
@@ -106,7 +106,7 @@ def test_an_error_leaves_the_terminal_as_it_was_found(one_log: Path, domain: int
         assert terminal.is_as_it_was
 
 
-def test_a_stopped_replay_gives_the_terminal_back_and_takes_it_again(
+def test_a_stopped_replay_restores_the_terminal_and_reads_keys_again_afterwards(
     one_log: Path, domain: int
 ) -> None:
     with Terminal("replay", one_log, "--rate", 0.01, domain=domain) as terminal:
@@ -123,7 +123,7 @@ def test_a_stopped_replay_gives_the_terminal_back_and_takes_it_again(
         assert terminal.is_as_it_was
 
 
-def test_time_stands_still_in_a_pause_and_goes_on_where_it_stood() -> None:
+def test_time_stops_in_a_pause_and_continues_from_there() -> None:
     clock = ReplayClock(2.0)
     clock.start(100.0)
     assert clock.due(4.0) == 102.0
@@ -159,7 +159,7 @@ def test_another_rate_counts_from_where_it_was_set_on_and_stays_in_bounds() -> N
     assert clock.rate == 1e-3
 
 
-def test_only_a_stall_is_given_up() -> None:
+def test_only_a_stall_is_skipped() -> None:
     clock = ReplayClock(1.0)
     clock.start(0.0)
     clock.skip_stall(0.5 * STALL_SECONDS)

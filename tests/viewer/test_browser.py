@@ -101,7 +101,7 @@ def test_the_vehicle_stands_on_its_legs_each_group_in_its_colour(pictures: Pictu
     )
     first, second, body, force, ground = range(5)
     assert all(len(found) > 20 for found in rows)
-    # Seen from the right, flying to the right: those behind touch down first.
+    # The vehicle is seen from the right and flies to the right: the rear legs touch down first.
     assert columns[first].mean() < columns[body].mean() < columns[second].mean()
     assert rows[body].min() < min(rows[first].min(), rows[second].min()) - 30
     assert rows[force].min() > rows[body].min() + 30
@@ -127,13 +127,13 @@ def test_curves_have_the_legs_colours_and_their_peaks_where_the_log_has_them(
         assert seen == approx(peak, abs=0.03)
 
 
-def test_time_goes_on_and_moves_the_vehicle_until_space_pauses_it(pictures: Pictures) -> None:
+def test_time_runs_and_moves_the_vehicle_until_space_pauses_it(pictures: Pictures) -> None:
     assert cursor(pictures.later) != cursor(pictures.playing)
     assert np.abs(vehicle_of(pictures.later) - vehicle_of(pictures.playing)).max() > 100
     assert (pictures.still == pictures.paused).all()
 
 
-def test_the_page_asks_nobody_outside_for_anything(
+def test_the_page_sends_no_request_to_other_machines(
     pictures: Pictures, browser: Browser, proxy: NotingProxy
 ) -> None:
     assert proxy.requests == []

@@ -75,7 +75,7 @@ def test_a_log_becomes_a_recording_with_vehicle_forces_and_curves_at_every_insta
     assert np.array_equal(up > 0.0, forces > 0.0)
 
 
-def test_a_cut_log_is_shown_as_far_as_it_is_whole_and_told_to_be_cut(
+def test_a_cut_log_is_shown_as_far_as_it_is_whole_and_reported_as_cut(
     one_log: Path, tmp_path: Path
 ) -> None:
     (whole,) = one_log.glob("*.mcap")
@@ -134,7 +134,7 @@ def number(request: pytest.FixtureRequest) -> signal.Signals:
     return value
 
 
-def test_what_is_served_stays_on_this_machine_tells_nobody_and_ends_with_the_command(
+def test_the_viewer_is_served_on_this_machine_only_sends_no_data_and_ends_with_the_command(
     one_log: Path, viewing: Callable[..., Started], number: signal.Signals
 ) -> None:
     view, address, port = viewing(one_log)
@@ -187,7 +187,7 @@ def used_port() -> Iterator[int]:
         (("--mode", "2-2"), "live topics need no vehicle named"),
     ],
 )
-def test_what_cannot_be_is_refused_in_one_line(
+def test_bad_options_are_refused_in_one_line(
     one_log: Path, tmp_path: Path, used_port: int, arguments: tuple[str, ...], expected: str
 ) -> None:
     (tmp_path / "there.rrd").write_bytes(b"mine")
@@ -216,7 +216,7 @@ def test_without_rerun_the_command_says_what_to_install(one_log: Path) -> None:
     assert 'pip install "rlv-landing[view]"' in one_error_line(done)
 
 
-def test_help_teaches_without_loading_the_viewer_or_ros(tmp_path: Path) -> None:
+def test_help_shows_without_loading_the_viewer_or_ros(tmp_path: Path) -> None:
     done = run("view", "--help", cwd=tmp_path)
     assert done.returncode == 0
     for taught in (

@@ -89,8 +89,7 @@ class Verification:
         )
         lines = [f"compared  {self.values} values of {self.messages} messages at {until}"]
         if self.inputs:
-            plural = "s" if self.inputs > 1 else ""
-            lines.append(f"steered   by {self.inputs} input{plural}, repeated at their times")
+            lines.append(f"inputs    {self.inputs}, repeated at their times")
         if self.first is not None:
             lines.append(f"differs   first in {self.first.text()}")
         elif self.other_bits:
