@@ -63,7 +63,7 @@ def animate(files: tuple[Path, ...], *, force: bool, **options: Any) -> None:
       rlv-landing animate --mode 1-2-1 landing.gif --slow-motion 10 --end 0.5 --view 3d
 
     Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged, 130 or 143 ended by
-        SIGINT or SIGTERM: no file is left.
+    SIGINT or SIGTERM: no file is left.
     """
     from tqdm import tqdm
 

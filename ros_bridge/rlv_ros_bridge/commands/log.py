@@ -112,7 +112,7 @@ def recover(log: Path, output: Path | None, *, as_json: bool) -> None:
       rlv-landing log recover run1_0.mcap.part --output rescued
 
     Exit codes: 0 recovered, or nothing to recover; 2 nothing whole in it, or the new log cannot be
-        written.
+    written.
     """
     from ..logs.recover import recover as restore
 

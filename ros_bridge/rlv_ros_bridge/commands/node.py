@@ -105,7 +105,7 @@ def node(
       rlv-landing node --managed --ros-args --params-file landing.yaml
 
     Exit codes: 0 landed, 1 recording failed on the way, 2 bad input, 130 or 143 after SIGINT or
-        SIGTERM (the log is complete all the same).
+    SIGTERM (the log is complete all the same).
     """
     from ..ros.setup import StopFlag, require_ros
 

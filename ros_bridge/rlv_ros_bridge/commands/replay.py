@@ -104,7 +104,7 @@ def replay(log: Path, topics: tuple[str, ...], ros_args: tuple[str, ...], **opti
           (moves the ground of another landing)
 
     Exit codes: 0 played, or ended by q, 2 bad input, 3 played but the log is cut, 130 or 143 after
-        SIGINT or SIGTERM.
+    SIGINT or SIGTERM.
     """
     from ..ros.setup import StopFlag, require_ros
 

@@ -82,7 +82,7 @@ def view(log: Path | None, *, save: Path | None, force: bool, **options: Any) ->
     A live recording ends with a signal, or when the landing is reset, and is complete then.
 
     Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged, 130 or 143 ended by
-        SIGINT or SIGTERM.
+    SIGINT or SIGTERM.
     """
     vehicle = VehicleOptions.take(options)
     server = ServerOptions(options["port"], options["no_browser"])
