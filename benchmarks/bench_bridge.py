@@ -1,17 +1,17 @@
-"""The ROS 2 node and the replay: how fast they are, what a sample costs, and how punctual they are
-beside a loop that only waits.
+"""Speed, cost and punctuality of the ROS 2 node and the replay.
 
-- As fast as possible: a landing of 10 s in 1 ms steps, nobody listening, with all recorded and with
-  nothing; the best of REPEATS. The processor time of the landing's thread and of the whole process
-  a sample, from the first sample to the last.
-- What of that is the FMU, the messages, the log: each by itself, over the same 10 s, in processor
+- As fast as possible: a landing of 10 s in 1 ms steps without subscribers, recorded and not
+  recorded; the best of REPEATS. The processor time for each sample, from the first to the last, of
+  the landing's thread and of the whole process.
+- Its parts: the FMU, the messages and the log, each by itself over the same 10 s, in processor
   time.
-- Real time: the node lands at 1 kHz, records, and a subscriber in another process takes every
-  sample; a replay plays the log's `struts` to it. They take turns with a loop that waits for the
-  same times and does nothing else (by `time.sleep` as the node, awake for the last 0.3 ms as the
-  replay): its lateness is the machine's own.
+- Real time: the node lands at 1 kHz and records, while a subscriber in another process receives
+  every sample; a replay plays the log's `struts` to it. They alternate with a loop that only waits
+  for the same times: by `time.sleep` as the node, in a busy loop for the last 0.3 ms as the replay.
+  The lateness of that loop is the machine's own.
 
-Each run has a process of its own. Prints tables, and appends a row a case to `results.jsonl`.
+Each run has a process of its own. Prints tables, and appends a row for each case to
+`results.jsonl`.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
 from rlv_ros_bridge.messages.qos import TELEMETRY
 from rlv_ros_bridge.messages.samples import SampleBytes
 from rlv_ros_bridge.messages.topics import SAMPLED
-from rlv_ros_bridge.node.pacer import spread
+from rlv_ros_bridge.node.pacer import lateness_percentiles
 
 STEP = 1e-3
 FAST_SECONDS, REPEATS = 10.0, 5
@@ -48,7 +48,7 @@ from rlv_ros_bridge.node.land import land
 from rlv_ros_bridge.node.landing_run import LandingRun
 from rlv_ros_bridge.ros.setup import StopFlag
 
-found, go_on = {}, LandingRun.go_on
+found, run_landing = {}, LandingRun.run
 
 def measured(run, interrupted):
     start = run._pacer.start
@@ -56,15 +56,16 @@ def measured(run, interrupted):
         found.update(thread=time.thread_time(), process=time.process_time())
         start(*arguments)
     run._pacer.start = begin
-    go_on(run, interrupted)
+    run_landing(run, interrupted)
     found["thread"] = (time.thread_time() - found["thread"]) / run.samples
     found["process"] = (time.process_time() - found["process"]) / run.samples
     found["lateness"] = list(run._pacer.lateness)
 
-LandingRun.go_on = measured
+LandingRun.run = measured
 with StopFlag() as stop:
     summary = land(json.loads(sys.argv[1]), [], stop)
-print(json.dumps({**found, "samples": summary.samples, "factor": summary.realtime_factor, "late_steps": summary.late_steps}))
+found.update(samples=summary.samples, factor=summary.realtime_factor, late_steps=summary.late_steps)
+print(json.dumps(found))
 """
 REPLAY = """
 import json, sys
@@ -91,15 +92,16 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 
-heard = []
+received = []
+qos = QoSProfile(depth=10000)
 with rclpy.init():
     node = Node("bench_listener")
-    node.create_subscription(JointState, "/landing/struts", heard.append, QoSProfile(depth=10000), raw=True)
+    node.create_subscription(JointState, "/landing/struts", received.append, qos, raw=True)
     executor = SingleThreadedExecutor()
     executor.add_node(node)
-    while len(heard) < int(sys.argv[1]):
+    while len(received) < int(sys.argv[1]):
         executor.spin_once(timeout_sec=0.1)
-print(len(heard))
+print(len(received))
 """
 
 
@@ -119,8 +121,12 @@ def environment() -> dict[str, str]:
 
 
 def run(code: str, options: dict[str, Any], listen: int = 0) -> dict[str, Any]:
-    """What the worker found, with a subscriber that waits for `listen` samples in a process of its
-    own.
+    """The worker's result, with a subscriber in another process if `listen` is not 0.
+
+    Args:
+        code: the worker's program.
+        options: its argument.
+        listen: number of samples for which the subscriber waits.
     """
     listener = (
         subprocess.Popen(worker(LISTEN, listen), env=environment(), stdout=subprocess.PIPE)
@@ -142,8 +148,11 @@ def run(code: str, options: dict[str, Any], listen: int = 0) -> dict[str, Any]:
 
 
 def plain_loop(seconds: float, spin: float) -> list[float]:
-    """The lateness [s] of a loop that waits for every millisecond, the last `spin` [s] awake, and
-    does nothing else.
+    """The lateness of a loop that waits for every millisecond and does nothing else [s].
+
+    Args:
+        seconds: how long it runs [s].
+        spin: the last part of each wait that is a busy loop [s].
     """
     lateness = []
     start = time.perf_counter()
@@ -251,12 +260,17 @@ def punctual(folder: Path) -> list[dict[str, Any]]:
         lateness["plain loop, awake"] += plain_loop(ROUND_SECONDS, SPIN_SECONDS)
     names = ("median", "p99", "largest")
     return [
-        {"case": f"bridge lateness: {case}", "samples": len(v), **dict(zip(names, spread(v)))}
+        {
+            "case": f"bridge lateness: {case}",
+            "samples": len(v),
+            **dict(zip(names, lateness_percentiles(v))),
+        }
         for case, v in lateness.items()
     ]
 
 
 def main() -> None:
+    """Runs all cases, prints them, and appends them to the results."""
     load = os.getloadavg()[0]
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         speeds, figures = fast(Path(name)), punctual(Path(name))

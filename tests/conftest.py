@@ -20,6 +20,11 @@ from rlv_landing.history import History
 ROOT = Path(__file__).resolve().parent.parent
 # the example's modules, as its `run.py` finds them
 sys.path.insert(0, str(ROOT / "examples" / "ship_deck"))
+# what the tests of the bridge share
+sys.path.insert(0, str(ROOT / "tests" / "bridge"))
+
+from bridge_tools import domain, log, one_log, processes  # noqa: E402, F401
+
 # the time that one example takes depends on the machine
 settings.register_profile("suite", deadline=None)
 settings.load_profile("suite")

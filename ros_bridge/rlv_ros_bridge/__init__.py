@@ -1,6 +1,4 @@
-"""The ROS 2 side of rlv-landing: steps the FMU, publishes the landing, records it to MCAP and plays
-it back.
+"""The ROS 2 side of rlv-landing: FMU runner, landing node, MCAP logs, replay and viewer.
 
-Importing this package needs neither ROS 2 nor FMPy nor MCAP; each module imports what it works
-with.
+Importing this package needs neither ROS 2 nor FMPy nor MCAP. Each module imports what it uses.
 """

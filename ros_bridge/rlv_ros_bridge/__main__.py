@@ -1,6 +1,4 @@
-"""`python -m rlv_ros_bridge node|replay|log|animate|view`: the bridge's commands without the
-`rlv-landing` front.
-"""
+"""`python -m rlv_ros_bridge node|replay|log|animate|view`: the bridge's commands alone."""
 
 from __future__ import annotations
 
@@ -30,7 +28,7 @@ main.add_command(view)
 
 
 def run() -> int:
-    """The commands, with a user's error as one line on stderr and exit code 2."""
+    """Runs a command; a LandingError becomes one line on stderr and exit code 2."""
     try:
         main.main(prog_name="rlv_ros_bridge", standalone_mode=True)
     except LandingError as e:

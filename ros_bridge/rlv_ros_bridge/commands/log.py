@@ -1,6 +1,4 @@
-"""The commands `rlv-landing log`: what recorded logs hold, whether they can be repeated, rescue,
-export. They need no ROS 2.
-"""
+"""The commands `rlv-landing log`: info, verify, recover, export. They need no ROS 2."""
 
 from __future__ import annotations
 
@@ -16,7 +14,7 @@ from rlv_landing.errors import LandingError
 
 from ..logs.libraries import require_log_readers
 
-WIDE: dict[str, Any] = {"max_content_width": 120}
+COMMAND_SETTINGS: dict[str, Any] = {"max_content_width": 120}
 EXIT_DIFFERS = 1
 EXIT_CUT = 3
 LOG = click.argument("log", type=click.Path(path_type=Path))
@@ -31,7 +29,7 @@ def log() -> None:
     require_log_readers()
 
 
-@log.command(context_settings=WIDE)
+@log.command(context_settings=COMMAND_SETTINGS)
 @LOG
 @click.option(
     "--json",
@@ -39,8 +37,8 @@ def log() -> None:
     is_flag=True,
     help="As JSON: times in s, forces in N, strokes in m, accelerations in m/s2.",
 )
-def info(log: Path, as_json: bool) -> None:
-    """What a log holds: topics, parameters, outcome and peaks of the landing.
+def info(log: Path, *, as_json: bool) -> None:
+    """Show the contents of a log: topics, parameters, outcome and peaks of the landing.
 
     LOG may be cut, or damaged.
 
@@ -57,10 +55,10 @@ def info(log: Path, as_json: bool) -> None:
     found = log_info(open_log(log))
     click.echo(json.dumps(found.as_dict(), indent=2) if as_json else found.text())
     if not found.complete:
-        tell_cut(log, found.damage)
+        warn_incomplete_and_exit(log, found.damage)
 
 
-@log.command(context_settings=WIDE)
+@log.command(context_settings=COMMAND_SETTINGS)
 @LOG
 @click.option(
     "--fmu",
@@ -69,12 +67,12 @@ def info(log: Path, as_json: bool) -> None:
     help="Repeat with this FMU instead of the Python model.",
 )
 @click.option("--json", "as_json", is_flag=True, help="As JSON.")
-def verify(log: Path, fmu: Path | None, as_json: bool) -> None:
+def verify(log: Path, fmu: Path | None, *, as_json: bool) -> None:
     """Repeat the run from the log's own parameters and compare every field of every sample.
 
-    Bit for bit where model and machine are those that the log was computed by; else within 1 % of
-    each field's largest value, for the smallest difference grows with every contact. What is said
-    tells which applies, and why.
+    Values are the same bit for bit if the model and the machine are those of the log. Otherwise
+    they are within 1 % of each field's largest value, for the smallest difference grows with every
+    contact. The output says which applies, and why.
 
     \b
     Examples:
@@ -94,7 +92,7 @@ def verify(log: Path, fmu: Path | None, as_json: bool) -> None:
         sys.exit(EXIT_DIFFERS)
 
 
-@log.command(context_settings=WIDE)
+@log.command(context_settings=COMMAND_SETTINGS)
 @LOG
 @click.option(
     "--output",
@@ -103,9 +101,10 @@ def verify(log: Path, fmu: Path | None, as_json: bool) -> None:
     help="Default: beside the log, its name with -recovered.",
 )
 @click.option("--json", "as_json", is_flag=True, help="As JSON.")
-def recover(log: Path, output: Path | None, as_json: bool) -> None:
-    """Restore a log whose writer was killed, or that was cut or damaged: all that is whole, into a
-    new log that every reader opens.
+def recover(log: Path, output: Path | None, *, as_json: bool) -> None:
+    """Recover a cut or damaged log: copy all that is whole to a new log that every reader opens.
+
+    A log is cut if its writer was killed.
 
     \b
     Examples:
@@ -113,7 +112,7 @@ def recover(log: Path, output: Path | None, as_json: bool) -> None:
       rlv-landing log recover run1_0.mcap.part --output rescued
 
     Exit codes: 0 recovered, or nothing to recover; 2 nothing whole in it, or the new log cannot be
-        written.
+    written.
     """
     from ..logs.recover import recover as restore
 
@@ -126,7 +125,7 @@ def recover(log: Path, output: Path | None, as_json: bool) -> None:
         click.echo(found.text())
 
 
-@log.command(context_settings=WIDE)
+@log.command(context_settings=COMMAND_SETTINGS)
 @LOG
 @click.argument("output", type=click.Path(path_type=Path), required=False)
 @click.option(
@@ -151,25 +150,29 @@ def recover(log: Path, output: Path | None, as_json: bool) -> None:
 )
 @click.option("--force", is_flag=True, help="Overwrite files that exist.")
 def export(
-    log: Path, output: Path | None, topics: tuple[str, ...], start: float | None, end: float | None, every: float | None,
-    plot: Path | None, force: bool,
-) -> None:  # fmt: skip
-    """Write a landing to OUTPUT, .csv or .parquet: a row an instant, columns named as the FMU's
-    variables, SI, the model's axes.
+    log: Path,
+    output: Path | None,
+    *,
+    topics: tuple[str, ...],
+    plot: Path | None,
+    force: bool,
+    **span: float | None,
+) -> None:
+    """Write a landing to OUTPUT, .csv or .parquet, one row for each instant.
 
-    LOG may also be a rosbag2 recording of the same topics, MCAP or sqlite3; other topics in it are
-    left aside.
+    Columns are named as the FMU's variables, SI, in the model's axes. LOG may also be a rosbag2
+    recording of the same topics, MCAP or sqlite3; other topics in it are ignored.
 
     \b
     Examples:
       rlv-landing log export logs/20260131T120000Z-2-2 landing.parquet
-      rlv-landing log export logs/20260131T120000Z-2-2 struts.csv --topics struts --every 0.01 --end 0.5
+      rlv-landing log export run1 struts.csv --topics struts --every 0.01 --end 0.5
       rlv-landing log export recording --plot landing.png
 
     Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged.
     """
     from ..logs.bag_reader import open_log
-    from ..logs.export import ENDINGS, part, write_history
+    from ..logs.export import ENDINGS, select_rows, write_history
     from ..logs.history import read_history
 
     if output is None and plot is None:
@@ -178,19 +181,18 @@ def export(
         )
     if output is not None and output.suffix not in ENDINGS:
         raise LandingError(f"{output} must end in {' or '.join(ENDINGS)}")
-    check_writable(output, output.suffix if output is not None else "", force)
-    check_writable(plot, ".png", force)
+    check_writable(output, output.suffix if output is not None else "", force=force)
+    check_writable(plot, ".png", force=force)
     if plot is not None and topics:
         raise LandingError("--plot needs every topic; leave --topics out")
     reader = open_log(log)
-    history, notes = read_history(
-        reader, [name.strip() for given in topics for name in given.split(",") if name.strip()]
-    )
-    history = part(history, start, end, every)
+    history, notes = read_history(reader, split_names(topics))
+    history = select_rows(history, **span)
     if output is not None:
         write_history(history, output)
         click.echo(
-            f"{output}: {len(history)} instants from {history.time[0]:g} s to {history.time[-1]:g} s, {len(history.names)} columns"
+            f"{output}: {len(history)} instants from {history.time[0]:g} s to "
+            f"{history.time[-1]:g} s, {len(history.names)} columns"
         )
     if plot is not None:
         from rlv_landing.figures.plots import save_overview
@@ -203,14 +205,25 @@ def export(
     for note in notes:
         click.echo(note, err=True)
     if reader.cut:
-        tell_cut(log, reader.damage)
+        warn_incomplete_and_exit(log, reader.damage)
 
 
-def tell_cut(log: Path, damage: list[str] | None = None) -> None:
-    """Warns that not all of the log is there, and ends the command."""
+def split_names(texts: tuple[str, ...]) -> list[str]:
+    """The names in texts of names that are separated by commas."""
+    return [name.strip() for text in texts for name in text.split(",") if name.strip()]
+
+
+def warn_incomplete_and_exit(log: Path, damage: list[str] | None = None) -> None:
+    """Warns that the log is incomplete, and ends the command with its exit code for that.
+
+    Args:
+        log: the log as given.
+        damage: what is wrong besides a missing end.
+    """
     if damage:
         click.echo(
-            f"warning: {log} is damaged ({damage[0]}); what is whole was read, `rlv-landing log recover` saves it",
+            f"warning: {log} is damaged ({damage[0]}); what is whole was read, "
+            "`rlv-landing log recover` saves it",
             err=True,
         )
     else:

@@ -1,4 +1,4 @@
-"""The bridge's command `node`. What needs ROS 2, FMPy or MCAP is imported when it runs."""
+"""The command `rlv-landing node`. ROS 2, FMPy and MCAP are imported when it runs."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from rlv_landing.choices import parse_pairs
 from rlv_landing.errors import LandingError
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 
-from ..ros.arguments import PASS_ON, split_ros_args
+from ..node.run_summary import RunSummary
+from ..ros.arguments import ROS_COMMAND_SETTINGS, split_ros_args
 
 EXIT_RECORDING_FAILED = 1
 
 
-@click.command(context_settings=PASS_ON)
+@click.command(context_settings=ROS_COMMAND_SETTINGS)
 @click.option(
     "--mode", metavar="2-2|1-2-1", help="Landing mode. Default: the parameters' own (2-2)."
 )
@@ -87,15 +88,7 @@ EXIT_RECORDING_FAILED = 1
 )
 @click.argument("ros_args", nargs=-1, type=click.UNPROCESSED)
 def node(
-    changes: tuple[str, ...],
-    record: str | None,
-    log_root: str,
-    no_record: bool,
-    namespace: str,
-    managed: bool,
-    report: bool,
-    ros_args: tuple[str, ...],
-    **given: Any,
+    ros_args: tuple[str, ...], *, namespace: str, managed: bool, report: bool, **options: Any
 ) -> None:
     """Land once as a ROS 2 node: step the FMU, publish every sample, record to MCAP.
 
@@ -112,64 +105,80 @@ def node(
       rlv-landing node --managed --ros-args --params-file landing.yaml
 
     Exit codes: 0 landed, 1 recording failed on the way, 2 bad input, 130 or 143 after SIGINT or
-        SIGTERM (the log is complete all the same).
+    SIGTERM (the log is complete all the same).
     """
     from ..ros.setup import StopFlag, require_ros
 
     with StopFlag() as stop:
         passed_on = split_ros_args(ros_args)
-        if no_record and (record or report):
-            raise LandingError(
-                f"--no-record and {'--record' if record else '--report'} contradict each other; leave one out"
-            )
-        where = {} if no_record else {"record": record} if record else {"log_root": log_root}
-        chosen = {name: value for name, value in given.items() if value is not None}
-        changed = parse_pairs(changes, PARAMETER_QUANTITIES, "parameter")
+        recording = _recording_parameters(options, report=report)
+        changes = parse_pairs(options.pop("changes"), PARAMETER_QUANTITIES, "parameter")
+        settings = {name: value for name, value in options.items() if value is not None}
+        if managed:
+            settings["autostart"] = False
         require_ros()
         from ..node.land import land
 
-        if managed:
-            chosen["autostart"] = False
-        summary = land({**chosen, **where, **changed}, passed_on, stop, namespace)
+        summary = land({**settings, **recording, **changes}, passed_on, stop, namespace)
     if summary is None:
         sys.exit(128 + stop.number if stop.number else 0)
-    _tell_landing(summary)
+    _print_summary(summary)
     if report and summary.folder is not None:
-        _report(summary.folder)
+        _print_report(summary.folder)
     if summary.signal:
         sys.exit(128 + summary.signal)
     if summary.recording_error:
         sys.exit(EXIT_RECORDING_FAILED)
 
 
-def _tell_landing(summary: Any) -> None:
-    click.echo(
-        f"{summary.end}: {summary.samples} samples, {summary.simulated:g} s in {summary.wall:.2f} s (real-time factor "
-        f"{summary.realtime_factor:.2f}); {summary.late_steps} steps late; lateness {summary.median_lateness * 1e6:.0f} us in the median, "
-        f"{summary.p99_lateness * 1e6:.0f} us in 99 % of samples, {summary.largest_lateness * 1e3:.2f} ms at most"
-    )
-    if summary.lost:
-        click.echo(
-            f"warning: {summary.lost:.2f} s of wall time were lost to stalls and not made good",
-            err=True,
+def _recording_parameters(options: dict[str, Any], *, report: bool) -> dict[str, str]:
+    """The ROS parameters of recording, from the options, which are taken out of `options`.
+
+    Raises:
+        LandingError: the options contradict each other.
+    """
+    record, log_root, no_record = (options.pop(n) for n in ("record", "log_root", "no_record"))
+    if no_record and (record or report):
+        raise LandingError(
+            f"--no-record and {'--record' if record else '--report'} contradict each other; "
+            "leave one out"
         )
+    if no_record:
+        return {}
+    return {"record": record} if record else {"log_root": log_root}
+
+
+def _print_summary(summary: RunSummary) -> None:
+    click.echo(
+        f"{summary.end}: {summary.samples} samples, "
+        f"{summary.simulated:g} s in {summary.wall:.2f} s "
+        f"(real-time factor {summary.realtime_factor:.2f}); {summary.late_steps} steps late; "
+        f"lateness {summary.median_lateness * 1e6:.0f} us in the median, "
+        f"{summary.p99_lateness * 1e6:.0f} us in 99 % of samples, "
+        f"{summary.largest_lateness * 1e3:.2f} ms at most"
+    )
+    warnings = []
+    if summary.lost:
+        warnings.append(f"{summary.lost:.2f} s of wall time were lost to stalls and not made up")
     if summary.dropped:
-        click.echo(
-            f"warning: {summary.dropped} messages were not published in time, and dropped; the log has them",
-            err=True,
+        warnings.append(
+            f"{summary.dropped} messages were not published in time, and dropped; the log has them"
         )
     if not summary.acknowledged:
-        click.echo("warning: not every reliable subscriber has acknowledged all samples", err=True)
+        warnings.append("not every reliable subscriber has acknowledged all samples")
+    for text in warnings:
+        click.echo(f"warning: {text}", err=True)
     if summary.folder is not None:
         click.echo(f"log: {summary.folder}")
     if summary.recording_error:
         click.echo(
-            f"error: {summary.recording_error}; what was written can be read with `rlv-landing log info {summary.folder}`",
+            f"error: {summary.recording_error}; what was written can be read with "
+            f"`rlv-landing log info {summary.folder}`",
             err=True,
         )
 
 
-def _report(folder: Path) -> None:
+def _print_report(folder: Path) -> None:
     from rlv_landing.figures.plots import save_overview
     from rlv_landing.tables.landing import comparison_table
 

@@ -1,4 +1,4 @@
-"""The bridge's command `replay`. What needs ROS 2, FMPy or MCAP is imported when a command runs."""
+"""The command `rlv-landing replay`. ROS 2 and MCAP are imported when it runs."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import Any
 
 import click
 
-from ..ros.arguments import PASS_ON, split_ros_args
-from .log import tell_cut
+from ..ros.arguments import ROS_COMMAND_SETTINGS, split_ros_args
+from .log import split_names, warn_incomplete_and_exit
 
 
-@click.command(context_settings=PASS_ON)
+@click.command(context_settings=ROS_COMMAND_SETTINGS)
 @click.argument("log", type=click.Path(path_type=Path))
 @click.option(
     "--rate",
@@ -26,7 +26,7 @@ from .log import tell_cut
 @click.option(
     "--loop",
     is_flag=True,
-    help="Begin again at the end; stamps and /clock go on, they never run backwards.",
+    help="Begin again at the end; stamps and /clock never run backwards.",
 )
 @click.option(
     "--start",
@@ -87,12 +87,11 @@ from .log import tell_cut
 def replay(log: Path, topics: tuple[str, ...], ros_args: tuple[str, ...], **options: Any) -> None:
     """Play a log back with its original timing: LOG is a log's folder or an .mcap file.
 
-    The very bytes that were recorded go out, in the log's order, with the recorded quality of
-    service.
+    The recorded bytes are published, in the log's order, with the recorded quality of service.
 
     \b
     Keys, on a terminal:
-      space        pause, go on        right     one message more, in a pause
+      space        pause, resume       right     one message more, in a pause
       up, down     rate times 1.1, divided by it
       q, Ctrl-C    end
 
@@ -101,10 +100,11 @@ def replay(log: Path, topics: tuple[str, ...], ros_args: tuple[str, ...], **opti
       rlv-landing replay logs/20260131T120000Z-2-2
       rlv-landing replay logs/20260131T120000Z-2-2 --rate 0.1 --topics struts,pose --clock
       rlv-landing replay run1_0.mcap --start 0.08 --duration 0.2 --loop
-      rlv-landing replay run1 --topics applied/ground --remap applied/ground:=ground    # steer another landing
+      rlv-landing replay run1 --topics applied/ground --remap applied/ground:=ground
+          (moves the ground of another landing)
 
     Exit codes: 0 played, or ended by q, 2 bad input, 3 played but the log is cut, 130 or 143 after
-        SIGINT or SIGTERM.
+    SIGINT or SIGTERM.
     """
     from ..ros.setup import StopFlag, require_ros
 
@@ -113,13 +113,13 @@ def replay(log: Path, topics: tuple[str, ...], ros_args: tuple[str, ...], **opti
         from ..replay.replay_node import replay as play
         from ..replay.selection import ReplayOptions
 
-        names = tuple(name.strip() for given in topics for name in given.split(",") if name.strip())
-        summary = play(
-            ReplayOptions(path=log, topics=names, **options), split_ros_args(ros_args), stop
-        )
+        chosen = ReplayOptions(path=log, topics=tuple(split_names(topics)), **options)
+        summary = play(chosen, split_ros_args(ros_args), stop)
     click.echo(
-        f"played {summary.messages} messages; lateness {summary.median_lateness * 1e6:.0f} us in the median, "
-        f"{summary.p99_lateness * 1e6:.0f} us in 99 % of messages, {summary.largest_lateness * 1e3:.2f} ms at most"
+        f"played {summary.messages} messages; "
+        f"lateness {summary.median_lateness * 1e6:.0f} us in the median, "
+        f"{summary.p99_lateness * 1e6:.0f} us in 99 % of messages, "
+        f"{summary.largest_lateness * 1e3:.2f} ms at most"
         + (f"; {summary.lost:.2f} s lost to stalls" if summary.lost else "")
     )
     if not summary.acknowledged and not summary.signal:
@@ -127,4 +127,4 @@ def replay(log: Path, topics: tuple[str, ...], ros_args: tuple[str, ...], **opti
     if summary.signal:
         sys.exit(128 + summary.signal)
     if summary.cut and not summary.quit:
-        tell_cut(log)
+        warn_incomplete_and_exit(log)

@@ -1,13 +1,11 @@
-"""The command `rlv-landing view`: a log, or the landing that runs at present, in a browser.
-
-What it needs is imported when it runs.
-"""
+"""The command `rlv-landing view`: a landing in a browser. Rerun is imported when it runs."""
 
 from __future__ import annotations
 
 import sys
 import threading
 import webbrowser
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,17 +14,25 @@ import click
 from rlv_landing.commands.options import check_writable, parameter_options
 from rlv_landing.errors import LandingError
 
-from ..ros.interruption import ends_tidily
+from ..ros.interruption import exit_on_sigterm
 from ..ros.setup import StopFlag, require_ros
-from .animate import landing_of_log, tell_drawn
-from .log import EXIT_CUT, WIDE
+from .landing_source import VehicleOptions, read_landing, warn_incomplete
+from .log import COMMAND_SETTINGS, EXIT_CUT
 
 PORT = 9090
-# How often signals are looked after [s].
-LOOK_ROUND_SECONDS = 0.1
+# Period of checking for signals [s].
+POLL_SECONDS = 0.1
 
 
-@click.command(context_settings=WIDE)
+@dataclass(frozen=True)
+class ServerOptions:
+    """The port of the viewer's page, and whether only its address is printed."""
+
+    port: int
+    no_browser: bool
+
+
+@click.command(context_settings=COMMAND_SETTINGS)
 @click.argument("log", required=False, type=click.Path(path_type=Path))
 @parameter_options
 @click.option(
@@ -52,53 +58,57 @@ LOOK_ROUND_SECONDS = 0.1
     help="Write a recording for the Rerun viewer, serve nothing.",
 )
 @click.option("--force", is_flag=True, help="Overwrite a file that exists.")
-def view(
-    log: Path | None, preset: str | None, file: str | None, mode: str | None, pairs: tuple[str, ...],
-    namespace: str, port: int, no_browser: bool, save: Path | None, force: bool,
-) -> None:  # fmt: skip
+def view(log: Path | None, *, save: Path | None, force: bool, **options: Any) -> None:
     """Show a landing in a browser: the vehicle in space beside force, stroke, pitch and speed.
 
     Ctrl-C ends it.
 
-    LOG is a log's folder or file, or a rosbag2 recording of the same topics; it is played five
+    LOG is a log's folder or file, or a rosbag2 recording of the same topics. It is played five
     times slower, in a loop: space pauses, the arrow keys step, the time line moves, curves zoom.
-    Without LOG the live topics are shown, of a node or of a replay; that needs ROS 2. Options that
+    Without LOG the live topics of a node or of a replay are shown; that needs ROS 2. Options that
     name a vehicle are for recordings that do not carry their parameters.
 
-    The viewer is Rerun's, from the extra `view`. It listens on this machine only, and neither it
-    nor the page tells anybody anything.
+    The viewer is Rerun's, from the extra `view`. It listens on this machine only. Neither it nor
+    the page sends data elsewhere.
 
     \b
     Examples:
       rlv-landing view logs/20260131T120000Z-2-2
       rlv-landing view logs/20260131T120000Z-2-2 --save landing.rrd     # then: rerun landing.rrd
       rlv-landing view & rlv-landing node --mode 1-2-1
-      rlv-landing view --no-browser --port 9100        # from elsewhere: ssh -L 9100:127.0.0.1:9100 -L 9101:127.0.0.1:9101 HOST
+      rlv-landing view --no-browser --port 9100
+          (from elsewhere: ssh -L 9100:127.0.0.1:9100 -L 9101:127.0.0.1:9101 HOST)
 
     A live recording ends with a signal, or when the landing is reset, and is complete then.
 
     Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged, 130 or 143 ended by
-        SIGINT or SIGTERM.
+    SIGINT or SIGTERM.
     """
-    given = (preset, file, mode, pairs)
-    check_writable(save, ".rrd", force)
-    if log is None and any(given):
+    vehicle = VehicleOptions.take(options)
+    server = ServerOptions(options["port"], options["no_browser"])
+    namespace = options["namespace"]
+    check_writable(save, ".rrd", force=force)
+    if log is None and vehicle.given:
         raise LandingError(
             "live topics need no vehicle named; leave --preset, --parameters, --mode and --set out"
         )
     require_viewer()
-    with ends_tidily():
-        if log is None:
-            ended = (
-                _record(namespace, save) if save is not None else _show(namespace, port, no_browser)
-            )
+    with exit_on_sigterm():
+        if log is not None:
+            code = _show_log(log, vehicle, save, server)
+        elif save is not None:
+            code = _save_live(namespace, save)
         else:
-            ended = _show_log(log, given, save, port, no_browser)
-    sys.exit(ended)
+            code = _show_live(namespace, server)
+    sys.exit(code)
 
 
 def require_viewer() -> None:
-    """Raises LandingError, saying what to install, unless Rerun is there."""
+    """Checks that Rerun is installed.
+
+    Raises:
+        LandingError: it is missing; the text says what to install.
+    """
     try:
         import rerun  # noqa: F401
         import rerun_cli  # noqa: F401
@@ -108,51 +118,52 @@ def require_viewer() -> None:
         ) from None
 
 
-def _show_log(
-    log: Path, given: tuple[Any, ...], save: Path | None, port: int, no_browser: bool
-) -> int:
-    from ..viewer.rerun_log import scene_of
+def _show_log(log: Path, vehicle: VehicleOptions, save: Path | None, options: ServerOptions) -> int:
+    """Saves or shows the landing in a log; the exit code."""
+    from ..viewer.rerun_log import landing_scene
     from ..viewer.rerun_scene import SavedScene
 
-    history, parameters, cut = landing_of_log(log, given)
-    scene = scene_of(history, parameters)
+    history, parameters, cut = read_landing(log, vehicle)
+    scene = landing_scene(history, parameters)
     if cut:
-        tell_drawn(log)
+        warn_incomplete(log)
     if save is not None:
         with SavedScene(save) as saved:
-            saved.begin(scene, live=False)
+            saved.begin(scene)
             saved.finish()
         click.echo(f"{save}: {len(history)} instants; open it by: rerun {save}")
         return EXIT_CUT if cut else 0
-    with StopFlag() as stop, _server(port) as server:
+    with StopFlag() as stop, _server(options) as server:
         scene.stream.connect_grpc(server.data, default_blueprint=scene.blueprint(live=False))
-        _tell(server.address, no_browser)
-        while not stop and server.runs():
-            stop.wait(LOOK_ROUND_SECONDS)
+        _print_address(server.address, options)
+        while not stop and server.check_running():
+            stop.wait(POLL_SECONDS)
         scene.stream.disconnect()
     return 128 + stop.number
 
 
-def _show(namespace: str, port: int, no_browser: bool) -> int:
+def _show_live(namespace: str, options: ServerOptions) -> int:
+    """Shows live landings until a signal comes; the exit code."""
     require_ros()
     from ..viewer.rerun_live import watch
 
     shown: list[Any] = []
-    with StopFlag() as stop, _server(port) as server:
+    with StopFlag() as stop, _server(options) as server:
 
-        def begin(scene: Any) -> None:
+        def connect(scene: Any) -> None:
             scene.stream.connect_grpc(server.data, default_blueprint=scene.blueprint(live=True))
             shown.append(scene)
 
-        _tell(server.address, no_browser)
+        _print_address(server.address, options)
         click.echo(f"waiting for a landing below /{namespace.strip('/')}")
-        watch(namespace, begin, server.runs, stop)
+        watch(namespace, connect, server.check_running, stop)
         for scene in shown:
             scene.stream.disconnect()
     return 128 + stop.number
 
 
-def _record(namespace: str, save: Path) -> int:
+def _save_live(namespace: str, save: Path) -> int:
+    """Saves the first live landing; the exit code."""
     require_ros()
     from ..viewer.rerun_live import watch
     from ..viewer.rerun_scene import SavedScene
@@ -160,33 +171,34 @@ def _record(namespace: str, save: Path) -> int:
     landings = 0
     with StopFlag() as stop, SavedScene(save) as saved:
 
-        def begin(scene: Any) -> None:
+        def save_first(scene: Any) -> None:
             nonlocal landings
             landings += 1
             if landings == 1:
-                saved.begin(scene, live=False)
+                saved.begin(scene)
 
         click.echo(
             f"waiting for a landing below /{namespace.strip('/')}; Ctrl-C ends the recording"
         )
-        samples = watch(namespace, begin, lambda: landings < 2, stop)
+        samples = watch(namespace, save_first, lambda: landings < 2, stop)
         if not landings:
             raise LandingError(
-                f"nothing was heard below /{namespace.strip('/')}; check --namespace and ROS_DOMAIN_ID"
+                f"nothing was published below /{namespace.strip('/')}; "
+                "check --namespace and ROS_DOMAIN_ID"
             )
         saved.finish()
     click.echo(f"{save}: {samples} instants; open it by: rerun {save}")
     return 128 + stop.number if stop else 0
 
 
-def _server(port: int) -> Any:
+def _server(options: ServerOptions) -> Any:
     from ..viewer.rerun_server import ViewerServer
 
-    return ViewerServer(port)
+    return ViewerServer(options.port)
 
 
-def _tell(address: str, no_browser: bool) -> None:
+def _print_address(address: str, options: ServerOptions) -> None:
     click.echo(f"{address}\nCtrl-C ends the view")
-    if not no_browser:
-        # Some browsers keep who opened them waiting.
+    if not options.no_browser:
+        # Some browsers return only when they are closed.
         threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()

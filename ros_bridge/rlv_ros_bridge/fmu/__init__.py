@@ -1,0 +1,1 @@
+"""The FMU as the bridge uses it: unpacking, stepping, identity of its build."""

@@ -1,6 +1,4 @@
-"""Which build of the model computed a log: what decides whether a repetition must give the same
-bits.
-"""
+"""Identity of the model's build and of the machine: together they decide the computed bits."""
 
 from __future__ import annotations
 
@@ -13,67 +11,75 @@ from pathlib import Path
 
 import rlv_landing
 
-# The files that decide the digits, as the FMU carries them, too.
+# The source files that decide the computed bits. The FMU carries the same files.
 MODEL_FILE = re.compile(
     r"(?:^|/)rlv_landing[^/]*/((?:core/(?:\w+/)*\w+|assembly|landing|parameters|quantities|touchdown)\.py)$"
 )
 
 
 def build_metadata(fmu: Path) -> dict[str, str]:
-    """What a log says of the build of the FMU that it was computed by: a digest of the model's
-    texts, and the machine.
+    """Digest of the model's source files in `fmu`, and this machine, by name as a log keeps them.
+
+    The digest is empty where `fmu` cannot be read.
     """
     try:
         with zipfile.ZipFile(fmu) as archive:
-            texts = {
+            sources = {
                 m[1]: archive.read(name)
                 for name in archive.namelist()
                 if (m := MODEL_FILE.search(name))
             }
     except (OSError, zipfile.BadZipFile):
-        texts = {}
-    return {"model": _digest(texts), "machine": machine()}
+        sources = {}
+    return {"model": _digest(sources), "machine": machine_name()}
 
 
-def own_model() -> str:
-    """The digest of the model that is installed here."""
+def installed_model() -> str:
+    """Digest of the source files of the model that is installed here."""
     root = Path(rlv_landing.__file__).parent
     files = [*(root / "core").rglob("*.py"), *root.glob("*.py")]
-    texts = {
+    sources = {
         m[1]: f.read_bytes()
         for f in files
         if (m := MODEL_FILE.search(f"rlv_landing/{f.relative_to(root).as_posix()}"))
     }
-    return _digest(texts)
+    return _digest(sources)
 
 
-def machine() -> str:
-    """Processor, system and C library: the mathematical functions that the digits come from."""
+def machine_name() -> str:
+    """Processor, system and C library, whose mathematical functions decide the last bits."""
     return " ".join(
         part for part in (platform.machine(), platform.system(), *platform.libc_ver()) if part
     )
 
 
-def why_not_exact(metadata: Mapping[str, str], fmu: Path | None = None) -> str:
-    """Why a repetition here, by `fmu` or the model that is installed, need not give the bits of the
-    log with this metadata; empty where it must.
+def inexact_reason(metadata: Mapping[str, str], fmu: Path | None = None) -> str:
+    """Why a rerun here need not give the bits of the log; empty where it must.
+
+    Args:
+        metadata: the log's metadata by name.
+        fmu: the FMU that reruns it; None: the installed Python model.
     """
-    told = build_metadata(fmu) if fmu is not None else {"model": own_model(), "machine": machine()}
+    here = (
+        build_metadata(fmu)
+        if fmu is not None
+        else {"model": installed_model(), "machine": machine_name()}
+    )
     reasons = {
         "model": "the log was computed by another version of the model",
         "machine": "the log was computed on another machine",
     }
-    for name, mine in told.items():
+    for name, value in here.items():
         if not metadata.get(name):
             return f"the log does not say by which {name} it was computed"
-        if metadata[name] != mine:
-            return f"{reasons[name]} ({metadata[name]}; here {mine})"
+        if metadata[name] != value:
+            return f"{reasons[name]} ({metadata[name]}; here {value})"
     return ""
 
 
-def _digest(texts: Mapping[str, bytes]) -> str:
-    if not texts:
+def _digest(sources: Mapping[str, bytes]) -> str:
+    if not sources:
         return ""
     return hashlib.sha256(
-        b"".join(name.encode() + b"\0" + texts[name] for name in sorted(texts))
+        b"".join(name.encode() + b"\0" + sources[name] for name in sorted(sources))
     ).hexdigest()[:16]

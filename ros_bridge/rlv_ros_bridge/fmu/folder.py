@@ -1,4 +1,4 @@
-"""The folder that an FMU is unpacked to, and the removal of those that killed processes have left."""
+"""The temporary folder of an unpacked FMU, and the removal of folders of dead processes."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ LOCK = "lock"
 
 
 class FmuFolder:
-    """A new folder below the system's temporary one, locked as long as this process lives.
+    """A new temporary folder `path`, locked as long as this process lives.
 
-    Removes stale ones on the way.
+    Making one also removes the folders of dead processes.
     """
 
     def __init__(self) -> None:
@@ -25,19 +25,19 @@ class FmuFolder:
         new = self.path / f"{LOCK}.new"
         self._lock = os.open(new, os.O_CREAT | os.O_RDWR | os.O_CLOEXEC)
         fcntl.flock(self._lock, fcntl.LOCK_EX)
-        # Under its name only once it is held: nobody may find it free.
+        # The file gets its name once the lock is held, so that no process finds it unlocked.
         new.rename(self.path / LOCK)
 
     def remove(self) -> None:
-        """Removes the folder and lets go of its lock."""
+        """Removes the folder and releases its lock."""
         shutil.rmtree(self.path, ignore_errors=True)
         os.close(self._lock)
 
 
 def remove_stale() -> None:
-    """Removes the folders of dead processes: those whose lock can be had.
+    """Removes the folders whose lock is free: those of dead processes.
 
-    What belongs to others or cannot be removed stays.
+    Folders of other users, and those that cannot be removed, stay.
     """
     for lock in Path(tempfile.gettempdir()).glob(f"{PREFIX}*/{LOCK}"):
         with suppress(OSError):

@@ -1,6 +1,4 @@
-"""Steps the landing's FMU through FMPy: parameters in, all outputs out, cleaned up whatever
-happens.
-"""
+"""Steps the landing's FMU through FMPy."""
 
 from __future__ import annotations
 
@@ -24,10 +22,11 @@ from rlv_landing.quantities import (
 from .folder import FmuFolder
 
 MODEL_NAME = "RlvLanding"
+# fmi2Status.
 WARNING, FATAL = 1, 4
-# Arguments of the functions that are called at every step: component, then as FMI has them; arrays
-# by their address.
+# Argument types of the FMI functions that are called at every step. Arrays are passed by address.
 DO_STEP = (ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int)
+FMI_TRUE = 1
 GET = (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
 
 
@@ -36,11 +35,11 @@ class FmuRunner:
 
     Args:
         fmu_path: the `.fmu` file.
-        values: parameters by name, SI; those not given keep the FMU's defaults.
+        values: parameters by name, SI; others keep the FMU's defaults.
 
     Raises:
-        LandingError: no such file, not an FMU, not this model's, an unknown parameter, or one that
-            the FMU refuses (with its reason).
+        LandingError: no such file, not an FMU, another model, an unknown parameter, or one that the
+            FMU refuses (with its reason).
     """
 
     def __init__(self, fmu_path: str | Path, values: Mapping[str, float | str]) -> None:
@@ -48,13 +47,13 @@ class FmuRunner:
         self._messages: list[tuple[int, str]] = []
         self._slave: Any = None
         self._component: int | None = None
-        # Of each type of output: the getter's name, the getter, and its arguments, among them
-        # addresses of value references and of values.
-        self._reads: list[tuple[str, Any, tuple[Any, ...]]] = []
-        self._asked: list[Any] = []
+        # For each FMI type: the getter's name, the getter, its arguments. The arguments hold the
+        # addresses of the arrays of value references and of values, which are kept alive here.
+        self._getters: list[tuple[str, Any, tuple[Any, ...]]] = []
+        self._reference_arrays: list[Any] = []
         self._reals: Any = None
-        # Outputs that are not real: where they belong in a sample, and where they are read to.
-        self._others: list[tuple[int, Any, int]] = []
+        # Integer and Boolean outputs: index in a sample, array of values, index in that array.
+        self._not_real: list[tuple[int, Any, int]] = []
         self._folder: FmuFolder | None = None
         description = read_description(self.path)
         self.guid: str = description.guid
@@ -70,7 +69,8 @@ class FmuRunner:
         missing = [n for n in needed if n not in references]
         if missing:
             raise LandingError(
-                f"{self.path} (version {self.version}) has no variable {missing[0]!r}; build it again with ./build_fmu.sh"
+                f"{self.path} (version {self.version}) has no variable {missing[0]!r}; "
+                "build it again with ./build_fmu.sh"
             )
         for name in values:
             if name not in PARAMETER_QUANTITIES:
@@ -111,7 +111,10 @@ class FmuRunner:
         self._call("exitInitializationMode")
 
     def _function(self, name: str, arguments: Sequence[Any]) -> Any:
-        """The FMU's own function: FMPy's wrapper of it takes as long as reading twenty values."""
+        """The C function `name` of the FMU.
+
+        FMPy's wrapper of it costs as much processor time as reading twenty values.
+        """
         function = self._slave.dll[name]
         function.argtypes, function.restype = arguments, ctypes.c_int
         return function
@@ -122,22 +125,23 @@ class FmuRunner:
             ("integer", "fmi2GetInteger", ctypes.c_int),
             ("boolean", "fmi2GetBoolean", ctypes.c_int),
         ):
-            where = [i for i, q in enumerate(OUTPUT_QUANTITIES) if q.kind == kind]
-            asked = (ctypes.c_uint * len(where))(*(references[OUTPUT_NAMES[i]] for i in where))
-            got = (c_type * len(where))()
+            indices = [i for i, q in enumerate(OUTPUT_QUANTITIES) if q.kind == kind]
+            count = len(indices)
+            wanted = (ctypes.c_uint * count)(*(references[OUTPUT_NAMES[i]] for i in indices))
+            values = (c_type * count)()
             arguments = (
                 self._component,
-                ctypes.addressof(asked),
-                len(where),
-                ctypes.addressof(got),
+                ctypes.addressof(wanted),
+                count,
+                ctypes.addressof(values),
             )
-            self._reads.append((getter, self._function(getter, GET), arguments))
-            self._asked.append(asked)
+            self._getters.append((getter, self._function(getter, GET), arguments))
+            self._reference_arrays.append(wanted)
             if kind == "real":
-                self._reals = got
+                self._reals = values
             else:
-                self._others += [(i, got, j) for j, i in enumerate(where)]
-        self._others.sort(key=itemgetter(0))
+                self._not_real += [(i, values, j) for j, i in enumerate(indices)]
+        self._not_real.sort(key=itemgetter(0))
 
     def _make_callbacks(self) -> Any:
         from fmpy import calloc, fmi2, free
@@ -152,7 +156,7 @@ class FmuRunner:
         callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(logger)
         callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(calloc)
         callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
-        # FMI's logger is variadic, which ctypes cannot be: the proxy formats the message first.
+        # FMI's logger is variadic, which ctypes does not support. The proxy formats the message.
         addLoggerProxy(ctypes.byref(callbacks))
         self._callbacks = callbacks
         return callbacks
@@ -167,15 +171,15 @@ class FmuRunner:
 
     def _fail(self, function: str, status: int, text: str = "") -> NoReturn:
         if status == FATAL:
-            # After Fatal the instance must not be touched again, not even to be freed.
-            self._let_go()
+            # FMI forbids every further call of the instance after fmi2Fatal, also the freeing.
+            self._forget_instance()
         raise LandingError(
             f"{self.path}: {function} failed: {self._reason(text or f'status {status}')}"
         ) from None
 
-    def _let_go(self) -> Any:
+    def _forget_instance(self) -> Any:
         slave, self._slave = self._slave, None
-        self._component, self._reads, self._reals = None, [], None
+        self._component, self._getters, self._reals = None, [], None
         return slave
 
     def _reason(self, otherwise: str) -> str:
@@ -183,43 +187,50 @@ class FmuRunner:
         return " ".join("; ".join(texts or [otherwise]).split())
 
     def step(self, k: int, h: float) -> None:
-        """Go from k*h to (k+1)*h [s].
+        """Goes from k*h to (k+1)*h [s].
 
-        The difference of the two, not h, is asked for, so that the time reached is (k+1)*h to the
-        bit.
+        The step asked for is the difference of the two, not h, so that the time reached is (k+1)*h
+        to the bit.
 
-        Raises LandingError, with the FMU's reason, where the step is refused.
+        Args:
+            k: number of the step, from 0.
+            h: communication step [s].
+
+        Raises:
+            LandingError: the FMU refuses the step (with its reason).
         """
         now = k * h
         self._messages.clear()
-        status = self._do_step(self._component, now, (k + 1) * h - now, True)
+        status = self._do_step(self._component, now, (k + 1) * h - now, FMI_TRUE)
         if status > WARNING:
             self._fail("doStep", status)
 
     def values(self) -> list[float]:
-        """All outputs at the present time, in the order of `OUTPUT_NAMES`.
+        """All outputs at the current time, SI, in the order of `OUTPUT_NAMES`.
 
-        Raises LandingError where the FMU refuses.
+        Raises:
+            LandingError: the FMU refuses.
         """
-        for name, get, arguments in self._reads:
+        for name, get, arguments in self._getters:
             status = get(*arguments)
             if status > WARNING:
                 self._fail(name, status)
         values: list[float] = self._reals[:]
-        # In ascending order, so that each comes to stand in its place.
-        for i, got, j in self._others:
-            values.insert(i, got[j])
+        # The indices ascend, so each insertion leaves the later indices right.
+        for i, array, j in self._not_real:
+            values.insert(i, array[j])
         return values
 
     def statistics(self) -> dict[str, int]:
-        """What the integrator has done so far, by the FMU's names."""
+        """The integrator's counters since time 0, by the FMU's variable names."""
         names = [q.name for q in STATISTIC_QUANTITIES]
         return dict(zip(names, self._slave.getInteger([self._references[name] for name in names])))
 
     def set_inputs(self, inputs: Mapping[str, float]) -> None:
-        """Inputs by name, SI, from now on; others go on as they were.
+        """Sets inputs by name, SI, from the current time on; others keep their values.
 
-        Raises LandingError for an unknown name.
+        Raises:
+            LandingError: an unknown name, or the FMU refuses a value.
         """
         for name in inputs:
             if name not in INPUT_NAMES:
@@ -227,11 +238,8 @@ class FmuRunner:
         self._call("setReal", [self._references[name] for name in inputs], list(inputs.values()))
 
     def close(self) -> None:
-        """Terminate and free the instance, and remove the folder that it was unpacked to.
-
-        May be called again.
-        """
-        slave = self._let_go()
+        """Terminates and frees the instance, and removes its folder; may be called again."""
+        slave = self._forget_instance()
         folder, self._folder = self._folder, None
         try:
             if slave is not None:
@@ -258,7 +266,8 @@ class FmuRunner:
 def read_description(path: Path) -> Any:
     """FMPy's description of the FMU at `path`.
 
-    Raises LandingError: no such file, not an FMU, not this model's, FMPy missing.
+    Raises:
+        LandingError: no such file, not an FMU, another model, or FMPy is missing.
     """
     if not path.is_file():
         raise LandingError(
@@ -282,7 +291,8 @@ def read_description(path: Path) -> Any:
         ) from None
     if description.modelName != MODEL_NAME:
         raise LandingError(
-            f"{path} holds the model {description.modelName!r}, not {MODEL_NAME!r}; build ours with ./build_fmu.sh"
+            f"{path} holds the model {description.modelName!r}, not {MODEL_NAME!r}; "
+            "build ours with ./build_fmu.sh"
         )
     if description.fmiVersion != "2.0" or description.coSimulation is None:
         raise LandingError(

@@ -1,0 +1,1 @@
+"""MCAP logs: recording, reading, recovery, repetition, comparison and export."""

@@ -1,5 +1,6 @@
-"""Recordings of rosbag2 that are not plain MCAP (sqlite3 `.db3`, compressed files), read by rosbags
-as `LogReader` reads ours.
+"""Reads rosbag2 recordings that are not plain MCAP: sqlite3 `.db3`, compressed files.
+
+rosbags reads them; `BagReader` has the interface of `LogReader`.
 """
 
 from __future__ import annotations
@@ -16,23 +17,28 @@ METADATA_FILE = "metadata.yaml"
 
 
 def open_log(path: str | Path) -> LogReader:
-    """The log at `path`: ours, any rosbag2 recording, or one MCAP file.
+    """Opens the log at `path`: a log of ours, a rosbag2 recording, or one MCAP file.
 
-    Raises LandingError where there is none.
+    Raises:
+        LandingError: there is no log, or it cannot be read.
     """
     folder = Path(path)
     if folder.is_file() and folder.suffix == ".db3":
         raise LandingError(
-            f"{folder} is only the messages of a recording; name its folder, where {METADATA_FILE} is"
+            f"{folder} is only a part of a recording; name its folder, in which {METADATA_FILE} is"
         )
-    ours = any(any(folder.glob(f"*{ending}")) for ending in (FINISHED, UNFINISHED))
-    return (
-        LogReader(folder) if ours or not (folder / METADATA_FILE).is_file() else BagReader(folder)
-    )
+    is_mcap = any(any(folder.glob(f"*{ending}")) for ending in (FINISHED, UNFINISHED))
+    if is_mcap or not (folder / METADATA_FILE).is_file():
+        return LogReader(folder)
+    return BagReader(folder)
 
 
 class BagReader(LogReader):
-    """A recording's folder. Raises LandingError where rosbags cannot read it."""
+    """The folder of a rosbag2 recording, with the interface of `LogReader`.
+
+    Raises:
+        LandingError: rosbags cannot read it.
+    """
 
     def __init__(self, path: Path) -> None:
         from rosbags.rosbag2 import Reader
@@ -60,7 +66,7 @@ class BagReader(LogReader):
         )
 
     def messages(self, topics: Iterable[str] | None = None) -> Iterator[LogMessage]:
-        """The messages in the order of their times, of all topics or of `topics`."""
+        """The messages of all topics, or of `topics`, in the order of their times."""
         wanted = None if topics is None else set(topics)
         try:
             with self._reader as reader:
@@ -76,10 +82,15 @@ class BagReader(LogReader):
             raise self._error(e) from None
 
     def decoder(self, topic: str) -> Any:
-        """What makes messages of `topic` from bytes, by the definition that ROS 2 has of its type."""
+        """A function from bytes to messages of `topic`, by ROS 2's own definition of its type.
+
+        Raises:
+            LandingError: the type is not known.
+        """
         type_name = self.channels[topic].type_name
         if type_name not in self._types.types:
             raise LandingError(
-                f"{self.path}: {topic} is of the type {type_name}, which is not known here; leave it out by --topics"
+                f"{self.path}: {topic} is of the type {type_name}, which is not known here; "
+                "leave it out by --topics"
             )
         return lambda data: self._types.deserialize_cdr(data, type_name)

@@ -1,6 +1,4 @@
-"""A log folder in rosbag2's layout, written so that it is either finished or can be told to be
-unfinished.
-"""
+"""Writes a log folder in rosbag2's layout; until it is finished, the file's ending says so."""
 
 from __future__ import annotations
 
@@ -24,8 +22,9 @@ CHUNK_BYTES = 60 * 1024
 
 @dataclass
 class BagTopic:
-    """What `metadata.yaml` tells of a topic; `qos` as rosbag2 writes the profiles that its
-    publishers offered.
+    """A topic in `metadata.yaml`.
+
+    `qos` holds the profiles that its publishers offer, as rosbag2 writes them.
     """
 
     name: str
@@ -37,13 +36,13 @@ class BagTopic:
 
 @dataclass
 class Span:
-    """The times of a log's messages [ns]."""
+    """First and last time of a log's messages [ns]."""
 
     first: int | None = None
     last: int = 0
 
     def add(self, time: int) -> None:
-        """Takes a message's time in."""
+        """Extends the span to a message's time [ns]."""
         if self.first is None or time < self.first:
             self.first = time
         if time > self.last:
@@ -52,14 +51,14 @@ class Span:
 
 @dataclass
 class Bag:
-    """What `metadata.yaml` says of a log: its file, topics and times."""
+    """The contents of a log as `metadata.yaml` describes them: file, topics and times."""
 
     file: str
     topics: list[BagTopic] = field(default_factory=list)
     span: Span = field(default_factory=Span)
 
-    def record(self) -> dict[str, Any]:
-        """As rosbag2 has it, metadata version 9."""
+    def metadata(self) -> dict[str, Any]:
+        """The `rosbag2_bagfile_information` of rosbag2, metadata version 9."""
         start = self.span.first or 0
         span = {
             "duration": {"nanoseconds": max(0, self.span.last - start)},
@@ -88,16 +87,21 @@ class Bag:
             "relative_file_paths": [self.file],
             "files": [{"path": self.file, **span}],
             "custom_data": None,
-            "ros_distro": distro(),
+            "ros_distro": ros_distro(),
         }
 
 
 class BagWriter:
-    """The folder `folder`, made here, and in it `<name>_0.mcap.part`, which `finish` turns into
-    `<name>_0.mcap` and `metadata.yaml`.
+    """A new log folder with the file `<name>_0.mcap.part`.
 
-    `mcap` is MCAP's own writer of that file. All raise OSError where the disk does; `__init__`
-    raises LandingError where the folder exists or cannot be made.
+    `finish` renames the file to `<name>_0.mcap` and writes `metadata.yaml`. `mcap` is MCAP's own
+    writer of that file. All methods raise OSError where the disk refuses.
+
+    Args:
+        folder: the log folder, which must not exist.
+
+    Raises:
+        LandingError: the folder exists or cannot be made.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -112,7 +116,7 @@ class BagWriter:
         self._file: IO[bytes] | None = None
         try:
             self._file = self.part.open("xb")
-            # With the data's own checksum, any byte that is changed later is noticed.
+            # With the data section's checksum, a later change of any byte is noticed.
             self.mcap: Any = Writer(
                 self._file,
                 chunk_size=CHUNK_BYTES,
@@ -120,77 +124,78 @@ class BagWriter:
                 enable_data_crcs=True,
             )
             self.mcap.start(profile="ros2", library=f"{LIBRARY} {__version__}")
-            self.mcap.add_metadata("rosbag2", {"ROS_DISTRO": distro()})
+            self.mcap.add_metadata("rosbag2", {"ROS_DISTRO": ros_distro()})
         except BaseException:
             self.discard()
             raise
 
     @property
-    def open(self) -> bool:
-        """Whether it is neither finished nor given up."""
+    def is_open(self) -> bool:
+        """Whether it is neither finished nor abandoned."""
         return self._file is not None
 
-    def is_there(self) -> bool:
-        """Whether the file still has its name; a file whose folder was removed takes bytes all the
-        same, and loses them.
+    def file_exists(self) -> bool:
+        """Whether the file still has its name.
+
+        A file whose folder was removed accepts further bytes, and loses them.
         """
         if self._file is None:
             return False
         try:
-            found, mine = self.part.stat(), os.fstat(self._file.fileno())
+            named, opened = self.part.stat(), os.fstat(self._file.fileno())
         except FileNotFoundError:
             return False
-        return (found.st_dev, found.st_ino) == (mine.st_dev, mine.st_ino)
+        return (named.st_dev, named.st_ino) == (opened.st_dev, opened.st_ino)
 
     def finish(self) -> None:
-        """Writes the end of the file, makes sure that all is on the disk, gives the file its name,
-        and writes `metadata.yaml`.
-        """
+        """Completes the file and syncs it to the disk, renames it, and writes `metadata.yaml`."""
         file = self._file
         assert file is not None
+        serialized = to_yaml(self.bag.metadata())
         self.mcap.add_metadata(
-            "rosbag2", {"ROS_DISTRO": distro(), "serialized_metadata": dump(self.bag.record())}
+            "rosbag2", {"ROS_DISTRO": ros_distro(), "serialized_metadata": serialized}
         )
         self.mcap.finish()
         file.flush()
         os.fsync(file.fileno())
-        if not self.is_there():
+        if not self.file_exists():
             raise FileNotFoundError(0, "the file was removed or moved away")
         file.close()
         self._file = None
         self.part.rename(self.path)
         write_durably(
             self.folder / "metadata.yaml",
-            dump({"rosbag2_bagfile_information": self.bag.record()}).encode("utf-8"),
+            to_yaml({"rosbag2_bagfile_information": self.bag.metadata()}).encode("utf-8"),
         )
 
-    def give_up(self) -> None:
+    def abandon(self) -> None:
         """Closes the file as it is: unfinished, under its temporary name."""
         file, self._file = self._file, None
         if file is not None:
-            # A full disk makes even the closing flush fail; the error is known by then.
+            # On a full disk the flush on closing fails too; the first error has been reported.
             with suppress(OSError):
                 file.close()
 
     def discard(self) -> None:
-        """Closes and removes all that was made here."""
-        self.give_up()
+        """Closes the file, and removes it and the folders made for it."""
+        self.abandon()
         made, self._made = self._made, []
         if made:
             for path in (self.part, self.path):
-                # Where its name was too long, even asking for it fails.
+                # If the name is too long, even looking it up fails.
                 with suppress(OSError):
                     path.unlink(missing_ok=True)
         for folder in made:
-            # Somebody else may have put something into a parent meanwhile: that stays.
+            # Another program may have put a file into a parent meanwhile: then it stays.
             with suppress(OSError):
                 folder.rmdir()
 
 
 def make_folder(folder: Path) -> list[Path]:
-    """Make `folder` and its missing parents; those made, innermost first.
+    """Makes `folder` and its missing parents; returns those made, innermost first.
 
-    Raises LandingError: it exists, or cannot be made.
+    Raises:
+        LandingError: it exists, or cannot be made.
     """
     made: list[Path] = []
     try:
@@ -216,21 +221,21 @@ def make_folder(folder: Path) -> list[Path]:
 
 
 def media_type(name: str) -> str:
-    """The media type of an attachment by its name."""
+    """The media type of an attachment, by the ending of its name."""
     return "application/toml" if name.endswith(".toml") else "text/plain"
 
 
-def distro() -> str:
+def ros_distro() -> str:
     """The ROS distribution of the environment."""
     return os.environ.get("ROS_DISTRO", "unknown")
 
 
-def dump(document: Mapping[str, Any]) -> str:
-    """As YAML."""
+def to_yaml(document: Mapping[str, Any]) -> str:
+    """`document` as YAML."""
     import yaml
 
     class Plain(getattr(yaml, "CSafeDumper", yaml.SafeDumper)):  # type: ignore[misc]
-        """Writes equal values out again instead of pointing back to them."""
+        """Writes equal values out in full instead of as YAML aliases."""
 
         def ignore_aliases(self, data: Any) -> bool:
             return True

@@ -15,20 +15,26 @@ from rlv_landing.quantities import OUTPUT_NAMES, OUTPUT_QUANTITIES
 
 ENDINGS = (".csv", ".parquet")
 UNITS = {"time": "s", **{name: q.unit for name, q in zip(OUTPUT_NAMES, OUTPUT_QUANTITIES)}}
-# Instants are whole nanoseconds; a bound given in seconds may fall short of one by its last digit.
-EDGE = 1e-9
+# Instants are whole nanoseconds; a bound given in s may miss one by its last digit [s].
+TIME_TOLERANCE = 1e-9
 
 
-def part(
+def select_rows(
     history: History,
     start: float | None = None,
     end: float | None = None,
     every: float | None = None,
 ) -> History:
-    """The rows of `history` from `start` to `end` [s], both included; of these the first in each
-    `every` [s]. None is made up between.
+    """The rows of `history` in a span of time, or one row in each period of it.
 
-    Raises LandingError: nothing lies there, or a bound that cannot be.
+    Args:
+        history: the landing.
+        start: first time [s]; None: that of the history.
+        end: last time [s], included; None: that of the history.
+        every: period [s], of which the first row is taken; None: all rows. No row is interpolated.
+
+    Raises:
+        LandingError: there is no row in the span, or a value is out of bounds.
     """
     for name, value in (("--start", start), ("--end", end), ("--every", every)):
         if value is not None and not np.isfinite(value):
@@ -38,22 +44,26 @@ def part(
     t = history.time
     first = t[0] if start is None else start
     last = t[-1] if end is None else end
-    rows = np.flatnonzero((t >= first - EDGE) & (t <= last + EDGE))
+    rows = np.flatnonzero((t >= first - TIME_TOLERANCE) & (t <= last + TIME_TOLERANCE))
     if not len(rows):
         raise LandingError(
-            f"no instant lies from {first:g} s to {last:g} s; the log goes from {t[0]:g} s to {t[-1]:g} s"
+            f"no instant lies from {first:g} s to {last:g} s; "
+            f"the log goes from {t[0]:g} s to {t[-1]:g} s"
         )
     if every is not None:
-        turns = np.floor((t[rows] - t[rows[0]] + EDGE) / every)
-        rows = rows[np.flatnonzero(np.diff(turns, prepend=-1.0) > 0.0)]
+        periods = np.floor((t[rows] - t[rows[0]] + TIME_TOLERANCE) / every)
+        rows = rows[np.flatnonzero(np.diff(periods, prepend=-1.0) > 0.0)]
     return History(t[rows], history.names, history.data[rows], history.parameters)
 
 
 def write_history(history: History, path: Path) -> None:
-    """Writes `history` to `path`, CSV or Parquet by its ending, whole or not at all.
+    """Writes `history` to `path`, as CSV or Parquet by its ending, whole or not at all.
 
-    Full precision; Parquet columns carry their units, and the file the parameters as TOML, where
-    they are known. Raises LandingError: another ending, pyarrow missing, the disk refuses.
+    Numbers have full precision. Parquet columns carry their units, and the file the parameters as
+    TOML, if they are known.
+
+    Raises:
+        LandingError: another ending, pyarrow is missing, or the disk refuses.
     """
     if path.suffix not in ENDINGS:
         raise LandingError(f"{path} must end in {' or '.join(ENDINGS)}")
@@ -77,17 +87,18 @@ def _parquet(history: History) -> bytes:
         from pyarrow import parquet
     except ImportError as e:
         raise LandingError(
-            f'Parquet needs pyarrow ({e}); install it with pip install "rlv-landing[mcap]", or export to .csv'
+            f'Parquet needs pyarrow ({e}); install it with pip install "rlv-landing[mcap]", '
+            "or export to .csv"
         ) from None
     fields = [
         pyarrow.field(name, pyarrow.float64(), metadata={"unit": UNITS.get(name, "")})
         for name in history
     ]
-    about = (
+    metadata = (
         {"parameters.toml": to_toml(history.parameters)} if history.parameters is not None else {}
     )
     table = pyarrow.table(
-        [history[name] for name in history], schema=pyarrow.schema(fields, metadata=about)
+        [history[name] for name in history], schema=pyarrow.schema(fields, metadata=metadata)
     )
     out = io.BytesIO()
     parquet.write_table(table, out)

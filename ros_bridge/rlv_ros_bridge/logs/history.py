@@ -1,4 +1,7 @@
-"""A log as a landing's history: columns named as the FMU's variables, SI, the paper's axes."""
+"""The landing in a log as a `History`, columns named as the FMU's variables.
+
+Values are SI, in the paper's axes.
+"""
 
 from __future__ import annotations
 
@@ -21,26 +24,31 @@ NANOSECONDS = 1_000_000_000
 
 
 def log_history(path: str | Path, topics: Sequence[str] = ()) -> History:
-    """The landing in the log at `path`, or in a rosbag2 recording of the same topics: a row an
-    instant, digit for digit as published.
+    """The landing in the log at `path`, one row for each instant, bit for bit as published.
 
-    Instants are told by the messages' own stamps. Those that lack one of the topics (the last of a
-    cut log) are left out. `topics` (in full or relative to the namespace) chooses columns by topic;
-    by default all are needed, so that every plot and measure takes them. Raises LandingError: no
-    such log, no landing in it, unknown topics, messages that are not what they should be.
+    Instants are the stamps of the messages. Those that lack one of the topics, such as the last of
+    a cut log, are left out.
+
+    Args:
+        path: a log, or a rosbag2 recording of the same topics.
+        topics: only the columns of these topics, full or relative to the namespace; none: all, as
+            plots and measures need them.
+
+    Raises:
+        LandingError: no such log, no landing in it, unknown topics, or messages of another layout.
     """
     return read_history(open_log(path), topics)[0]
 
 
 def history_of(reader: LogReader) -> History:
-    """The landing in the log that `reader` has open: see `log_history`."""
+    """The landing in the log that `reader` has open; see `log_history`."""
     return read_history(reader)[0]
 
 
 def read_history(reader: LogReader, topics: Sequence[str] = ()) -> tuple[History, list[str]]:
     """As `log_history`, with notes on what was left out."""
     reader.read_through()
-    chosen = _choose(reader, topics)
+    chosen = _choose_topics(reader, topics)
     names = [
         name
         for relative in READINGS
@@ -65,7 +73,7 @@ def read_history(reader: LogReader, topics: Sequence[str] = ()) -> tuple[History
     )
 
 
-def _choose(reader: LogReader, topics: Sequence[str]) -> dict[str, str]:
+def _choose_topics(reader: LogReader, topics: Sequence[str]) -> dict[str, str]:
     """The topics to read: full name -> name relative to the landing's namespace."""
     full = {resolve(reader.namespace, relative): relative for relative in READINGS}
     readable = {
@@ -89,14 +97,15 @@ def _choose(reader: LogReader, topics: Sequence[str]) -> dict[str, str]:
     for name in chosen:
         if name not in readable:
             raise LandingError(
-                f"topic {name!r} has no columns; those that have are {', '.join(readable.values()) or 'not in this log'}"
+                f"topic {name!r} has no columns; those that have are "
+                f"{', '.join(readable.values()) or 'not in this log'}"
             )
     return {name: relative for name, relative in readable.items() if name in chosen}
 
 
 def _notes(reader: LogReader, chosen: dict[str, str], incomplete: int) -> list[str]:
-    aside = [name for name in reader.channels if name not in chosen]
-    notes = [f"left aside: {', '.join(aside)}"] if aside else []
+    ignored = [name for name in reader.channels if name not in chosen]
+    notes = [f"left aside: {', '.join(ignored)}"] if ignored else []
     if incomplete:
         notes.append(f"left out: {incomplete} instants that lack one of the topics")
     return notes
@@ -108,7 +117,7 @@ def _stamp(message: Any) -> int:
 
 
 def _seconds(reader: LogReader, nanoseconds: int) -> float:
-    # Counted as the landing counts its times, k * step, so that they agree to the bit.
+    # The landing's own times are k * step; computed alike, they agree to the bit.
     try:
         step = float(reader.metadata["step_size"])
         k, rest = divmod(nanoseconds, round(step * 1e9))

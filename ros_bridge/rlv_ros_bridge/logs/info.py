@@ -1,4 +1,4 @@
-"""What a log holds, in a few lines."""
+"""Summarises the contents of a log."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..messages.topics import DIAGNOSTICS
 from .history import read_history
 from .reader import Decoder, LogReader
 
-# What `/diagnostics` calls the phases whose outcome `rlv_landing.summary` has words for.
+# The phases in `/diagnostics`, in the order of `rlv_landing.summary.OUTCOMES`.
 PHASES = tuple(phase.name.lower() for phase in Phase)
 
 
@@ -33,13 +33,13 @@ class TopicInfo:
 
 @dataclass
 class LogInfo:
-    """A log's contents.
+    """The contents of a log.
 
-    Times in s, size in bytes, forces in N (negative: compression), strokes in m.
+    Times are in s, `size` in bytes, forces in N (negative: compression), strokes in m.
 
-    `landing` is what `rlv_landing.summary` makes of it, with `acceleration_peak` [m/s2], the
-    largest at the top within 12 ms after each leg's contact, where the log is long enough to tell;
-    empty where the log holds no landing, for the reason `no_landing`.
+    `landing` is the result of `rlv_landing.summary`, with `acceleration_peak` [m/s2] for each leg:
+    the largest at the top within 12 ms after its contact, None if the log ends before. `landing` is
+    empty where the log holds no landing; `no_landing` is the reason.
     """
 
     path: str
@@ -56,11 +56,11 @@ class LogInfo:
     no_landing: str = ""
 
     def as_dict(self) -> dict[str, Any]:
-        """As plain values, for JSON."""
+        """The fields as plain values, for JSON."""
         return asdict(self)
 
     def text(self) -> str:
-        """As lines for people."""
+        """The fields as lines of text."""
         m = self.metadata
         state = (
             "complete"
@@ -110,30 +110,33 @@ class LogInfo:
         head = ("leg", "contact", "main strut", "stroke", "auxiliary strut", "acceleration")
         widths = (3, 8, 10, 9, 20, 13)
         second = ("", "", "lowest", "largest", "lowest, highest", "after contact")
-        rows: list[tuple[str, ...]] = [head, second, *(_row(leg) for leg in self.landing["legs"])]
+        legs = [_leg_row(leg) for leg in self.landing["legs"]]
+        rows: list[tuple[str, ...]] = [head, second, *legs]
         bottomed = ", ".join(map(str, self.landing.get("bottomed_out", [])))
+        largest = self.landing["top_axial_acceleration_max"]
         return [
             "",
             *("  ".join(cell.rjust(width) for cell, width in zip(row, widths)) for row in rows),
-            f"largest axial acceleration at the top: {self.landing['top_axial_acceleration_max']:.1f} m/s2",
+            f"largest axial acceleration at the top: {largest:.1f} m/s2",
             *([f"bottomed out: main strut of leg {bottomed}"] if bottomed else []),
         ]
 
 
-def _row(leg: Mapping[str, Any]) -> tuple[str, ...]:
+def _leg_row(leg: Mapping[str, Any]) -> tuple[str, ...]:
     peak = leg.get("acceleration_peak")
+    lowest, highest = leg["auxiliary_strut_force_min"], leg["auxiliary_strut_force_max"]
     return (
         str(leg["leg"]),
         "never" if leg["contact_time"] is None else f"{leg['contact_time']:.3f} s",
         f"{leg['main_strut_force_min'] / 1e3:.2f} kN",
         f"{leg['main_strut_stroke_max'] * 1e3:.1f} mm",
-        f"{leg['auxiliary_strut_force_min'] / 1e3:.2f}, {leg['auxiliary_strut_force_max'] / 1e3:.2f} kN",
+        f"{lowest / 1e3:.2f}, {highest / 1e3:.2f} kN",
         "-" if peak is None else f"{peak:.1f} m/s2",
     )
 
 
 def log_info(reader: LogReader) -> LogInfo:
-    """Reads the whole log and sums it up."""
+    """Reads the whole log, and summarises it."""
     counts: dict[str, int] = {}
     first, last = None, 0
     phase = ""
@@ -146,7 +149,7 @@ def log_info(reader: LogReader) -> LogInfo:
             message.topic == DIAGNOSTICS.name
             and reader.channels[message.topic].type_name == DIAGNOSTICS.type_name
         ):
-            # Somebody else's may come without a definition.
+            # Another node's message may come without a definition.
             with suppress(LandingError):
                 phase = _phase(decode(message)) or phase
     start = first or 0
@@ -194,9 +197,7 @@ def _landing(history: History, phase: str) -> dict[str, Any]:
 
 
 def _phase(message: Any) -> str:
-    """The landing's phase among what a message of `/diagnostics` tells; nothing where it comes from
-    somebody else.
-    """
+    """The landing's phase in a message of `/diagnostics`; empty if it is another node's."""
     values = [
         pair
         for status in message.status

@@ -1,4 +1,4 @@
-"""The libraries that reading logs needs."""
+"""Checks for the libraries that read logs."""
 
 from __future__ import annotations
 
@@ -6,12 +6,17 @@ from rlv_landing.errors import LandingError
 
 
 def require_log_readers() -> None:
-    """Raises LandingError, saying what to install, unless the libraries that read logs are there."""
+    """Checks that the libraries that read logs are installed.
+
+    Raises:
+        LandingError: one is missing; the text says what to install.
+    """
     try:
         import mcap  # noqa: F401
         import mcap_ros2  # noqa: F401
         import rosbags  # noqa: F401
     except ImportError as e:
         raise LandingError(
-            f'reading logs needs mcap and rosbags ({e}); install them with pip install "rlv-landing[mcap]"'
+            f"reading logs needs mcap and rosbags ({e}); "
+            'install them with pip install "rlv-landing[mcap]"'
         ) from None

@@ -1,89 +1,73 @@
-"""The records of an MCAP file that may be cut or damaged: whole, checked ones only, and never more
-memory than the file gives cause for.
-"""
+"""The records of an MCAP file that may be cut or damaged, in the file's order."""
 
 from __future__ import annotations
 
-import io
 import os
-import re
-import struct
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, Any
 
-MAGIC = b"\x89MCAP0\r\n"
-# What the header of our logs calls their writer. It gives every checksum, and has all messages in
+from .mcap_records import (
+    ATTACHMENT,
+    CHANNEL,
+    CHUNK,
+    DATA_END,
+    FOOTER,
+    HEADER,
+    MAGIC,
+    MESSAGE,
+    METADATA,
+    RECORD_HEAD,
+    SCHEMA,
+    STATISTICS,
+    DamageError,
+    checksum_differs,
+    decode_record,
+    find_chunk,
+    read_record,
+    records_of_chunk,
+    records_of_cut_chunk,
+)
+
+# The library name in the header of our logs. They hold all checksums, and all messages in
 # compressed chunks.
 LIBRARY = "rlv-landing"
-HEAD = struct.Struct("<BQ")
-FOOTER_CRC_FROM = 16
-MESSAGE_HEAD = 22
-HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, ATTACHMENT, STATISTICS, METADATA, DATA_END = (
-    1,
-    2,
-    3,
-    4,
-    5,
-    6,
-    9,
-    11,
-    12,
-    15,
-)
-READ = frozenset(
+# Bytes of the footer, head included, that the summary's checksum covers.
+FOOTER_BYTES_IN_CRC = 16
+DECODED = frozenset(
     (HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, ATTACHMENT, STATISTICS, METADATA, DATA_END)
 )
-# A damaged size must not ask for the whole memory: no chunk is taken to hold more than this,
-# uncompressed.
-LARGEST_CHUNK = 256 * 1024 * 1024
-# How a chunk begins: opcode, length below 4 GiB, two times, uncompressed size, CRC, name of the
-# compression.
-CHUNK_START = re.compile(rb"\x06(?=.{4}\0{4}.{28}(?:\0{4}|\x04\0{3}zstd|\x03\0{3}lz4))", re.DOTALL)
-CHUNK_FIELDS = struct.Struct("<QQQII")
-WINDOW = 1024 * 1024
-
-
-class DamageError(Exception):
-    """A record that is not what it should be."""
-
-
-class WholeReads(io.BytesIO):
-    """Bytes that are read whole or not at all: MCAP's own decoders would take fewer for what they
-    asked for.
-    """
-
-    def read(self, size: int | None = -1, /) -> bytes:
-        """`size` bytes. Raises DamageError where there are fewer, or `size` is below 0."""
-        data = super().read(size) if size is not None and size >= 0 else b""
-        if size is None or len(data) != size:
-            raise DamageError("a length in it is wrong")
-        return data
 
 
 class RecordStream:
-    """The records of the file `path` in its order, chunks opened; indexes are left out, and what
-    the summary repeats unless `summary`.
+    """Iterates over the records of an MCAP file, as classes of `mcap.records`.
 
-    Once all have been taken, `finished` tells whether the file has its proper end, `damage` what is
-    wrong with it besides (a sentence each), `summary_is_right` whether the summary's checksum
-    vouches for it, and `lost` how many bytes could not be read. A damaged record is left out;
-    reading goes on with the next record, or with the next chunk that is found behind.
+    Chunks are opened; indexes are left out. A damaged record is left out, and reading continues
+    with the next record or the next chunk that is found.
+
+    After the last record `finished` says whether the file has its proper end. `damage` holds a
+    sentence for each other defect. `lost_bytes` counts the bytes that could not be read.
+    `summary_is_valid` says whether the summary's checksum is right.
+
+    Args:
+        path: the file.
+        summary: also give the schemas, channels and metadata that the summary repeats.
     """
 
-    def __init__(self, path: Path, summary: bool = False) -> None:
+    def __init__(self, path: Path, *, summary: bool = False) -> None:
         self.path = path
         self.finished = False
         self.damage: list[str] = []
-        self.lost = 0
-        self.summary_is_right = False
+        self.lost_bytes = 0
+        self.summary_is_valid = False
         self._with_summary = summary
-        self._in_summary, self._summary = False, 0
+        self._in_summary, self._summary_start = False, 0
+        # Checksum of the file so far, and without the last record.
         self._crc = self._crc_before = 0
         self._messages = 0
         self._ours = False
-        self._checked: bool | None = None
+        self._checksums_required: bool | None = None
 
     def __iter__(self) -> Iterator[Any]:
         with self.path.open("rb") as file:
@@ -93,87 +77,99 @@ class RecordStream:
             while True:
                 following: int | None = None
                 opcode = 0
+                records: list[Any] = []
                 try:
-                    opcode, body = frame(file, position, size)
-                    self._crc_before, self._crc = (
-                        self._crc,
-                        zlib.crc32(body, zlib.crc32(HEAD.pack(opcode, len(body)), self._crc)),
-                    )
-                    following = position + HEAD.size + len(body)
-                    records = (
-                        self._open(opcode, body, file, position, size) if opcode in READ else []
-                    )
+                    opcode, body = read_record(file, position, size)
+                    self._add_to_crc(opcode, body)
+                    following = position + RECORD_HEAD.size + len(body)
+                    if opcode in DECODED:
+                        records = self._records(opcode, body, file, position, size)
                 except DamageError as e:
-                    # The length may be what is damaged: a whole chunk before the next record, as
-                    # told by it, counts for more.
-                    found = search_chunk(
-                        file,
-                        position + 1,
-                        size if following is None else following,
-                        self._is_checked(file, size),
-                    )
-                    following = found if found is not None else following
+                    following = self._resume_position(file, position, size, following)
                     if following is None:
-                        # Nothing can be told from here on: the file is cut.
-                        yield from self._count(
-                            [] if self._ours else rest_of_chunk(file, position, size)
-                        )
-                        self.lost += size - position
+                        # Nothing behind can be read: the file is cut.
+                        rest = [] if self._ours else records_of_cut_chunk(file, position, size)
+                        yield from self._count(rest)
+                        self.lost_bytes += size - position
                         return
                     self.damage.append(f"byte {position}: {e}")
-                    self.lost += following - position
-                    records = []
+                    self.lost_bytes += following - position
                 yield from self._count(records)
                 position = following
                 if opcode == FOOTER:
-                    self._end(file, position, size)
+                    self._check_end(file, position, size)
                     return
 
-    def _open(
+    def _add_to_crc(self, opcode: int, body: bytes) -> None:
+        head = RECORD_HEAD.pack(opcode, len(body))
+        self._crc_before, self._crc = self._crc, zlib.crc32(body, zlib.crc32(head, self._crc))
+
+    def _resume_position(
+        self, file: IO[bytes], position: int, size: int, following: int | None
+    ) -> int | None:
+        """The position to continue at after a damaged record at `position`; None: there is none.
+
+        The record's length may be what is damaged. So a whole chunk before `following`, the next
+        record by that length, comes first.
+        """
+        chunk = find_chunk(
+            file,
+            position + 1,
+            size if following is None else following,
+            checksum_required=self._requires_checksums(file, size),
+        )
+        return chunk if chunk is not None else following
+
+    def _records(
         self, opcode: int, body: bytes, file: IO[bytes], position: int, size: int
     ) -> list[Any]:
-        """The records that a record comes to: itself, or what is in the chunk.
+        """The record at `position`, or the records in it if it is a chunk.
 
-        Raises DamageError.
+        Raises:
+            DamageError: it is damaged.
         """
-        checked = opcode in (ATTACHMENT, MESSAGE, CHUNK) and self._is_checked(file, size)
-        if opcode == ATTACHMENT and is_wrong(
-            int.from_bytes(body[-4:], "little"), zlib.crc32(body[:-4]), checked
-        ):
-            raise DamageError("an attachment's checksum is wrong")
-        if opcode == MESSAGE and checked:
+        required = opcode in (ATTACHMENT, MESSAGE, CHUNK) and self._requires_checksums(file, size)
+        if opcode == ATTACHMENT:
+            stored = int.from_bytes(body[-4:], "little")
+            if checksum_differs(stored, zlib.crc32(body[:-4]), required=required):
+                raise DamageError("an attachment's checksum is wrong")
+        if opcode == MESSAGE and required:
             raise DamageError("a message lies outside the chunks, without a checksum")
-        record = decode(opcode, body)
+        record = decode_record(opcode, body)
         if opcode == HEADER and record.library.startswith(LIBRARY):
-            self._ours = self._checked = True
+            self._ours = self._checksums_required = True
         elif opcode == DATA_END:
             self._in_summary = True
-            self._summary = position + HEAD.size + len(body)
-            if is_wrong(record.data_section_crc, self._crc_before, self._ours) and not self.damage:
+            self._summary_start = position + RECORD_HEAD.size + len(body)
+            differs = checksum_differs(
+                record.data_section_crc, self._crc_before, required=self._ours
+            )
+            if differs and not self.damage:
                 self.damage.append("its checksum is wrong: bytes were changed")
         elif opcode == FOOTER and (record.summary_crc or self._ours):
-            # Bytes that were put in or lost before have moved the summary: it begins where the data
-            # end, whatever the footer says.
-            file.seek(self._summary)
-            self.summary_is_right = (
-                zlib.crc32(file.read(position + HEAD.size + FOOTER_CRC_FROM - self._summary))
-                == record.summary_crc
-            )
-            if not self.summary_is_right:
-                self.damage.append("its summary's checksum is wrong")
+            self._check_summary(record, file, position)
         elif opcode == STATISTICS and record.message_count != self._messages and not self.damage:
             self.damage.append(f"{self._messages} of {record.message_count} messages are there")
         if opcode == CHUNK:
-            return open_chunk(record, checked)
+            return records_of_chunk(record, checksum_required=required)
         return [] if self._in_summary and not self._with_summary else [record]
 
-    def _is_checked(self, file: IO[bytes], size: int) -> bool:
-        """Whether the file's writer gave checksums: it is ours, or at least one chunk's checksum is
-        there and right.
-        """
-        if self._checked is None:
-            self._checked = search_chunk(file, len(MAGIC), size, checked=True, unless=0) is not None
-        return self._checked
+    def _check_summary(self, footer: Any, file: IO[bytes], position: int) -> None:
+        # Bytes that were inserted or lost have moved the summary, so its start is the end of the
+        # data, whatever the footer says.
+        file.seek(self._summary_start)
+        end = position + RECORD_HEAD.size + FOOTER_BYTES_IN_CRC
+        crc = zlib.crc32(file.read(end - self._summary_start))
+        self.summary_is_valid = crc == footer.summary_crc
+        if not self.summary_is_valid:
+            self.damage.append("its summary's checksum is wrong")
+
+    def _requires_checksums(self, file: IO[bytes], size: int) -> bool:
+        """Whether the file's writer gave checksums: it is ours, or a chunk has a right one."""
+        if self._checksums_required is None:
+            found = find_chunk(file, len(MAGIC), size, checksum_required=True, with_checksum=True)
+            self._checksums_required = found is not None
+        return self._checksums_required
 
     def _count(self, records: list[Any]) -> Iterator[Any]:
         from mcap.records import Message
@@ -182,160 +178,8 @@ class RecordStream:
             self._messages += isinstance(record, Message)
             yield record
 
-    def _end(self, file: IO[bytes], position: int, size: int) -> None:
+    def _check_end(self, file: IO[bytes], position: int, size: int) -> None:
         file.seek(position)
         self.finished = file.read(len(MAGIC)) == MAGIC
         if self.finished and position + len(MAGIC) != size:
             self.damage.append(f"{size - position - len(MAGIC)} bytes follow its end")
-
-
-def frame(file: IO[bytes], position: int, size: int) -> tuple[int, bytes]:
-    """Opcode and body of the record at `position` of a file of `size` bytes.
-
-    Raises DamageError where no record fits there.
-    """
-    file.seek(position)
-    head = file.read(HEAD.size)
-    if len(head) < HEAD.size:
-        raise DamageError("the file ends")
-    opcode, length = HEAD.unpack(head)
-    if opcode == 0 or position + HEAD.size + length > size:
-        raise DamageError("no record can be told there")
-    body = file.read(length)
-    if len(body) < length:
-        raise DamageError("the file ends")
-    return opcode, body
-
-
-def is_wrong(checksum: int, found: int, checked: bool) -> bool:
-    """Whether a stored `checksum` tells of damage.
-
-    0 is none in MCAP; where all have been `checked`, it is that of one chunk in 2**32.
-    """
-    return checksum != found and (checksum != 0 or checked)
-
-
-def decode(opcode: int, body: bytes) -> Any:
-    """The record that `body` holds, as one of `mcap.records`.
-
-    Raises DamageError, also where it does not fill `body`.
-    """
-    from mcap.data_stream import RecordBuilder
-    from mcap.stream_reader import StreamReader
-
-    builder = RecordBuilder()
-    try:
-        record = next(
-            StreamReader(
-                WholeReads(HEAD.pack(opcode, len(body)) + body), skip_magic=True, emit_chunks=True
-            ).records
-        )
-        record.write(builder)
-    except Exception as e:
-        # Damaged bytes make the decoders raise whatever they like.
-        raise DamageError(f"a record (kind {opcode}) cannot be read") from e
-    if builder.count != HEAD.size + len(body):
-        raise DamageError(f"the length of a record (kind {opcode}) is wrong")
-    return record
-
-
-def open_chunk(chunk: Any, checked: bool) -> list[Any]:
-    """The schemas, channels and messages of a chunk; `checked` as in `is_wrong`.
-
-    Raises DamageError: anything in it is wrong.
-    """
-    import zstandard
-    from mcap.records import Chunk
-    from mcap.stream_reader import breakup_chunk, get_chunk_data_stream
-
-    try:
-        promised = (
-            zstandard.frame_content_size(chunk.data)
-            if chunk.compression == "zstd"
-            else chunk.uncompressed_size
-        )
-        if not 0 <= chunk.uncompressed_size <= LARGEST_CHUNK or promised not in (
-            -1,
-            chunk.uncompressed_size,
-        ):
-            raise DamageError("a chunk's size is wrong")
-        stream, length = get_chunk_data_stream(chunk)
-        data = stream.read(length)
-        if is_wrong(chunk.uncompressed_crc, zlib.crc32(data), checked):
-            raise DamageError("a chunk's checksum is wrong")
-        whole = data[: sum(len(part) for part in frames(data))]
-        if len(whole) != len(data) or len(data) != chunk.uncompressed_size:
-            raise DamageError("a chunk's sizes contradict each other")
-        return breakup_chunk(
-            Chunk("", data, chunk.message_end_time, chunk.message_start_time, 0, len(data))
-        )
-    except Exception as e:
-        raise DamageError("a chunk's bytes were changed") from e
-
-
-def frames(data: bytes) -> Iterator[bytes]:
-    """The whole records in the bytes of a chunk, as far as they can be told."""
-    position = 0
-    while position + HEAD.size <= len(data):
-        opcode, length = HEAD.unpack_from(data, position)
-        end = position + HEAD.size + length
-        if opcode == 0 or end > len(data) or (opcode == MESSAGE and length < MESSAGE_HEAD):
-            return
-        yield data[position:end]
-        position = end
-
-
-def rest_of_chunk(file: IO[bytes], position: int, size: int) -> list[Any]:
-    """The whole records of an uncompressed chunk at `position` whose end is not there; none where
-    there is no such chunk.
-    """
-    file.seek(position)
-    head = file.read(HEAD.size + CHUNK_FIELDS.size + 8)
-    if (
-        len(head) < HEAD.size + CHUNK_FIELDS.size + 8
-        or head[0] != CHUNK
-        or head[HEAD.size + CHUNK_FIELDS.size - 4 :][:4] != bytes(4)
-    ):
-        return []
-    found: list[Any] = []
-    for part in frames(file.read(size - file.tell())):
-        try:
-            found += (
-                [decode(part[0], part[HEAD.size :])]
-                if part[0] in (SCHEMA, CHANNEL, MESSAGE)
-                else []
-            )
-        except DamageError:
-            break
-    return found
-
-
-def search_chunk(
-    file: IO[bytes], position: int, size: int, checked: bool, unless: int | None = None
-) -> int | None:
-    """Where the next whole, right chunk begins from `position` on, its checksum not `unless`; None
-    where none lies before `size`.
-    """
-    while position < size:
-        file.seek(position)
-        window = file.read(WINDOW + HEAD.size + CHUNK_FIELDS.size + 8)
-        for match in CHUNK_START.finditer(window):
-            at = position + match.start()
-            (length,) = struct.unpack_from("<Q", window, match.start() + 1)
-            *_, checksum, named = CHUNK_FIELDS.unpack_from(window, match.start() + HEAD.size)
-            file.seek(at + HEAD.size + CHUNK_FIELDS.size + named)
-            (inner,) = struct.unpack("<Q", file.read(8).ljust(8, b"\xff"))
-            if (
-                checksum == unless
-                or length != CHUNK_FIELDS.size + named + 8 + inner
-                or at + HEAD.size + length > size
-            ):
-                continue
-            try:
-                opcode, body = frame(file, at, size)
-                open_chunk(decode(opcode, body), checked)
-            except DamageError:
-                continue
-            return at
-        position += WINDOW
-    return None

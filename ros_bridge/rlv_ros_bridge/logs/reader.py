@@ -1,6 +1,4 @@
-"""Reads logs: complete ones, and those whose writer was killed or ran out of disk, or that were
-damaged since. Needs no ROS 2.
-"""
+"""Reads logs, also those that are cut or damaged. Needs no ROS 2."""
 
 from __future__ import annotations
 
@@ -13,17 +11,20 @@ from rlv_landing.errors import LandingError, unknown
 from rlv_landing.parameters import Parameters
 
 from ..messages.topics import STRUTS
-from .mcap_stream import HEADER, MAGIC, RecordStream
+from .mcap_records import HEADER, MAGIC, RECORD_HEAD
+from .mcap_stream import RecordStream
 
 FINISHED = ".mcap"
-# What a file is called until its writer has finished it.
+# The ending until the writer has finished the file.
 UNFINISHED = ".mcap.part"
 
 
 @dataclass(frozen=True)
 class Channel:
-    """A topic of a log: its name, its type `pkg/msg/Type`, and the QoS that its publisher offered,
-    as YAML.
+    """A topic of a log.
+
+    `type_name` is `pkg/msg/Type`. `qos` is the quality of service that its publisher offered, as
+    YAML.
     """
 
     topic: str
@@ -33,9 +34,7 @@ class Channel:
 
 @dataclass(frozen=True)
 class LogMessage:
-    """A message of a log: its topic, its time [ns], and the serialised bytes (CDR) that were
-    published.
-    """
+    """A message of a log: topic, log time [ns], and the published bytes (CDR)."""
 
     topic: str
     log_time: int
@@ -45,13 +44,15 @@ class LogMessage:
 class LogReader:
     """A log: a folder in rosbag2's layout, or one `.mcap` or `.mcap.part` file.
 
-    Once the messages have been read, `cut` tells that not all of the log is there and `damage` what
-    is wrong besides a missing end. `metadata` and `attachments` are known as soon as they have been
-    passed; in a log of ours they stand at its start.
+    After the messages have been read, `cut` says that the log is incomplete or damaged, and
+    `damage` what is wrong besides a missing end. `channels`, `metadata` and `attachments` are
+    filled while reading; in our logs all stand at the start.
+
+    Args:
+        path: the log.
 
     Raises:
-        LandingError: there is no such log, it is not MCAP, or not even its first record can be
-            read.
+        LandingError: there is no such log, it is not MCAP, or not even its first record is whole.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -68,13 +69,11 @@ class LogReader:
 
     @property
     def size(self) -> int:
-        """Bytes of all files."""
+        """Size of all files [bytes]."""
         return sum(f.stat().st_size for f in self.files)
 
     def messages(self, topics: Iterable[str] | None = None) -> Iterator[LogMessage]:
-        """The messages in the log's order, of all topics or of `topics`, up to the end or to where
-        the log is cut.
-        """
+        """The whole messages of all topics, or of `topics`, in the log's order."""
         from mcap.records import Attachment, Message, Metadata
 
         wanted = None if topics is None else set(topics)
@@ -84,7 +83,7 @@ class LogReader:
             definitions = Definitions(file)
             for record in stream:
                 if isinstance(record, Message):
-                    channel, schema = definitions.of(record.channel_id)
+                    channel, schema = definitions.find(record.channel_id)
                     if channel is not None:
                         self._add_channel(channel, schema)
                         if wanted is None or channel.topic in wanted:
@@ -95,14 +94,12 @@ class LogReader:
                     if record.name == "rlv_landing":
                         self.metadata.update(record.metadata)
                 elif definitions.add(record):
-                    self._add_channel(*definitions.of(record.id))
+                    self._add_channel(*definitions.find(record.id))
             self.cut = self.cut or not stream.finished or bool(stream.damage)
             self.damage += [f"{file.name}, {text}" for text in stream.damage]
 
     def read_through(self) -> None:
-        """Reads the log to its end, so that channels, metadata, attachments, `cut` and `damage` are
-        known.
-        """
+        """Reads the log to its end, so that every attribute is filled."""
         for _ in self.messages(()):
             pass
 
@@ -116,7 +113,7 @@ class LogReader:
 
     @property
     def namespace(self) -> str:
-        """The namespace under which the landing was published."""
+        """The namespace in which the landing was published."""
         if "namespace" in self.metadata:
             return self.metadata["namespace"].rstrip("/")
         struts = [
@@ -127,11 +124,13 @@ class LogReader:
         return struts[0].removesuffix(STRUTS.name).rstrip("/") if struts else ""
 
     def select(self, names: Sequence[str]) -> list[str]:
-        """The full names of topics that are given in full or relative to the landing's namespace;
-        all where none is given.
+        """The full names of topics, after the log has been read.
 
-        Raises LandingError, with the nearest name, for one that the log does not hold. The log must
-        have been read.
+        Args:
+            names: full, or relative to the landing's namespace; none: all topics of the log.
+
+        Raises:
+            LandingError: the log has no such topic; the text names the nearest.
         """
         known = list(self.channels)
         chosen = []
@@ -145,15 +144,16 @@ class LogReader:
         return chosen or known
 
     def decoder(self, topic: str) -> Any:
-        """What makes messages of `topic` from bytes, by the definition that the log carries.
+        """A function from bytes to messages of `topic`, by the definition that the log carries.
 
-        Raises LandingError where it has none.
+        Raises:
+            LandingError: the log has no definition, or it cannot be read.
         """
         from mcap_ros2.decoder import DecoderFactory
 
         try:
-            # A factory of its own for each: it tells schemas apart by number alone, and another
-            # file numbers them anew.
+            # A factory for each topic: it identifies schemas by number only, and each file of a log
+            # has its own numbers.
             decode = DecoderFactory().decoder_for("cdr", self._schemas.get(topic))
         except Exception as e:
             raise LandingError(
@@ -166,7 +166,7 @@ class LogReader:
         return decode
 
     def parameters(self) -> Parameters | None:
-        """The parameters that the log carries, once its start has been read."""
+        """The parameters that the log carries, or None; after its start has been read."""
         from rlv_landing.presets import parse_toml
 
         data = self.attachments.get("parameters.toml")
@@ -178,8 +178,9 @@ class LogReader:
 
 
 class Definitions:
-    """The schemas and channels of one file, the first of each number; those lost with a damaged
-    chunk are looked up in its summary.
+    """The schemas and channels of one file by number; of each number the first counts.
+
+    Those lost with a damaged chunk are looked up in the file's summary.
     """
 
     def __init__(self, file: Path) -> None:
@@ -189,7 +190,7 @@ class Definitions:
         self._searched = False
 
     def add(self, record: Any) -> bool:
-        """Takes in a schema or a channel; whether it is a channel."""
+        """Adds a schema or a channel; whether it is a channel."""
         from mcap.records import Channel as ChannelRecord
         from mcap.records import Schema as SchemaRecord
 
@@ -200,8 +201,8 @@ class Definitions:
             return True
         return False
 
-    def of(self, channel: int) -> tuple[Any, Any]:
-        """The channel of that number, and its schema; None where they are not to be found."""
+    def find(self, channel: int) -> tuple[Any, Any]:
+        """The channel of a number, and its schema; None where they are not found."""
         from mcap.records import Channel as ChannelRecord
         from mcap.records import Schema as SchemaRecord
 
@@ -209,7 +210,7 @@ class Definitions:
             self._searched = True
             stream = RecordStream(self._file, summary=True)
             records = [r for r in stream if isinstance(r, (SchemaRecord, ChannelRecord))]
-            for record in records if stream.summary_is_right else ():
+            for record in records if stream.summary_is_valid else ():
                 self.add(record)
         found = self._channels.get(channel)
         return found, self._schemas.get(found.schema_id) if found is not None else None
@@ -218,7 +219,8 @@ class Definitions:
 class Decoder:
     """Decodes the messages of a log by the definitions that it carries.
 
-    Raises LandingError for what cannot be decoded.
+    Args:
+        reader: the log.
     """
 
     def __init__(self, reader: LogReader) -> None:
@@ -226,6 +228,11 @@ class Decoder:
         self._decoders: dict[str, Any] = {}
 
     def __call__(self, message: LogMessage) -> Any:
+        """The message decoded.
+
+        Raises:
+            LandingError: it cannot be decoded.
+        """
         if message.topic not in self._decoders:
             self._decoders[message.topic] = self._reader.decoder(message.topic)
         try:
@@ -240,9 +247,10 @@ class Decoder:
 
 
 def find_files(path: Path) -> list[Path]:
-    """The MCAP files of the log at `path`, in their order, unfinished ones too.
+    """The MCAP files of the log at `path` in their order, unfinished ones too.
 
-    Raises LandingError where there are none.
+    Raises:
+        LandingError: there are none.
     """
     if path.is_file():
         return [path]
@@ -260,25 +268,29 @@ def find_files(path: Path) -> list[Path]:
     return files
 
 
-def bare_name(file: Path) -> str:
+def log_name(file: Path) -> str:
     """The name of a log's file without its ending."""
     return file.name.removesuffix(UNFINISHED).removesuffix(FINISHED)
 
 
 def _number(file: Path) -> tuple[str, int]:
-    """Split logs are numbered `_0`, `_1`, ..., `_10`: by number, not by letter."""
-    name = bare_name(file)
+    # The files of a split log end in `_0`, `_1`, ..., `_10`.
+    name = log_name(file)
     stem, _, number = name.rpartition("_")
     return (stem, int(number)) if number.isdecimal() else (name, 0)
 
 
 def check_file(file: Path) -> None:
-    """Raises LandingError unless `file` can be opened, starts as MCAP does and has a first record."""
+    """Checks that `file` can be opened, starts as MCAP does, and has a whole first record.
+
+    Raises:
+        LandingError: it does not.
+    """
     try:
         with file.open("rb") as stream:
-            start = stream.read(len(MAGIC) + 9)
+            start = stream.read(len(MAGIC) + RECORD_HEAD.size)
             length = int.from_bytes(start[len(MAGIC) + 1 :], "little")
-            whole = file.stat().st_size >= len(MAGIC) + 9 + length
+            whole = file.stat().st_size >= len(MAGIC) + RECORD_HEAD.size + length
     except OSError as e:
         raise LandingError(f"{file} cannot be read: {e.strerror or e}") from None
     if not start:
@@ -287,5 +299,5 @@ def check_file(file: Path) -> None:
         raise LandingError(
             f"{file} is not MCAP: it does not start as one; name a log's folder or its .mcap file"
         )
-    if len(start) < len(MAGIC) + 9 or start[len(MAGIC)] != HEADER or not whole:
+    if len(start) < len(MAGIC) + RECORD_HEAD.size or start[len(MAGIC)] != HEADER or not whole:
         raise LandingError(f"{file} is cut within its first record; nothing in it can be read")

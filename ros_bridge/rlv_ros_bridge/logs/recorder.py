@@ -1,6 +1,4 @@
-"""Records the published bytes to MCAP in rosbag2's layout, so that what was written survives the
-writer's death.
-"""
+"""Records published messages to MCAP in rosbag2's layout; a killed writer loses little."""
 
 from __future__ import annotations
 
@@ -14,7 +12,7 @@ from rlv_landing.errors import LandingError
 from ..messages.definitions import Definition, definition
 from ..messages.qos import Qos
 from .bag_writer import CHUNK_BYTES, BagTopic, BagWriter, media_type
-from .open_chunk import RECORD_SIZE, OpenChunk, message_head
+from .chunk_buffer import RECORD_SIZE, ChunkBuffer, message_prefix
 
 __all__ = ["CHUNK_BYTES", "FLUSH_SECONDS", "RecordedTopic", "Recorder"]
 
@@ -23,7 +21,7 @@ FLUSH_SECONDS = 0.25
 
 @dataclass(frozen=True)
 class RecordedTopic:
-    """A topic of a log: its full name, its type `pkg/msg/Type`, and what its publisher offers."""
+    """A topic of a log: its full name, its type `pkg/msg/Type`, and its publisher's QoS."""
 
     name: str
     type_name: str
@@ -31,21 +29,22 @@ class RecordedTopic:
 
 
 class Recorder:
-    """One log being written: `<folder>/<folder's name>_0.mcap.part`; once it is closed, that
-    without `.part`, and `metadata.yaml`.
+    """A log that is being written: `<folder>/<folder's name>_0.mcap.part`.
+
+    `close` removes the ending `.part` and writes `metadata.yaml`.
+
+    A disk that fills up later, or a folder that is removed or moved, does not raise: `error` is
+    set, recording stops, and what was written stays readable. It is not thread-safe.
 
     Args:
-        folder: made here, with its parents; it must not exist.
-        topics: what will be recorded.
+        folder: made here with its parents; it must not exist.
+        topics: the topics to record.
         metadata: texts by name, kept in the log's record `rlv_landing`.
         attachments: files by name that the log carries.
 
     Raises:
-        LandingError: the folder exists or cannot be written, or a topic's type is not installed;
-            nothing is left behind then.
-
-    A disk that fills up later, or a folder that is removed or moved away, does not raise: `error`
-    is set, writing stops, and what was written stays readable. Not for several threads at once.
+        LandingError: the folder exists or cannot be written, or a topic's type is not installed.
+            Nothing is left behind.
     """
 
     def __init__(
@@ -73,7 +72,7 @@ class Recorder:
         }
         self._bag.bag.topics = list(self._entries.values())
         self._span = self._bag.bag.span
-        # Of the messages of a sample: the channels; how many samples were recorded.
+        # The topics of a sample's messages, and the number of samples.
         self._sampled: tuple[str, ...] = ()
         self._samples = 0
         try:
@@ -85,7 +84,7 @@ class Recorder:
                 self._bag.mcap.add_metadata("rlv_landing", dict(metadata))
             self._channels = self._register(definitions)
             self._bag.mcap.flush()
-            self._chunk = OpenChunk(self._bag.mcap, CHUNK_BYTES)
+            self._chunk = ChunkBuffer(self._bag.mcap, CHUNK_BYTES)
         except BaseException as e:
             self.discard()
             if isinstance(e, OSError):
@@ -94,7 +93,8 @@ class Recorder:
 
     def _unwritable(self, e: OSError) -> LandingError:
         return LandingError(
-            f"log folder {self.folder} cannot be written: {e.strerror or e}; name one that can be, or make room"
+            f"log folder {self.folder} cannot be written: {e.strerror or e}; "
+            "name one that can be, or make room"
         )
 
     def _register(self, definitions: Mapping[str, Definition]) -> dict[str, int]:
@@ -121,21 +121,30 @@ class Recorder:
         return sum(t.count for t in self._entries.values()) + self._samples * len(self._sampled)
 
     def begin_samples(self, sizes: Mapping[str, int]) -> list[bytes]:
-        """From now on samples are recorded as a whole: messages of the topics in `sizes`, of that
-        many bytes each. How the record of each begins; a sequence number and the time twice (as in
-        `open_chunk.TIMES`), and the message follow.
+        """Prepares for `write_sample`: from now on the messages of a sample are recorded together.
+
+        Args:
+            sizes: by topic, in their order in a sample, the size of its message [bytes].
+
+        Returns:
+            For each topic the first bytes of its record. The number of the sample, twice its time
+            (as in `chunk_buffer.MESSAGE_TIMES`) and the message follow them.
         """
         self._sampled = tuple(sizes)
-        place = 0
+        offset = 0
         for topic, size in sizes.items():
-            self._chunk.sampled[self._channels[topic]] = place
-            place += RECORD_SIZE + size
-        return [message_head(self._channels[topic], size) for topic, size in sizes.items()]
+            self._chunk.sample_offsets[self._channels[topic]] = offset
+            offset += RECORD_SIZE + size
+        return [message_prefix(self._channels[topic], size) for topic, size in sizes.items()]
 
     def write_sample(self, log_time_ns: int, records: bytes) -> None:
-        """Record a sample's messages at the simulation time `log_time_ns`: their records, in the
-        order of `begin_samples`, the number of the sample as their sequence number. After an error
-        it does nothing.
+        """Records the messages of a sample.
+
+        After an error it does nothing.
+
+        Args:
+            log_time_ns: simulation time [ns].
+            records: the records of its messages, in the order of `begin_samples`.
         """
         if self.error:
             return
@@ -148,9 +157,14 @@ class Recorder:
         self._span.add(log_time_ns)
 
     def write(self, topic: str, log_time_ns: int, data: bytes) -> None:
-        """Record the serialised message `data` of `topic` at the simulation time `log_time_ns`.
+        """Records one message.
 
         After an error it does nothing.
+
+        Args:
+            topic: full name.
+            log_time_ns: simulation time [ns].
+            data: the serialised message.
         """
         if self.error:
             return
@@ -164,8 +178,9 @@ class Recorder:
         self._span.add(log_time_ns)
 
     def flush(self) -> None:
-        """Hand what is recorded to the operating system if the last time is a quarter of a second
-        ago. To be called now and then.
+        """Hands what was recorded to the operating system, at most every `FLUSH_SECONDS`.
+
+        To be called after each sample.
         """
         now = time.monotonic()
         if self.error or now - self._flushed < FLUSH_SECONDS:
@@ -173,17 +188,17 @@ class Recorder:
         self._flushed = now
         try:
             self._chunk.write()
-            if not self._bag.is_there():
+            if not self._bag.file_exists():
                 self._fail("the file was removed or moved away")
         except OSError as e:
             self._fail(e.strerror or str(e))
 
     def close(self) -> None:
-        """Finish the file and write `metadata.yaml`.
+        """Finishes the file and writes `metadata.yaml`.
 
-        After an error only closes the file, which `rlv-landing log` still reads.
+        After an error it only closes the file, which `rlv-landing log` can read.
         """
-        if not self._bag.open:
+        if not self._bag.is_open:
             return
         try:
             if not self.error:
@@ -195,10 +210,10 @@ class Recorder:
         except OSError as e:
             self._fail(e.strerror or str(e))
         finally:
-            self._bag.give_up()
+            self._bag.abandon()
 
     def discard(self) -> None:
-        """Close and remove everything that this recorder has made."""
+        """Closes and removes everything that this recorder has made."""
         self._bag.discard()
 
     def _fail(self, reason: str) -> None:

@@ -1,4 +1,4 @@
-"""Restores what is whole of a cut or damaged log into a new one that every reader opens."""
+"""Recovers the whole records of a cut or damaged log into a new log that every reader opens."""
 
 from __future__ import annotations
 
@@ -11,17 +11,20 @@ from rlv_landing.errors import LandingError
 
 from .bag_writer import BagTopic, BagWriter
 from .mcap_stream import RecordStream
-from .reader import Definitions, bare_name, check_file, find_files
+from .reader import Definitions, check_file, find_files, log_name
 
-# Our writer makes these anew.
-REMADE = "rosbag2"
+# Metadata that the new log's writer makes itself.
+WRITERS_METADATA = "rosbag2"
 
 
 @dataclass
 class Recovery:
-    """What was saved: messages, and their first and last time [s]; what was not: bytes that could
-    not be read, messages whose topic is not known any more, `stop_time` [s] up to which the run was
-    to go (if the log says so), and what was wrong, a sentence each.
+    """The result of a recovery.
+
+    `messages` were saved, from `start` to `end` [s], to `folder`, which is empty if the log is
+    complete. `lost_bytes` could not be read. `unknown_topic` counts messages whose topic is lost.
+    `stop_time` [s] is the end of the run by the log's metadata. `damage` holds a sentence for each
+    defect.
     """
 
     path: str
@@ -37,18 +40,17 @@ class Recovery:
 
     @property
     def complete(self) -> bool:
-        """Whether nothing was wrong with the log."""
+        """Whether the log had no defect."""
         return self.finished and not self.damage and not self.unknown_topic
 
     def as_dict(self) -> dict[str, Any]:
-        """As plain values, for JSON."""
+        """The fields as plain values, for JSON."""
         return asdict(self)
 
     def text(self) -> str:
-        """As lines for people."""
-        lines = [
-            f"saved    {self.messages} messages from {self.start:g} s to {self.end:g} s, all that is whole: {self.folder}"
-        ]
+        """The fields as lines of text."""
+        span = f"from {self.start:g} s to {self.end:g} s"
+        lines = [f"saved    {self.messages} messages {span}, all that is whole: {self.folder}"]
         lines += [f"damage   {text}" for text in self.damage]
         if self.unknown_topic:
             lines.append(
@@ -58,7 +60,8 @@ class Recovery:
             lines.append(f"missing  {self.lost_bytes} bytes that make no whole chunk")
         if not self.finished and self.stop_time is not None and self.end < self.stop_time:
             lines.append(
-                f"missing  the span from {self.end:g} s on, at most to the stop time of {self.stop_time:g} s"
+                f"missing  the span from {self.end:g} s on, "
+                f"at most to the stop time of {self.stop_time:g} s"
             )
         elif not self.finished:
             lines.append(f"missing  what was recorded after {self.end:g} s, if anything")
@@ -66,18 +69,23 @@ class Recovery:
 
 
 def recovered_folder(path: Path) -> Path:
-    """Where a log is recovered to if nothing else is said: beside it, with `-recovered` added."""
+    """The default folder of a recovered log: the log's name with `-recovered` added, beside it."""
     path = path.absolute()
-    return path.with_name((bare_name(path) if path.is_file() else path.name) + "-recovered")
+    return path.with_name((log_name(path) if path.is_file() else path.name) + "-recovered")
 
 
 def recover(path: Path, folder: Path | None = None) -> Recovery:
-    """Copies every whole, checked record of the log at `path` into a new log `folder` (default:
-    `recovered_folder`).
+    """Copies every whole record of the log at `path` into a new log.
 
-    A log that is complete, `metadata.yaml` included, is left as it is: `folder` is empty in what is
-    returned. Raises LandingError: no log, nothing whole in it, the folder exists, or it cannot be
-    written (nothing is left behind then).
+    A log that is complete, `metadata.yaml` included, is not copied.
+
+    Args:
+        path: the log.
+        folder: the new log's folder, which must not exist; None: `recovered_folder`.
+
+    Raises:
+        LandingError: no log, nothing whole in it, the folder exists, or it cannot be written.
+            Nothing is left behind.
     """
     files = find_files(path)
     for file in files:
@@ -95,7 +103,7 @@ def recover(path: Path, folder: Path | None = None) -> Recovery:
     try:
         copy = _Copy(writer, found)
         for file in files:
-            copy.file(file)
+            copy.add_file(file)
         if not found.messages:
             raise LandingError(f"{path} holds no whole chunk; there is nothing to recover")
         copy.finish()
@@ -103,7 +111,8 @@ def recover(path: Path, folder: Path | None = None) -> Recovery:
         writer.discard()
         if isinstance(e, OSError):
             raise LandingError(
-                f"log folder {target} cannot be written: {e.strerror or e}; make room, or name another"
+                f"log folder {target} cannot be written: {e.strerror or e}; "
+                "make room, or name another"
             ) from None
         raise
     found.folder = str(target)
@@ -123,19 +132,17 @@ def _is_complete(path: Path, files: list[Path]) -> bool:
 
 
 class _Copy:
-    """Copies the records of one log's files through one writer, numbering schemas and channels
-    anew.
-    """
+    """Copies the records of a log's files through one writer, with new numbers."""
 
     def __init__(self, writer: BagWriter, found: Recovery) -> None:
         self._writer = writer
         self._found = found
         self._schemas: dict[tuple[str, str, bytes], int] = {}
         self._channels: dict[tuple[str, int], tuple[int, BagTopic]] = {}
-        self._ours: dict[str, str] = {}
+        self._our_metadata: dict[str, str] = {}
 
-    def file(self, file: Path) -> None:
-        """Copies what is whole in `file`."""
+    def add_file(self, file: Path) -> None:
+        """Copies the whole records of `file`."""
         from mcap.records import Attachment, Message, Metadata
 
         stream = RecordStream(file)
@@ -145,7 +152,7 @@ class _Copy:
         for record in stream:
             if isinstance(record, Message):
                 if record.channel_id not in known:
-                    channel, schema = definitions.of(record.channel_id)
+                    channel, schema = definitions.find(record.channel_id)
                     if channel is None:
                         self._found.unknown_topic += 1
                         continue
@@ -162,29 +169,27 @@ class _Copy:
                 )
             elif isinstance(record, Metadata):
                 if record.name == "rlv_landing":
-                    self._ours.update(record.metadata)
-                elif record.name != REMADE:
+                    self._our_metadata.update(record.metadata)
+                elif record.name != WRITERS_METADATA:
                     mcap.add_metadata(record.name, record.metadata)
             elif definitions.add(record):
-                known.setdefault(record.id, self._channel(*definitions.of(record.id)))
+                known.setdefault(record.id, self._channel(*definitions.find(record.id)))
         self._found.finished = self._found.finished and stream.finished
-        self._found.lost_bytes += stream.lost
+        self._found.lost_bytes += stream.lost_bytes
         self._found.damage += [f"{file.name}, {text}" for text in stream.damage]
         self._found.messages = sum(t.count for t in self._writer.bag.topics)
 
     def finish(self) -> None:
-        """Writes metadata and the end."""
+        """Writes the metadata and the end."""
         found, span = self._found, self._writer.bag.span
         found.start, found.end = (span.first or 0) / 1e9, span.last / 1e9
         try:
-            found.stop_time = float(self._ours["stop_time"])
+            found.stop_time = float(self._our_metadata["stop_time"])
         except (KeyError, ValueError):
             found.stop_time = None
-        whole = "" if found.complete else found.text().split("\n", 1)[-1]
-        self._writer.mcap.add_metadata(
-            "rlv_landing",
-            {**self._ours, "recovered_from": Path(found.path).name, "recovery": whole},
-        )
+        missing = "" if found.complete else found.text().split("\n", 1)[-1]
+        recovery = {"recovered_from": Path(found.path).name, "recovery": missing}
+        self._writer.mcap.add_metadata("rlv_landing", {**self._our_metadata, **recovery})
         self._writer.finish()
 
     def _channel(self, channel: Any, schema: Any) -> tuple[int, BagTopic]:
@@ -192,7 +197,7 @@ class _Copy:
         key = (channel.topic, number)
         if key not in self._channels:
             metadata = channel.metadata
-            made = self._writer.mcap.register_channel(
+            registered = self._writer.mcap.register_channel(
                 channel.topic, channel.message_encoding, number, metadata
             )
             qos = _profiles(metadata.get("offered_qos_profiles", ""))
@@ -203,7 +208,7 @@ class _Copy:
                 metadata.get("topic_type_hash", ""),
             )
             self._writer.bag.topics.append(topic)
-            self._channels[key] = (made, topic)
+            self._channels[key] = (registered, topic)
         return self._channels[key]
 
     def _schema(self, schema: Any) -> int:
@@ -217,7 +222,7 @@ class _Copy:
 
 @cache
 def _profiles(text: str) -> list[dict[str, Any]]:
-    """The QoS profiles that a channel's metadata hold; none where they cannot be read."""
+    """The QoS profiles in a channel's metadata; none where they cannot be read."""
     import yaml
 
     try:

@@ -1,4 +1,4 @@
-"""A log's run once more: the model's samples from what the log carries."""
+"""Repeats the run of a log: the model's samples from the log's parameters and inputs."""
 
 from __future__ import annotations
 
@@ -17,43 +17,49 @@ from .reader import Decoder, LogReader
 Inputs = dict[int, list[dict[str, float]]]
 
 
-class Run:
-    """What it takes to repeat the run of a log that has been read: parameters, step [s], inputs
-    with their times, and the FMU to use instead of `Landing`, if any. `input_messages` counts the
-    inputs.
+class RepeatedRun:
+    """The data needed to repeat the run of a log.
 
-    Raises LandingError, naming what is missing and what would be needed.
+    `step` and `stop_time` are in s. `input_messages` counts the inputs.
+
+    Args:
+        reader: the log, read to its end.
+        fmu: the FMU that repeats the run; None: `Landing`.
+
+    Raises:
+        LandingError: the log lacks something, which the text names.
     """
 
     def __init__(self, reader: LogReader, fmu: Path | None = None) -> None:
-        cannot = f"{reader.path} cannot be repeated: "
+        refusal = f"{reader.path} cannot be repeated: "
         parameters = reader.parameters()
         if parameters is None:
             raise LandingError(
-                cannot
-                + "it carries no parameters.toml; logs of `rlv-landing node` carry it, other recordings do not"
+                refusal + "it carries no parameters.toml; "
+                "logs of `rlv-landing node` carry it, other recordings do not"
             )
         self.parameters: Parameters = parameters
-        self.step = _number(reader, "step_size", cannot)
+        self.step = _seconds(reader, "step_size", refusal)
         self.step_ns = round(self.step * 1e9)
         if self.step_ns < 1:
             raise LandingError(
-                cannot + f"its step_size = {self.step:g} s is not a step of 1 ns or more"
+                refusal + f"its step_size = {self.step:g} s is not a step of 1 ns or more"
             )
-        self.stop_time = _number(reader, "stop_time", cannot)
+        self.stop_time = _seconds(reader, "stop_time", refusal)
         mode = reader.metadata.get("mode", parameters.drop.mode)
         if mode != parameters.drop.mode:
             raise LandingError(
-                cannot
-                + f"its metadata say mode {mode}, its parameters.toml {parameters.drop.mode}; one was changed"
+                refusal + f"its metadata say mode {mode}, its parameters.toml "
+                f"{parameters.drop.mode}; one was changed"
             )
-        self._inputs = _inputs(reader, self.step_ns, cannot)
+        self._inputs = _inputs(reader, self.step_ns, refusal)
         self.input_messages = sum(map(len, self._inputs.values()))
         self._fmu = fmu
 
     def samples(self) -> Generator[dict[str, float], None, None]:
-        """All outputs by name at 0, one step, two steps, and so on without end; the inputs act at
-        their times.
+        """All outputs by name at 0, one step, two steps, and so on without end.
+
+        The inputs act at their times.
         """
         if self._fmu is None:
             landing = Landing(self.parameters)
@@ -76,22 +82,24 @@ class Run:
                 k += 1
 
 
-def _inputs(reader: LogReader, step_ns: int, cannot: str) -> Inputs:
-    """What the log says of inputs, in its order.
+def _inputs(reader: LogReader, step_ns: int, refusal: str) -> Inputs:
+    """The inputs in the log, in its order.
 
-    Raises LandingError for one that cannot be, or whose time is not that of a sample.
+    Raises:
+        LandingError: an input is out of bounds, or its time is not that of a sample.
     """
     names = {resolve(reader.namespace, name): read for name, read in READINGS.items()}
     for topic in (t for t in APPLIED if resolve(reader.namespace, t.name) in reader.channels):
         found_type = reader.channels[resolve(reader.namespace, topic.name)].type_name
         if found_type != topic.type_name:
             raise LandingError(
-                f"{cannot}its topic {topic.name} is {found_type}, not {topic.type_name}; another program has written it"
+                f"{refusal}its topic {topic.name} is {found_type}, not {topic.type_name}; "
+                "another program has written it"
             )
     decode = Decoder(reader)
     found: Inputs = {}
     for message in reader.messages(names):
-        at = f"{cannot}its input {message.topic} at {message.log_time / 1e9:.9g} s "
+        at = f"{refusal}its input {message.topic} at {message.log_time / 1e9:.9g} s "
         decoded = decode(message)
         stamp = decoded.header.stamp
         k, rest = divmod(message.log_time, step_ns)
@@ -110,18 +118,18 @@ def _inputs(reader: LogReader, step_ns: int, cannot: str) -> Inputs:
     return found
 
 
-def _number(reader: LogReader, name: str, cannot: str) -> float:
+def _seconds(reader: LogReader, name: str, refusal: str) -> float:
     try:
         value = float(reader.metadata[name])
     except KeyError:
         raise LandingError(
-            cannot
-            + f"its metadata do not say {name}; logs of `rlv-landing node` do, other recordings do not"
+            refusal + f"its metadata do not say {name}; "
+            "logs of `rlv-landing node` do, other recordings do not"
         ) from None
     except ValueError:
         raise LandingError(
-            cannot + f"its {name} = {reader.metadata[name]!r} is not a number of seconds"
+            refusal + f"its {name} = {reader.metadata[name]!r} is not a number of seconds"
         ) from None
     if not 0.0 < value < 1e9:
-        raise LandingError(cannot + f"its {name} = {value:g} s is not a time above 0 s")
+        raise LandingError(refusal + f"its {name} = {value:g} s is not a time above 0 s")
     return value

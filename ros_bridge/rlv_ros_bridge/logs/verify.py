@@ -1,4 +1,4 @@
-"""Repeats the run of a log and compares every field of every sample."""
+"""Compares a log with a repetition of its run, every field of every sample."""
 
 from __future__ import annotations
 
@@ -13,22 +13,23 @@ from typing import Any
 
 from rlv_landing.errors import LandingError
 
-from ..fmu.builds import why_not_exact
+from ..fmu.builds import inexact_reason
 from ..messages.fields import TOPIC_FIELDS, expected_fields, expected_numbers, leaves
 from ..messages.topics import resolve
 from .reader import Decoder, LogMessage, LogReader
-from .repeat import Run
+from .repeat import RepeatedRun
 
-# Share of a field's largest value that a repetition by another build may differ by. One unit in the
-# last place of a parameter comes to 0.31 % within 3 s of the drop tests (a friction force that
-# switches from stick to slip): contact magnifies the smallest difference.
+# By this share of a field's largest value a rerun by another build may differ. Contact magnifies
+# the smallest difference: one unit in the last place of a parameter makes 0.31 % within 3 s of the
+# drop tests, where a friction force switches from stick to slip.
 TOLERANCE = 0.01
 
 
 @dataclass(frozen=True)
 class Difference:
-    """Where log and repetition differ: topic, field, time [s], and both values (SI, ROS axes; None:
-    not there).
+    """A difference of log and repetition.
+
+    `time` is in s. The values are SI in ROS axes; None: there is none.
     """
 
     topic: str
@@ -38,20 +39,24 @@ class Difference:
     repeated: Any
 
     def text(self) -> str:
-        """As a line for people."""
+        """The difference as a line of text."""
+        at = f"{self.topic} at {self.time:.9g} s"
         if self.recorded is None:
-            return f"{self.topic} at {self.time:.9g} s{', ' + self.field if self.field else ''}: missing from the log"
+            return f"{at}{', ' + self.field if self.field else ''}: missing from the log"
         if self.repeated is None:
-            return f"{self.topic} at {self.time:.9g} s: {self.recorded} than the repeated run has"
-        return f"{self.topic} at {self.time:.9g} s, {self.field}: {self.recorded!r} in the log, {self.repeated!r} when repeated"
+            return f"{at}: {self.recorded} than the repeated run has"
+        values = f"{self.recorded!r} in the log, {self.repeated!r} when repeated"
+        return f"{at}, {self.field}: {values}"
 
 
 @dataclass
 class Verification:
-    """How a log compares: instants, messages and values compared, inputs repeated, values that are
-    not the same bits, the largest difference as a share of its field's largest value; `not_exact`
-    says why not all bits must be the same, or is empty; `first` is the first difference that
-    counts.
+    """The result of a comparison.
+
+    `values` of `messages` at `instants` were compared, with `inputs` repeated. `other_bits` values
+    are not the same bits. `largest` is the largest difference as a share of its field's largest
+    value. `not_exact` says why the bits need not be the same, or is empty. `first` is the first
+    difference beyond `tolerance`. `end` and `stop_time` are in s.
     """
 
     path: str
@@ -70,31 +75,31 @@ class Verification:
 
     @property
     def same(self) -> bool:
-        """Whether nothing differs that counts."""
+        """Whether there is no difference beyond the tolerance."""
         return self.first is None
 
     def as_dict(self) -> dict[str, Any]:
-        """As plain values, for JSON."""
+        """The fields as plain values, for JSON."""
         return {"same": self.same, **asdict(self)}
 
     def text(self) -> str:
-        """As lines for people."""
+        """The fields as lines of text."""
         until = f"{self.instants} instants up to {self.end:g} s" + (
             "" if self.end >= self.stop_time else f" of {self.stop_time:g} s"
         )
         lines = [f"compared  {self.values} values of {self.messages} messages at {until}"]
         if self.inputs:
-            lines.append(
-                f"steered   by {self.inputs} input{'s' if self.inputs > 1 else ''}, repeated at their times"
-            )
+            lines.append(f"inputs    {self.inputs}, repeated at their times")
         if self.first is not None:
             lines.append(f"differs   first in {self.first.text()}")
         elif self.other_bits:
             lines.append(
-                f"same      within {self.tolerance:g} of each field's largest value; {self.other_bits} values are not the same bits,"
+                f"same      within {self.tolerance:g} of each field's largest value; "
+                f"{self.other_bits} values are not the same bits,"
             )
             lines.append(
-                f"          the largest difference is {self.largest:.2g} of its field's largest value"
+                "          the largest difference is "
+                f"{self.largest:.2g} of its field's largest value"
             )
         else:
             lines.append("same      bit for bit")
@@ -104,30 +109,36 @@ class Verification:
 
 
 def verify(reader: LogReader, fmu: Path | None = None) -> Verification:
-    """Repeats the run of the log, by `Landing` or by the FMU `fmu`, and compares all that follows
-    from it: every field of struts, pose, rpy, twist, accel, top/accel, contacts and odom (markers
-    and diagnostics are not compared). Inputs that the log tells of act again at their times.
+    """Repeats the run of the log, and compares all messages that follow from it.
 
-    Raises LandingError where the log cannot be repeated.
+    These are struts, pose, rpy, twist, accel, top/accel, contacts and odom; markers and diagnostics
+    are not compared. Inputs in the log act again at their times.
+
+    Args:
+        reader: the log.
+        fmu: the FMU that repeats the run; None: `Landing`.
+
+    Raises:
+        LandingError: the log cannot be repeated.
     """
     # A log has at least as many messages as instants, whatever its times say.
     most_instants = sum(1 for _ in reader.messages())
-    run = Run(reader, fmu)
-    not_exact = why_not_exact(reader.metadata, fmu)
+    run = RepeatedRun(reader, fmu)
+    not_exact = inexact_reason(reader.metadata, fmu)
     found = Verification(
         str(reader.path), not_exact, TOLERANCE if not_exact else 0.0, stop_time=run.stop_time
     )
     found.inputs = run.input_messages
     try:
         with closing(run.samples()) as samples:
-            _Comparison(reader, run, found, most_instants).all(samples)
-    except _DiffersError as e:
+            _Comparison(reader, run, found, most_instants).compare_with(samples)
+    except _DifferenceError as e:
         found.first = e.difference
     found.cut = reader.cut
     return found
 
 
-class _DiffersError(Exception):
+class _DifferenceError(Exception):
     def __init__(self, difference: Difference) -> None:
         super().__init__(difference.text())
         self.difference = difference
@@ -137,7 +148,7 @@ class _Comparison:
     """One pass through a log beside one repetition."""
 
     def __init__(
-        self, reader: LogReader, run: Run, found: Verification, most_instants: int
+        self, reader: LogReader, run: RepeatedRun, found: Verification, most_instants: int
     ) -> None:
         self._reader = reader
         self._run = run
@@ -148,8 +159,13 @@ class _Comparison:
         self._recovered = "recovered_from" in reader.metadata
         self._scales: Mapping[tuple[str, str], float] | None = None
 
-    def all(self, samples: Iterator[dict[str, float]]) -> None:
-        """Compares all messages with `samples`, the repetition's from the start."""
+    def compare_with(self, samples: Iterator[dict[str, float]]) -> None:
+        """Compares all messages with `samples`, the repetition's from time 0 on.
+
+        Raises:
+            _DifferenceError: a difference beyond the tolerance.
+            LandingError: the log holds no message to compare.
+        """
         run, found = self._run, self._found
         k = -1
         missing = set(self._topics)
@@ -157,12 +173,14 @@ class _Comparison:
         for message in self._reader.messages(self._topics):
             at, rest = divmod(message.log_time, run.step_ns)
             if rest or at < max(k, 0) or (at == k and message.topic not in missing):
-                self._differ(message.topic, "", message.log_time / 1e9, "a message more", None)
+                self._raise_difference(
+                    message.topic, "", message.log_time / 1e9, "a message more", None
+                )
             while at > k:
                 if k >= 0 and missing:
-                    self._differ(min(missing), "", k * run.step, None, "a message")
+                    self._raise_difference(min(missing), "", k * run.step, None, "a message")
                 if k * run.step > run.stop_time + run.step:
-                    self._differ(
+                    self._raise_difference(
                         message.topic,
                         "",
                         message.log_time / 1e9,
@@ -177,10 +195,11 @@ class _Comparison:
             missing.discard(message.topic)
         if found.instants == 0:
             raise LandingError(
-                f"{self._reader.path} cannot be compared: it holds no message of {', '.join(self._topics)}"
+                f"{self._reader.path} cannot be compared: "
+                f"it holds no message of {', '.join(self._topics)}"
             )
         if missing and not (self._reader.cut or self._recovered):
-            self._differ(min(missing), "", k * run.step, None, "a message")
+            self._raise_difference(min(missing), "", k * run.step, None, "a message")
         found.end = k * run.step
 
     def _compare(self, message: LogMessage, values: Mapping[str, float]) -> None:
@@ -195,14 +214,20 @@ class _Comparison:
             if isinstance(recorded, float) and isinstance(repeated, (float, int)):
                 if struct.pack("<d", recorded) != struct.pack("<d", repeated):
                     found.other_bits += 1
-                    self._judge(message, path, recorded, float(repeated))
+                    self._check_tolerance(message, path, recorded, float(repeated))
             elif recorded != repeated:
-                self._differ(message.topic, path, message.log_time / 1e9, recorded, repeated)
+                self._raise_difference(
+                    message.topic, path, message.log_time / 1e9, recorded, repeated
+                )
         for path in expected:
             if path not in paths:
-                self._differ(message.topic, path, message.log_time / 1e9, None, expected[path])
+                self._raise_difference(
+                    message.topic, path, message.log_time / 1e9, None, expected[path]
+                )
 
-    def _judge(self, message: LogMessage, path: str, recorded: float, repeated: float) -> None:
+    def _check_tolerance(
+        self, message: LogMessage, path: str, recorded: float, repeated: float
+    ) -> None:
         scale = self._scale(self._topics[message.topic], path) if self._found.not_exact else 0.0
         share = (
             abs(recorded - repeated) / scale
@@ -210,24 +235,27 @@ class _Comparison:
             else (0.0 if recorded == repeated else math.inf)
         )
         if not (self._found.not_exact and share <= TOLERANCE):
-            self._differ(message.topic, path, message.log_time / 1e9, recorded, repeated)
+            self._raise_difference(message.topic, path, message.log_time / 1e9, recorded, repeated)
         self._found.largest = max(self._found.largest, share)
 
     def _scale(self, topic: str, path: str) -> float:
-        """The largest value of a field in the repetition up to the log's end; it is made once more
-        for that.
+        """The largest magnitude of a field in the repetition up to the log's end.
+
+        It is found by one more repetition, when it is first needed.
         """
         if self._scales is None:
-            self._scales = _largest(
+            self._scales = _largest_values(
                 self._run, min(self._most_instants, int(self._run.stop_time / self._run.step) + 1)
             )
         return self._scales.get((topic, path), 0.0)
 
-    def _differ(self, topic: str, field: str, time: float, recorded: Any, repeated: Any) -> None:
-        raise _DiffersError(Difference(topic, field, time, recorded, repeated))
+    def _raise_difference(
+        self, topic: str, field: str, time: float, recorded: Any, repeated: Any
+    ) -> None:
+        raise _DifferenceError(Difference(topic, field, time, recorded, repeated))
 
 
-def _largest(run: Run, count: int) -> dict[tuple[str, str], float]:
+def _largest_values(run: RepeatedRun, count: int) -> dict[tuple[str, str], float]:
     scales: dict[tuple[str, str], float] = {}
     with closing(run.samples()) as samples:
         for values in islice(samples, count):

@@ -1,0 +1,1 @@
+"""The landing node: settings, parameters, lifecycle, inputs, pacing and publishing."""

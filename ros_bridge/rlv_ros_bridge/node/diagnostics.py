@@ -1,4 +1,4 @@
-"""The node's own health, for `/diagnostics`."""
+"""The node's own state, for `/diagnostics`."""
 
 from __future__ import annotations
 
@@ -15,52 +15,57 @@ PHASES = tuple(phase.name.lower() for phase in Phase)
 
 
 def phase_name(phase: float) -> str:
-    """The name of `status.phase`."""
+    """The name of the output `status.phase`."""
     return PHASES[int(phase)] if 0 <= phase < len(PHASES) else "unknown"
 
 
-class Health:
-    """Makes the messages of `/diagnostics` for the node called `name`, whose landing mode is
-    `mode`.
+class DiagnosticsMessage:
+    """The message of `/diagnostics`, filled anew for each publication.
+
+    Args:
+        name: full name of the node.
+        mode: landing mode, which stands in the hardware id.
     """
 
     def __init__(self, name: str, mode: str) -> None:
         self._status = DiagnosticStatus(name=name, hardware_id=f"rlv-landing {mode}")
         self.message = DiagnosticArray(status=[self._status])
 
-    def fill(
+    def update(
         self,
         nanoseconds: int,
         values: Mapping[str, str],
         problems: Mapping[str, int],
         failure: str = "",
     ) -> DiagnosticArray:
-        """The message at `nanoseconds` of simulation time: `values` by name; `problems` make it a
-        warning, a `failure` an error.
+        """Fills the message, and returns it.
+
+        Args:
+            nanoseconds: simulation time [ns].
+            values: the status's values by key.
+            problems: counts by name; any that is not 0 makes the level WARN.
+            failure: makes the level ERROR unless it is empty.
         """
         set_stamp(self.message.header.stamp, nanoseconds)
+        counts = ", ".join(f"{count} {name}" for name, count in problems.items() if count)
         status = self._status
-        trouble = failure or ", ".join(
-            f"{count} {name}" for name, count in problems.items() if count
-        )
-        status.level = (
-            DiagnosticStatus.ERROR
-            if failure
-            else DiagnosticStatus.WARN
-            if trouble
-            else DiagnosticStatus.OK
-        )
-        status.message = trouble or values.get("phase", "")
+        status.level = DiagnosticStatus.OK
+        if failure:
+            status.level = DiagnosticStatus.ERROR
+        elif counts:
+            status.level = DiagnosticStatus.WARN
+        status.message = failure or counts or values.get("phase", "")
         status.values = [KeyValue(key=key, value=value) for key, value in values.items()]
         return self.message
 
 
-def pace(pacer: Pacer, simulated: float) -> dict[str, str]:
-    """How the landing keeps to the wall clock, after `simulated` [s]."""
+def pacing_values(pacer: Pacer, simulated: float) -> dict[str, str]:
+    """The pacer's counters for `/diagnostics`, after `simulated` [s] of simulation time."""
     elapsed = pacer.elapsed
+    latest = pacer.lateness[-1] if pacer.lateness else 0.0
     return {
         "steps late": str(pacer.late_steps),
         "time lost to stalls [s]": f"{pacer.lost:.3f}",
-        "lateness of the last sample published [s]": f"{pacer.lateness[-1] if pacer.lateness else 0.0:.6f}",
+        "lateness of the last sample published [s]": f"{latest:.6f}",
         "real-time factor": f"{simulated / elapsed:.3f}" if elapsed > 0.0 else "0",
     }

@@ -1,6 +1,4 @@
-"""The inputs that reach the node: checked when they come, applied at the next step, given up when
-their sender falls silent.
-"""
+"""Inputs from other nodes: checked on arrival, applied at the next step, ended after a timeout."""
 
 from __future__ import annotations
 
@@ -30,14 +28,16 @@ from ..messages.topics import APPLIED_GROUND, APPLIED_WRENCH, WORLD_FRAME, Topic
 
 NO_WRENCH = dict.fromkeys(WRENCH, 0.0)
 NO_MOTION = dict.fromkeys((*HEAVE, *TILT), 0.0)
-# Waiting messages while the landing is paused; of more than these the newest are kept.
+# Messages that wait while the landing is paused; of more than these the newest are kept.
 LONGEST_QUEUE = 1000
 
 
 @dataclass(frozen=True)
-class Applied:
-    """A change of inputs: values by name, which act from the simulation time `nanoseconds` on;
-    `topic` tells it.
+class InputChange:
+    """New values of inputs from a simulation time on.
+
+    `topic` is the topic `applied/...` on which the change is published. `nanoseconds` is the
+    simulation time from which on it acts [ns]. `values` are inputs by name, SI.
     """
 
     topic: Topic
@@ -45,7 +45,7 @@ class Applied:
     values: Mapping[str, float]
 
     def message(self) -> Any:
-        """The message that tells it, from which `inputs.READINGS` reads the same values."""
+        """The message of `topic`, from which `inputs.READINGS` reads the same values."""
         if self.topic is APPLIED_WRENCH:
             message = WrenchStamped()
             force, torque = wrench_vectors(self.values)
@@ -61,12 +61,15 @@ class Applied:
 
 
 class InputQueue:
-    """Takes the messages of `external_wrench` and `ground` in any thread; `take` hands the changes
-    out in the landing's.
+    """Receives messages of `external_wrench` and `ground` in any thread.
 
-    `timeout` [s of wall time] after the last message the wrench is taken back to 0, and a moving
-    ground stands still where it is; 0: never. `received` and `refused` count messages; `warn` is
-    told why one cannot be used.
+    The landing's thread collects the resulting changes by `changes_at`. `received` and `refused`
+    count messages.
+
+    Args:
+        timeout: wall time after a topic's last message [s] after which the wrench becomes 0, or the
+            ground stops where it is; 0: never.
+        warn: called with a text when a message cannot be used, and after a timeout.
     """
 
     def __init__(self, timeout: float, warn: Callable[[str], None]) -> None:
@@ -78,23 +81,24 @@ class InputQueue:
         self.clear()
 
     def clear(self) -> None:
-        """For a new landing: nothing acts, nothing waits."""
+        """Resets to no inputs and no waiting messages, for a new landing."""
         self._arrived.clear()
         self._wrench = dict(NO_WRENCH)
         self._ground, self._ground_since = dict(NO_MOTION), 0
-        # When the last message came, of those topics that will be given up [s].
-        self._heard: dict[Topic, float] = {}
+        # Arrival of the last message of each topic whose timeout has not passed [s].
+        self._last_arrival: dict[Topic, float] = {}
 
-    def take_wrench(self, message: Any) -> None:
-        """A message of `external_wrench`."""
+    def receive_wrench(self, message: Any) -> None:
+        """Takes a message of `external_wrench`."""
         if out_of_plane(message):
             self._warn(
-                "external_wrench: force y and torques x and z are left out: the body moves in its plane"
+                "external_wrench: force y and torques x and z are ignored: "
+                "the body moves in its plane"
             )
         self._receive(APPLIED_WRENCH, read_wrench, message)
 
-    def take_ground(self, message: Any) -> None:
-        """A message of `ground`."""
+    def receive_ground(self, message: Any) -> None:
+        """Takes a message of `ground`."""
         self._receive(APPLIED_GROUND, read_ground, message)
 
     def _receive(self, topic: Topic, read: Callable[[Any], dict[str, float]], message: Any) -> None:
@@ -102,58 +106,60 @@ class InputQueue:
             values = read(message)
         except LandingError as e:
             self.refused += 1
-            self._warn(f"input refused, what acted goes on: {e}")
+            self._warn(f"input refused, the previous one stays in force: {e}")
             return
         self.received += 1
         self._arrived.append((topic, values))
 
-    def take(self, nanoseconds: int) -> list[Applied]:
-        """What changes at the simulation time `nanoseconds`, at which a step begins.
+    def changes_at(self, nanoseconds: int) -> list[InputChange]:
+        """The changes for a step that begins at the simulation time `nanoseconds` [ns].
 
-        Of several messages the last one counts.
+        Of several messages of a topic the last counts.
         """
-        if not self._arrived and not self._heard:
+        if not self._arrived and not self._last_arrival:
             return []
         changed: dict[Topic, None] = {}
         now = time.monotonic()
         while self._arrived:
             topic, values = self._arrived.popleft()
             changed[topic] = None
-            self._heard[topic] = now
+            self._last_arrival[topic] = now
             if topic is APPLIED_WRENCH:
                 self._wrench = values
             else:
                 self._ground = {**self._ground_at(nanoseconds), **values}
                 self._ground_since = nanoseconds
-        for topic, heard in list(self._heard.items()):
-            if self.timeout and now - heard > self.timeout:
-                del self._heard[topic]
-                if self._give_up(topic, nanoseconds):
+        for topic, arrival in list(self._last_arrival.items()):
+            if self.timeout and now - arrival > self.timeout:
+                del self._last_arrival[topic]
+                if self._end_input(topic, nanoseconds):
                     changed[topic] = None
         return [
-            Applied(topic, nanoseconds, self._wrench if topic is APPLIED_WRENCH else self._ground)
+            InputChange(
+                topic, nanoseconds, self._wrench if topic is APPLIED_WRENCH else self._ground
+            )
             for topic in changed
         ]
 
     def _ground_at(self, nanoseconds: int) -> dict[str, float]:
-        """The ground's motion at the simulation time `nanoseconds`: it goes on at its rates."""
+        """The ground's motion at the simulation time `nanoseconds` [ns], at constant rates."""
         passed = 1e-9 * (nanoseconds - self._ground_since)
         moved = {
             name: self._ground[name] + passed * self._ground[rate] for name, rate in JOINTS.values()
         }
         return {**self._ground, **moved}
 
-    def _give_up(self, topic: Topic, nanoseconds: int) -> bool:
-        """Whether the silence on `topic` changes anything."""
+    def _end_input(self, topic: Topic, nanoseconds: int) -> bool:
+        """Sets the wrench to 0, or stops the ground, after a timeout; whether that is a change."""
         if topic is APPLIED_WRENCH:
             if self._wrench == NO_WRENCH:
                 return False
             self._wrench = dict(NO_WRENCH)
-            self._warn(f"no external_wrench for {self.timeout:g} s: it is taken back to 0")
+            self._warn(f"no external_wrench for {self.timeout:g} s: it is set to 0")
             return True
         if not (self._ground[HEAVE[1]] or self._ground[TILT[1]]):
             return False
         self._ground = {**self._ground_at(nanoseconds), HEAVE[1]: 0.0, TILT[1]: 0.0}
         self._ground_since = nanoseconds
-        self._warn(f"no ground for {self.timeout:g} s: it stands still where it is")
+        self._warn(f"no ground for {self.timeout:g} s: it stops where it is")
         return True

@@ -1,6 +1,4 @@
-"""Land once, in a ROS 2 started for it: the lifecycle node walks its states by itself; or serve one
-that others walk.
-"""
+"""Runs the landing node in a ROS 2 started for it: lands once, or waits for transitions."""
 
 from __future__ import annotations
 
@@ -17,38 +15,51 @@ from ..ros.spinner import Spinner
 from .landing_node import NAMESPACE, LandingNode
 from .run_summary import RunSummary
 
-# How often signals and the progress are looked after [s].
-LOOK_ROUND_SECONDS = 0.02
+# Period of checking for signals and of updating the progress bar [s].
+POLL_SECONDS = 0.02
 BAR_FORMAT = "landing {percentage:3.0f}%|{bar}| {n:.2f}/{total:.2f} s [{elapsed}<{remaining}]"
 
 
 def land(
     changes: Mapping[str, Any], ros_args: Sequence[str], stop: StopFlag, namespace: str = NAMESPACE
 ) -> RunSummary | None:
-    """One landing with the ROS parameters `changes`, in a ROS 2 started for it with `ros_args`; or,
-    with `autostart` false, a node that waits for transitions until it is shut down or a signal
-    comes. None where there was no landing. Raises LandingError as the node does.
+    """Runs the landing node once.
+
+    With the parameter `autostart` it lands and ends. Without, it waits for lifecycle transitions
+    until it is shut down or a signal comes.
+
+    Args:
+        changes: ROS parameters by name; they override those of `ros_args`.
+        ros_args: ROS arguments, `--ros-args ...`.
+        stop: notes signals, which end the landing.
+        namespace: namespace of the node and its topics.
+
+    Returns:
+        The figures of the last landing; None where there was none.
+
+    Raises:
+        LandingError: bad parameters, or the landing failed.
     """
     with ros_context(ros_args):
         node = LandingNode(changes, namespace)
         try:
             with Spinner(node) as spinner:
                 if node.values["autostart"]:
-                    return _walk(node, spinner, stop)
-                return _serve(node, spinner, stop)
+                    return _land_once(node, spinner, stop)
+                return _wait_for_transitions(node, spinner, stop)
         finally:
             node.destroy_node()
 
 
-def _walk(node: LandingNode, spinner: Spinner, stop: StopFlag) -> RunSummary:
-    _do(node, spinner, node.trigger_configure)
+def _land_once(node: LandingNode, spinner: Spinner, stop: StopFlag) -> RunSummary:
+    _trigger(node, spinner, node.trigger_configure)
     try:
-        _do(node, spinner, node.trigger_activate)
-        _wait(node, stop)
+        _trigger(node, spinner, node.trigger_activate)
+        _wait_for_end(node, stop)
         if node.failure is not None:
             raise node.failure
         if node.state == "active":
-            _do(node, spinner, node.trigger_deactivate)
+            _trigger(node, spinner, node.trigger_deactivate)
         summary = node.summary(stop.number)
     finally:
         if node.state != "finalized":
@@ -56,18 +67,18 @@ def _walk(node: LandingNode, spinner: Spinner, stop: StopFlag) -> RunSummary:
     return summary
 
 
-def _serve(node: LandingNode, spinner: Spinner, stop: StopFlag) -> RunSummary | None:
+def _wait_for_transitions(node: LandingNode, spinner: Spinner, stop: StopFlag) -> RunSummary | None:
     while not stop and node.state != "finalized":
-        stop.wait(LOOK_ROUND_SECONDS)
+        stop.wait(POLL_SECONDS)
     if node.state == "active":
-        _do(node, spinner, node.trigger_deactivate)
+        _trigger(node, spinner, node.trigger_deactivate)
     summary = node.summary(stop.number) if node.has_landed else None
     if node.state != "finalized":
         spinner.call(node.trigger_shutdown)
     return summary
 
 
-def _do(
+def _trigger(
     node: LandingNode, spinner: Spinner, transition: Callable[[], TransitionCallbackReturn]
 ) -> None:
     result = spinner.call(transition)
@@ -75,17 +86,15 @@ def _do(
         raise node.failure or LandingError(f"the transition from {node.state} failed")
 
 
-def _wait(node: LandingNode, stop: StopFlag) -> None:
-    """Returns at the landing's end, at an error or a signal; with a bar that shows how far it is,
-    on a terminal.
-    """
+def _wait_for_end(node: LandingNode, stop: StopFlag) -> None:
+    """Waits for the landing's end, an error or a signal; shows a progress bar on a terminal."""
     from tqdm import tqdm
 
     total = node.values["stop_time"]
     with tqdm(
         total=total, disable=not sys.stderr.isatty(), bar_format=BAR_FORMAT, file=sys.stderr
     ) as bar:
-        while not node.over.wait(LOOK_ROUND_SECONDS) and not stop:
+        while not node.ended.wait(POLL_SECONDS) and not stop:
             if node.landing is not None:
                 bar.update(node.landing.time - bar.n)
         if node.landing is not None:
@@ -93,7 +102,7 @@ def _wait(node: LandingNode, stop: StopFlag) -> None:
 
 
 def main() -> int:
-    """For `ros2 run`: everything by ROS parameters."""
+    """The entry point for `ros2 run`, where all settings are ROS parameters; the exit code."""
     try:
         with StopFlag() as stop:
             summary = land({}, sys.argv[1:], stop)

@@ -1,13 +1,12 @@
-"""One landing: step the FMU, make the messages, record all of them, and hand them on to be
-published at their time.
-"""
+"""One landing: steps the FMU, records every sample, and publishes it at its time."""
 
 from __future__ import annotations
 
 import gc
 import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -20,143 +19,148 @@ from ..fmu.runner import FmuRunner
 from ..logs.recorder import RecordedTopic, Recorder
 from ..messages import topics
 from ..messages.markers import Wireframe
-from ..messages.qos import LATCHED, Qos
+from ..messages.qos import LATCHED
 from ..messages.samples import SampleBytes
 from ..messages.topics import Topic
 from ..messages.transforms import Transforms
 from ..messages.wire import padded
-from .diagnostics import Health, pace, phase_name
+from .diagnostics import DiagnosticsMessage, pacing_values, phase_name
 from .input_queue import InputQueue
 from .log_metadata import log_metadata
-from .pacer import Pacer, spread
-from .publisher import LivePublisher, Outlet
+from .pacer import Pacer, lateness_percentiles
+from .publishing import Publishing
 from .run_summary import RunSummary
 from .settings import Settings
 
 PHASE = OUTPUT_NAMES.index("status.phase")
 BALANCE = OUTPUT_NAMES.index("energy.balance")
 TOPPLED = 3
-# How long the last samples may take to be published while some subscriber takes nothing [s of wall
-# time].
-LAST_SECONDS = 0.5
-# Weight of a new step in the mean of what a step costs.
-MEMORY = 1.0 / 32.0
-# How long another thread, which answers a service, may keep Python's lock when a sample is due;
-# Python's own 5 ms are five samples.
-SWITCH_SECONDS = 2e-4
+# Longest time for publishing the last samples while a subscriber takes nothing [s of wall time].
+DRAIN_SECONDS = 0.5
+# Weight of a new sample in the running mean of the time that computing one takes.
+MEAN_WEIGHT = 1.0 / 32.0
+# How long another thread, such as one that answers a service, may hold Python's global lock when a
+# sample is due [s]. Python's default of 5 ms is the time of five samples.
+THREAD_SWITCH_SECONDS = 2e-4
+
+
+@dataclass(frozen=True)
+class Identity:
+    """The node's full name, for `/diagnostics`, and its namespace, for the log."""
+
+    node: str
+    namespace: str
 
 
 class LandingRun:
-    """A landing at time 0, ready to go on.
+    """A landing at time 0, ready to run.
+
+    `samples` counts the samples computed. `end` is "finished", "toppled", or empty. `recorder` is
+    None until `open_log`, and where nothing is recorded. `description` is the serialised message of
+    `robot_description`, with which the log begins.
 
     Args:
-        settings: what to do. `folder`: where to record to, or None.
-        live: what publishes; `outlets` are its outlets by topic, `names` the topics' full names.
-        inputs: what arrives from outside. `namespace`: the node's, for the log. `tell`: is told of
-            an error of the recording.
+        settings: the landing's settings.
+        folder: log folder, which must not exist; None: no recording.
+        publishing: the node's publishers.
+        inputs: inputs from other nodes; it is cleared.
+        identity: names of the node.
+        on_error: called with a text when recording fails.
 
     Raises:
-        LandingError: the FMU is missing, not ours, or refuses the parameters; the log's folder
-            cannot be had. Nothing is left behind then.
+        LandingError: the FMU is missing, is another model, or refuses the parameters.
     """
 
     def __init__(
         self,
         settings: Settings,
+        *,
         folder: Path | None,
-        live: LivePublisher,
-        outlets: Mapping[Topic, Outlet],
-        names: Mapping[Topic, str],
-        qos: Qos,
+        publishing: Publishing,
         inputs: InputQueue,
-        node_name: str,
-        namespace: str,
-        tell: Callable[[str], object],
+        identity: Identity,
+        on_error: Callable[[str], object],
     ) -> None:
         self.settings = settings
         self.samples = 0
         self.end = ""
         self.realtime_factor = settings.realtime_factor
-        self._folder, self._live, self._outlets, self._names, self._qos = (
-            folder,
-            live,
-            outlets,
-            names,
-            qos,
-        )
-        self._inputs, self._namespace, self._tell = inputs, namespace, tell
-        self._take_packer(SampleBytes())
+        self.recorder: Recorder | None = None
+        self.description = b""
+        self._folder, self._publishing, self._inputs = folder, publishing, inputs
+        self._identity, self._on_error = identity, on_error
+        self._error_reported = False
+        self._queue = publishing.queue
+        self._set_packer(SampleBytes())
         self._wireframe = Wireframe(settings.parameters)
         self._transforms = Transforms(settings.parameters)
-        self._health = Health(node_name, settings.mode)
-        occasional = (topics.MARKERS, topics.TF, topics.DIAGNOSTICS)
+        self._diagnostics = DiagnosticsMessage(identity.node, settings.mode)
         self._markers_every, self._tf_every, self._diagnostics_every = (
-            settings.every[t] for t in occasional
+            settings.every[t] for t in (topics.MARKERS, topics.TF, topics.DIAGNOSTICS)
         )
         self._pacer = Pacer(0.0)
-        self._work = 0.0
-        self._told = False
-        self._dropped_before = live.dropped
-        self.recorder: Recorder | None = None
-        # The vehicle's description, serialised; the log begins with it.
-        self.description = b""
+        # Running mean of the wall time that computing a sample takes [s].
+        self._sample_cost = 0.0
+        self._dropped_before = self._queue.dropped
         self.fmu = FmuRunner(settings.fmu, dict(settings.parameters.items()))
         inputs.clear()
-        live.on_published(self._note_published)
+        self._queue.on_published(self._note_published)
 
     def open_log(self) -> None:
-        """Begins the log, where one is wanted; before the first sample.
+        """Opens the log, if the landing is to be recorded; before the first sample.
 
-        Raises LandingError where its folder cannot be had.
+        Raises:
+            LandingError: the log's folder exists or cannot be made.
         """
         if self._folder is None or self.recorder is not None:
             return
+        names, qos = self._publishing.names, self._publishing.qos
         recorded = [
-            RecordedTopic(
-                self._names[t], t.type_name, LATCHED if t is topics.ROBOT_DESCRIPTION else self._qos
-            )
+            RecordedTopic(names[t], t.type_name, LATCHED if t is topics.ROBOT_DESCRIPTION else qos)
             for t in topics.RECORDED
         ]
-        metadata = log_metadata(self.settings, self._namespace, self.fmu)
         self.recorder = Recorder(
             self._folder,
             recorded,
-            metadata,
+            log_metadata(self.settings, self._identity.namespace, self.fmu),
             {"parameters.toml": to_toml(self.settings.parameters).encode("utf-8")},
         )
-        self.recorder.write(self._names[topics.ROBOT_DESCRIPTION], 0, padded(self.description))
+        self.recorder.write(names[topics.ROBOT_DESCRIPTION], 0, padded(self.description))
         packer = self._packer
         sizes = {
             t: part.stop - part.start
             for t, part in zip(packer.topics, packer.slices)
             if t in topics.RECORDED
         }
-        prefixes = self.recorder.begin_samples({self._names[t]: size for t, size in sizes.items()})
-        self._take_packer(SampleBytes(dict(zip(sizes, prefixes))))
+        prefixes = self.recorder.begin_samples({names[t]: size for t, size in sizes.items()})
+        self._set_packer(SampleBytes(dict(zip(sizes, prefixes))))
 
-    def _take_packer(self, packer: SampleBytes) -> None:
+    def _set_packer(self, packer: SampleBytes) -> None:
         self._packer = packer
+        publishers = self._publishing.publishers
         self._slices = [
-            (self._outlets[t], part)
+            (publishers[t], part)
             for t, part in zip(packer.topics, packer.slices)
-            if t in self._outlets
+            if t in publishers
         ]
         # The clock comes first, and is not recorded.
-        self._records = slice(packer.slices[0].stop, None)
+        self._recorded = slice(packer.slices[0].stop, None)
 
-    def go_on(self, interrupted: Callable[[], bool]) -> None:
-        """Lands on in its own pace until the end, or until `interrupted` gets true.
+    def run(self, interrupted: Callable[[], bool]) -> None:
+        """Lands at the pace of `realtime_factor` until the end, or `interrupted` returns true.
 
-        Raises LandingError for a step that the FMU refuses.
+        Raises:
+            LandingError: the FMU refuses a step.
         """
-        s, pacer, live = self.settings, self._pacer, self._live
+        s, pacer, queue = self.settings, self._pacer, self._queue
         factor = None
-        live.look_round()
-        # A full collection in mid-landing would be a late step; what is there now stays anyway.
+        queue.poll_subscriptions()
+        # A full garbage collection during the landing would make a step late. What exists now stays
+        # in use, so it is taken out of later collections.
         gc.collect()
         gc.freeze()
         switch_before = sys.getswitchinterval()
-        sys.setswitchinterval(SWITCH_SECONDS)
+        sys.setswitchinterval(THREAD_SWITCH_SECONDS)
         try:
             while not self.end and not interrupted():
                 k = self.samples
@@ -164,51 +168,54 @@ class LandingRun:
                     factor = self.realtime_factor
                     pacer.start(k, s.step_size / factor if factor > 0.0 else 0.0)
                 started = time.perf_counter()
-                values, messages = self._next(k)
-                self._work += MEMORY * (time.perf_counter() - started - self._work)
-                pacer.hold(k, interrupted)
-                live.offer_sample(self._slices, messages, k, pacer.due(k))
+                values, messages = self._compute_sample(k)
+                cost = time.perf_counter() - started
+                self._sample_cost += MEAN_WEIGHT * (cost - self._sample_cost)
+                pacer.sleep_until_due(k, interrupted)
+                queue.enqueue_sample(self._slices, messages, k, pacer.due(k))
                 self.samples = k + 1
-                latest = pacer.due(k + 1) - 1.5 * self._work
-                # The sample goes out before what is made now and then.
-                live.publish(latest)
-                if self._occasional(k, values):
-                    live.publish(latest)
+                latest = pacer.due(k + 1) - 1.5 * self._sample_cost
+                # The sample is published before the occasional messages are made.
+                queue.publish(latest)
+                if self._enqueue_occasional(k, values):
+                    queue.publish(latest)
         finally:
             pacer.stop()
             sys.setswitchinterval(switch_before)
             gc.unfreeze()
-        live.finish(LAST_SECONDS)
+        queue.drain(DRAIN_SECONDS)
 
     def step(self, count: int) -> None:
-        """`count` steps at once; each is published and recorded.
+        """Does `count` steps without pacing; each is recorded and published.
 
-        Raises LandingError for a step that the FMU refuses.
+        Raises:
+            LandingError: the FMU refuses a step.
         """
-        self._live.look_round()
-        goal = max(0, self.samples - 1) + count
-        while not self.end and self.samples <= goal:
+        self._queue.poll_subscriptions()
+        last = max(0, self.samples - 1) + count
+        while not self.end and self.samples <= last:
             k = self.samples
-            values, messages = self._next(k)
-            self._live.offer_sample(self._slices, messages, k, time.perf_counter())
-            self._occasional(k, values)
+            values, messages = self._compute_sample(k)
+            self._queue.enqueue_sample(self._slices, messages, k, time.perf_counter())
+            self._enqueue_occasional(k, values)
             self.samples = k + 1
-            self._live.publish(0.0)
-        self._live.finish(LAST_SECONDS)
+            self._queue.publish(0.0)
+        self._queue.drain(DRAIN_SECONDS)
 
     @property
     def time(self) -> float:
         """Simulation time of the last sample [s]; 0 before the first."""
         return max(0, self.samples - 1) * self.settings.step_size
 
-    def _next(self, k: int) -> tuple[list[float], bytes]:
-        """Sample k and its messages, recorded."""
+    def _compute_sample(self, k: int) -> tuple[list[float], bytes]:
+        """Steps to sample k and records it; its outputs and its messages."""
         s, recorder = self.settings, self.recorder
         if k:
             before = (k - 1) * s.step_ns
-            for change in self._inputs.take(before):
+            for change in self._inputs.changes_at(before):
                 self.fmu.set_inputs(change.values)
-                self._say(change.topic, before, padded(serialize_message(change.message())))
+                message = padded(serialize_message(change.message()))
+                self._record_and_enqueue(change.topic, before, message)
             self.fmu.step(k - 1, s.step_size)
         values = self.fmu.values()
         toppled = values[PHASE] == TOPPLED
@@ -216,68 +223,75 @@ class LandingRun:
         stamp = k * s.step_ns
         messages = self._packer.pack(stamp, values, k)
         if recorder is not None:
-            recorder.write_sample(stamp, messages[self._records])
+            recorder.write_sample(stamp, messages[self._recorded])
             recorder.flush()
-            if recorder.error and not self._told:
-                self._told = True
-                self._tell(f"{recorder.error}; the landing goes on unrecorded")
+            if recorder.error and not self._error_reported:
+                self._error_reported = True
+                self._on_error(f"{recorder.error}; the landing continues without recording")
         return values, messages
 
-    def _occasional(self, k: int, values: Sequence[float]) -> bool:
-        """What is not said at each sample; whether anything was."""
-        stamp, said = k * self.settings.step_ns, False
+    def _enqueue_occasional(self, k: int, values: Sequence[float]) -> bool:
+        """Makes markers, transforms and diagnostics where they are due; whether any was."""
+        stamp = k * self.settings.step_ns
+        due: list[tuple[Topic, bytes]] = []
         if k % self._markers_every == 0 or self.end:
-            self._say(topics.MARKERS, stamp, self._wireframe.pack(stamp, values))
-            said = True
+            due.append((topics.MARKERS, self._wireframe.pack(stamp, values)))
         if k % self._tf_every == 0 or self.end:
-            self._say(topics.TF, stamp, self._transforms.pack(stamp, values))
-            said = True
+            due.append((topics.TF, self._transforms.pack(stamp, values)))
         if k % self._diagnostics_every == 0 or self.end:
-            self._say(topics.DIAGNOSTICS, stamp, padded(serialize_message(self._report(k, values))))
-            said = True
-        return said
+            message = serialize_message(self._diagnostics_message(k, values))
+            due.append((topics.DIAGNOSTICS, padded(message)))
+        for topic, data in due:
+            self._record_and_enqueue(topic, stamp, data)
+        return bool(due)
 
-    def _say(self, topic: Topic, stamp: int, data: bytes) -> None:
+    def _record_and_enqueue(self, topic: Topic, stamp: int, data: bytes) -> None:
         if self.recorder is not None:
-            self.recorder.write(self._names[topic], stamp, data)
-        if topic in self._outlets:
-            self._live.offer(self._outlets[topic], data)
+            self.recorder.write(self._publishing.names[topic], stamp, data)
+        publisher = self._publishing.publishers.get(topic)
+        if publisher is not None:
+            self._queue.enqueue(publisher, data)
 
     def _note_published(self, due: float) -> None:
         if self._pacer.period:
             self._pacer.note_published(due)
 
-    def _report(self, k: int, values: Sequence[float]) -> Any:
+    def _diagnostics_message(self, k: int, values: Sequence[float]) -> Any:
         recorder = self.recorder
-        told = {
-            "phase": phase_name(values[PHASE]),
-            "energy balance [J]": f"{values[BALANCE]:.6g}",
-            "samples": str(k + 1),
-            **{name: str(count) for name, count in self.fmu.statistics().items()},
-            **pace(self._pacer, k * self.settings.step_size),
-            "messages not published": str(self.dropped),
-            "messages recorded": str(recorder.count if recorder else 0),
-            "inputs received": str(self._inputs.received),
-            "inputs refused": str(self._inputs.refused),
-        }
         problems = {
             "steps late": self._pacer.late_steps,
             "messages not published": self.dropped,
             "inputs refused": self._inputs.refused,
         }
-        return self._health.fill(
-            k * self.settings.step_ns, told, problems, recorder.error if recorder else ""
-        )
+        status = {
+            "phase": phase_name(values[PHASE]),
+            "energy balance [J]": f"{values[BALANCE]:.6g}",
+            "samples": str(k + 1),
+            **{name: str(count) for name, count in self.fmu.statistics().items()},
+            **pacing_values(self._pacer, k * self.settings.step_size),
+            "messages not published": str(self.dropped),
+            "messages recorded": str(recorder.count if recorder else 0),
+            "inputs received": str(self._inputs.received),
+            "inputs refused": str(self._inputs.refused),
+        }
+        failure = recorder.error if recorder else ""
+        return self._diagnostics.update(k * self.settings.step_ns, status, problems, failure)
 
     @property
     def dropped(self) -> int:
-        """Messages that were recorded, but not published."""
-        return self._live.dropped - self._dropped_before
+        """Messages of this landing that were not published although there were subscribers."""
+        return self._queue.dropped - self._dropped_before
 
-    def summary(self, end: str, signal: int, acknowledged: bool) -> RunSummary:
-        """How it went so far."""
+    def summary(self, end: str, signal: int, *, acknowledged: bool) -> RunSummary:
+        """The figures of the landing so far.
+
+        Args:
+            end: "finished", "toppled" or "interrupted".
+            signal: number of the signal that interrupted it, or 0.
+            acknowledged: whether all reliable subscribers have acknowledged all samples.
+        """
         pacer, recorder = self._pacer, self.recorder
-        median, p99, largest = spread(pacer.lateness)
+        median, p99, largest = lateness_percentiles(pacer.lateness)
         return RunSummary(
             samples=self.samples,
             recorded=recorder.count if recorder else 0,
@@ -297,7 +311,7 @@ class LandingRun:
         )
 
     def close_log(self) -> None:
-        """Completes the log; removes one that nothing was written to."""
+        """Completes the log; removes it if no sample was recorded."""
         if self.recorder is not None:
             if self.samples:
                 self.recorder.close()

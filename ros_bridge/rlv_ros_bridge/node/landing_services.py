@@ -12,10 +12,13 @@ from rlv_landing.errors import LandingError
 
 
 def create_landing_services(node: Node, reset: Callable[[], str], step: Callable[[], str]) -> None:
-    """Create `~/reset` and `~/step` (std_srvs/Trigger) on `node`.
+    """Creates `~/reset` and `~/step` (std_srvs/Trigger) on `node`.
 
-    `reset` and `step` act on the landing and return the time that was reached, as text. A
-    LandingError of theirs is the answer's message with success = false.
+    Args:
+        node: the landing node.
+        reset: acts on the landing, and returns the answer's text. A LandingError becomes the
+            answer's text with success = false.
+        step: likewise.
     """
     node.create_service(Trigger, "~/reset", lambda _, response: _answer(node, reset, response))
     node.create_service(Trigger, "~/step", lambda _, response: _answer(node, step, response))

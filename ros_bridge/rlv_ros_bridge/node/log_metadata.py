@@ -1,4 +1,4 @@
-"""What a log says of how it came about: all it takes to repeat the run."""
+"""The metadata of a log: what is needed to repeat its run."""
 
 from __future__ import annotations
 
@@ -14,8 +14,14 @@ from .settings import Settings
 
 
 def log_metadata(settings: Settings, namespace: str, fmu: FmuRunner) -> dict[str, str]:
-    """Texts by name: mode, preset, step, the FMU's identity, versions."""
-    told = {
+    """Texts by name: mode, preset, times [s], the FMU's identity, versions.
+
+    Args:
+        settings: the landing's settings.
+        namespace: namespace of the node and its topics.
+        fmu: the FMU that computes the landing.
+    """
+    metadata = {
         "mode": settings.mode,
         "preset": settings.preset,
         "step_size": repr(settings.step_size),
@@ -32,7 +38,7 @@ def log_metadata(settings: Settings, namespace: str, fmu: FmuRunner) -> dict[str
     }
     for package in ("fmpy", "pythonfmu"):
         try:
-            told[f"version_{package}"] = version(package)
+            metadata[f"version_{package}"] = version(package)
         except PackageNotFoundError:
             continue
-    return told
+    return metadata

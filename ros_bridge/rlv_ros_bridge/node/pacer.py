@@ -1,4 +1,4 @@
-"""Keeps a loop to the wall clock, and counts where it does not succeed."""
+"""Paces a loop by the wall clock, and counts the steps that are late."""
 
 from __future__ import annotations
 
@@ -7,19 +7,18 @@ import time
 from array import array
 from collections.abc import Callable, Sequence
 
-# Beyond this the lost time is given up: to make it good would be a burst that no subscriber
-# expects.
+# A longer delay is not made up for: subscribers do not expect such a burst of messages.
 STALL_SECONDS = 0.1
-LOOK_ROUND_SECONDS = 0.05
+# Longest sleep before the interruption is checked [s].
+INTERRUPT_POLL_SECONDS = 0.05
 
 
 class Pacer:
-    """Holds step k back until `start + (k - first) * period` [s] of wall time; a period of 0 never
-    holds back.
+    """Delays step k until `start + (k - first) * period` of wall time [s].
 
-    The start is fixed, so that single late steps do not add up. `late_steps` began more than one
-    period too late; `lost` [s] is time given up after stalls; `lateness` [s] is that of each
-    sample's publication.
+    The start is fixed, so that single late steps do not add up. A period of 0 never delays.
+    `late_steps` counts steps that began more than one period late. `lost` is wall time that was not
+    made up for after stalls [s]. `lateness` is that of each sample's publication [s].
     """
 
     def __init__(self, period: float) -> None:
@@ -33,57 +32,52 @@ class Pacer:
         self._first = 0
 
     def start(self, k: int, period: float) -> None:
-        """Time runs from now on, at the step k; also after a pause and for a new period."""
+        """Starts at step k with `period` [s]; also after a pause and for a new period."""
         self.stop()
         self.period = period
         self._first = k
         self._started = self._start = time.perf_counter()
 
     def stop(self) -> None:
-        """A pause: time stands still until the next start."""
+        """Pauses: `elapsed` stays as it is until the next start."""
         self._active = self.elapsed
         self._started = None
 
     @property
     def elapsed(self) -> float:
-        """Wall time in which time ran [s]."""
-        return self._active + (
-            time.perf_counter() - self._started if self._started is not None else 0.0
-        )
+        """Wall time between starts and stops [s]."""
+        running = time.perf_counter() - self._started if self._started is not None else 0.0
+        return self._active + running
 
     def due(self, k: int) -> float:
-        """When step k is due, on `time.perf_counter`'s clock [s]; the past where nothing is held
-        back.
-        """
+        """When step k is due, on `time.perf_counter`'s clock [s]; in the past for a period of 0."""
         return self._start + (k - self._first) * self.period
 
-    def hold(self, k: int, interrupted: Callable[[], bool]) -> bool:
-        """Sleeps until step k is due; False where `interrupted` gets true meanwhile."""
+    def sleep_until_due(self, k: int, interrupted: Callable[[], bool]) -> None:
+        """Sleeps until step k is due, or `interrupted` returns true; counts lateness and stalls."""
         if not self.period:
-            return not interrupted()
+            return
         while (left := self.due(k) - time.perf_counter()) > 0.0:
-            time.sleep(min(left, LOOK_ROUND_SECONDS))
-            if left > LOOK_ROUND_SECONDS and interrupted():
-                return False
+            time.sleep(min(left, INTERRUPT_POLL_SECONDS))
+            if left > INTERRUPT_POLL_SECONDS and interrupted():
+                return
         late = -left
         if late > self.period:
             self.late_steps += 1
         if late > max(STALL_SECONDS, self.period):
             self._start += late
             self.lost += late
-        return not interrupted()
 
     def note_published(self, due: float) -> None:
-        """The sample that was due at `due` is published now."""
+        """Notes that the sample that was due at `due` [s] has been published."""
         self.lateness.append(max(0.0, time.perf_counter() - due))
 
 
-def spread(lateness: Sequence[float]) -> tuple[float, float, float]:
-    """What half of the values, 99 % of them, and all of them stay at or below; 0 where there are
-    none.
-    """
+def lateness_percentiles(lateness: Sequence[float]) -> tuple[float, float, float]:
+    """Median, 99th percentile and maximum of the lateness [s]; 0 where there is none."""
     ordered = sorted(lateness)
-    half, most, all_of_them = (
-        ordered[math.ceil(part * len(ordered)) - 1] if ordered else 0.0 for part in (0.5, 0.99, 1.0)
+    median, p99, largest = (
+        ordered[math.ceil(share * len(ordered)) - 1] if ordered else 0.0
+        for share in (0.5, 0.99, 1.0)
     )
-    return half, most, all_of_them
+    return median, p99, largest

@@ -1,5 +1,6 @@
-"""The node's ROS parameters: every setting and every quantity under its own name, with description,
-unit and range, checked when set.
+"""The node's ROS parameters: one for each setting and each quantity of the model.
+
+Each has a description, a unit and a range, and is checked when it is set.
 """
 
 from __future__ import annotations
@@ -21,30 +22,35 @@ from rlv_landing.choices import choose_parameters
 from rlv_landing.errors import LandingError, unknown
 from rlv_landing.parameters import PARAMETER_QUANTITIES, check_value
 
+from ..ros.rclpy_internals import parameter_overrides
 from .settings import SETTINGS, Settings, check_setting, make_settings
 
-# What rclpy declares by itself for every node.
+# The parameters that rclpy declares for every node.
 BUILT_IN = ("use_sim_time", "start_type_description_service")
-# The landing mode is the setting `mode`, which also chooses the values that belong to one mode
-# only.
+# The setting `mode` stands for this quantity: it also chooses the values that depend on the mode.
 MODE = "drop.mode"
 
 
 class NodeParameters:
-    """Declares the parameters of `node` and keeps them.
+    """Declares the parameters of `node`, and keeps their values.
 
-    `landing` tells whether it lands at present; `changed` is called with what was set.
+    Args:
+        node: the landing node.
+        is_running: whether the node lands at present.
+        on_change: called with the changed values by name.
 
-    Raises LandingError for a bad value on the command line or in a parameter file: unknown name,
-        wrong type, out of bounds, no such preset.
+    Raises:
+        LandingError: a bad value on the command line or in a parameter file: unknown name, wrong
+            type, out of bounds, no such preset.
     """
 
     def __init__(
-        self, node: Node, landing: Callable[[], bool], changed: Callable[[dict[str, Any]], None]
+        self,
+        node: Node,
+        is_running: Callable[[], bool],
+        on_change: Callable[[dict[str, Any]], None],
     ) -> None:
-        # rclpy leaves overrides of undeclared parameters aside without a word; a misspelt name must
-        # not go unnoticed.
-        given: dict[str, Any] = {name: p.value for name, p in node._parameter_overrides.items()}
+        given = parameter_overrides(node)
         for name in given:
             if name not in (*SETTINGS, *PARAMETER_QUANTITIES, *BUILT_IN) and not name.startswith(
                 "qos_overrides."
@@ -63,21 +69,22 @@ class NodeParameters:
         )
         self._values["mode"] = self.parameters.drop.mode
         self.settings()
-        self._landing = landing
-        self._changed = changed
-        self._refused = ""
+        self._is_running = is_running
+        self._on_change = on_change
+        self._refusal = ""
         self._declare(node)
-        node.add_pre_set_parameters_callback(self._before)
-        node.add_on_set_parameters_callback(self._check)
-        node.add_post_set_parameters_callback(self._after)
+        node.add_pre_set_parameters_callback(self._pre_set)
+        node.add_on_set_parameters_callback(self._on_set)
+        node.add_post_set_parameters_callback(self._post_set)
 
     def __getitem__(self, name: str) -> Any:
         return self._values[name]
 
     def settings(self) -> Settings:
-        """The settings as they are now.
+        """The settings with their current values.
 
-        Raises LandingError where two of them do not go together.
+        Raises:
+            LandingError: two settings contradict each other.
         """
         return make_settings(self._values, self.parameters)
 
@@ -111,25 +118,25 @@ class NodeParameters:
                 ]
             node.declare_parameter(name, value, descriptor, ignore_override=True)
 
-    def _before(self, parameters: list[Parameter[Any]]) -> list[Parameter[Any]]:
-        """Whole numbers become floats where floats are wanted.
+    def _pre_set(self, parameters: list[Parameter[Any]]) -> list[Parameter[Any]]:
+        """Converts whole numbers to floats where the parameter is a float.
 
-        What is wrong is noted, and left as it was for rclpy's own checks to pass: these would
-        refuse it with less to say than `_check`.
+        A bad value is replaced by the current one, and its error kept for `_on_set`: rclpy's own
+        checks come first, and their messages say less.
         """
-        self._refused = ""
-        taken = []
+        self._refusal = ""
+        converted = []
         for p in parameters:
             known = p.name in SETTINGS or p.name in PARAMETER_QUANTITIES
             if known:
                 try:
                     value = self._checked(p)
                 except LandingError as e:
-                    self._refused = self._refused or str(e)
-                    value = self._present(p.name)
+                    self._refusal = self._refusal or str(e)
+                    value = self._current(p.name)
                 p = Parameter(p.name, value=value)
-            taken.append(p)
-        return taken
+            converted.append(p)
+        return converted
 
     def _checked(self, p: Parameter[Any]) -> Any:
         if p.type_ == Parameter.Type.NOT_SET:
@@ -139,9 +146,10 @@ class NodeParameters:
         )
         if when == "start":
             raise LandingError(f"{p.name} can only be given when the node is started")
-        if when == "paused" and self._landing():
+        if when == "paused" and self._is_running():
             raise LandingError(
-                f"{p.name} cannot be changed while the node lands; deactivate it first, and ~/reset it afterwards"
+                f"{p.name} cannot be changed while the node lands; "
+                "deactivate it first, and ~/reset it afterwards"
             )
         return (
             check_setting(p.name, p.value)
@@ -149,22 +157,23 @@ class NodeParameters:
             else check_value(PARAMETER_QUANTITIES[p.name], p.value)
         )
 
-    def _present(self, name: str) -> Any:
+    def _current(self, name: str) -> Any:
         return self._values[name] if name in SETTINGS else self.parameters[name]
 
-    def _check(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
+    def _on_set(self, parameters: list[Parameter[Any]]) -> SetParametersResult:
         try:
-            if self._refused:
-                raise LandingError(self._refused)
-            self._with(parameters)
+            if self._refusal:
+                raise LandingError(self._refusal)
+            self._merged(parameters)
         except LandingError as e:
             return SetParametersResult(successful=False, reason=str(e))
         return SetParametersResult(successful=True)
 
-    def _with(self, parameters: list[Parameter[Any]]) -> tuple[dict[str, Any], Parameters]:
+    def _merged(self, parameters: list[Parameter[Any]]) -> tuple[dict[str, Any], Parameters]:
         """All values with `parameters` among them.
 
-        Raises LandingError where they do not go together.
+        Raises:
+            LandingError: they contradict each other.
         """
         values = {**self._values, **{p.name: p.value for p in parameters if p.name in SETTINGS}}
         physical = self.parameters.with_values(
@@ -173,9 +182,9 @@ class NodeParameters:
         make_settings(values, physical)
         return values, physical
 
-    def _after(self, parameters: list[Parameter[Any]]) -> None:
-        self._values, self.parameters = self._with(parameters)
-        self._changed({p.name: p.value for p in parameters})
+    def _post_set(self, parameters: list[Parameter[Any]]) -> None:
+        self._values, self.parameters = self._merged(parameters)
+        self._on_change({p.name: p.value for p in parameters})
 
 
 def _constraints(choices: tuple[str, ...], when: str) -> str:

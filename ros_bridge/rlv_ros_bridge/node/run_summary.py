@@ -1,4 +1,4 @@
-"""How a landing went."""
+"""The figures of a landing, as the command prints them."""
 
 from __future__ import annotations
 
@@ -8,12 +8,11 @@ from pathlib import Path
 
 @dataclass(frozen=True)
 class RunSummary:
-    """How a landing went.
+    """The figures of a landing.
 
-    `end` is "finished", "toppled" or "interrupted" (by `signal`); lateness and wall time in s.
-
-    `dropped` messages were recorded, but not published: a subscriber did not take them, or the node
-    had no time.
+    `end` is "finished", "toppled" or "interrupted" (by the signal number `signal`). `simulated`,
+    `wall`, `lost` and the lateness are in s. `dropped` messages were recorded but not published,
+    because a subscriber did not take them or the node had no time.
     """
 
     samples: int

@@ -1,4 +1,4 @@
-"""The node's settings: one table of what they are called, what they mean and what they may be.
+"""The node's settings: name, default, meaning, bounds, and when each may be changed.
 
 Needs no ROS 2.
 """
@@ -20,14 +20,16 @@ from rlv_landing.presets import DEFAULT_PRESET
 from ..messages.qos import PROFILES
 from ..messages.topics import CLOCK, OCCASIONAL, SAMPLED, Topic
 
-# When a setting may be changed: at the start only, while the node does not land, or at any time.
+# When a setting may be changed: at the start only, while the node is not active, or at any time.
 When = Literal["start", "paused", "always"]
 
 
 @dataclass(frozen=True)
 class Setting:
-    """A setting of the node: its default (whose type is its own), meaning, bounds or choices, and
-    when it may be changed.
+    """A setting of the node.
+
+    `default` also gives the type. Numbers have the bounds `lo` and `hi`; texts may have `choices`.
+    `when` says when it may be changed.
     """
 
     default: Any
@@ -38,8 +40,8 @@ class Setting:
     choices: tuple[str, ...] = ()
 
 
-def downsampling(topic: Topic) -> str:
-    """The setting that thins out `topic`."""
+def downsampling_setting(topic: Topic) -> str:
+    """The name of the setting that thins out the messages of `topic`."""
     return f"publish_every.{topic.name.strip('/').replace('/', '_')}"
 
 
@@ -66,7 +68,8 @@ SETTINGS: dict[str, Setting] = {
     "step_count": Setting(1, "steps that one call of ~/step does", 1.0, 1e6, "always"),
     "input_timeout": Setting(
         0.5,
-        "wall time [s] after which a silent external_wrench is taken back to 0 and a silent ground stands still; 0: never",
+        "wall time [s] without a message after which external_wrench becomes 0 and ground stops; "
+        "0: never",
         0.0,
         3600.0,
         "always",
@@ -78,28 +81,29 @@ SETTINGS: dict[str, Setting] = {
         choices=tuple(PROFILES),
     ),
     "clock": Setting(
-        True,
-        "whether /clock is published; of several nodes in one ROS domain one should",
+        default=True,
+        meaning="whether /clock is published; of several nodes in one ROS domain one should",
         when="start",
     ),
     "autostart": Setting(
-        True,
-        "land at once and end afterwards; else wait for lifecycle transitions, and stay",
+        default=True,
+        meaning="land at once and end afterwards; else wait for lifecycle transitions, and stay",
         when="start",
     ),
     "record": Setting("", "folder to record to, which must not exist; empty: no recording"),
     "log_root": Setting(
         "",
-        "record to a new folder below this one, named by UTC time and mode, where `record` is empty",
+        "record to a new folder below this one, named by UTC time and mode, if `record` is empty",
     ),
     "wait_for_subscribers": Setting(
         0, "subscriptions on `struts` to wait for before the landing starts", 0.0, 1000.0
     ),
     "wait_timeout": Setting(30.0, "longest wait for them [s]", 0.0, 86400.0),
     **{
-        downsampling(t): Setting(
+        downsampling_setting(t): Setting(
             0,
-            f"publish one sample of so many on {t.name}; 0: {'its own rate' if t.period else 'each'}",
+            f"publish one of so many samples on {t.name}; "
+            f"0: {'its own rate' if t.period else 'each'}",
             0.0,
             1e9,
         )
@@ -110,11 +114,10 @@ SETTINGS: dict[str, Setting] = {
 
 @dataclass(frozen=True)
 class Settings:
-    """What a landing is done with.
+    """The checked settings of a landing.
 
-    Times in s; `step_ns` is the step in nanoseconds, from which all stamps are counted.
-
-    `every` says of how many samples one is published, by topic.
+    Times are in s; `step_ns` is the step in ns, from which all stamps are counted. `every`
+    gives, by topic, of how many samples one is published.
     """
 
     fmu: Path
@@ -137,38 +140,43 @@ class Settings:
 
     @property
     def steps(self) -> int:
-        """Steps from 0 to the stop time; one more sample than steps is published."""
+        """Number of steps from 0 to the stop time; the samples are one more."""
         return int(self.stop_time / self.step_size * (1.0 + 1e-12) + 1e-9)
 
     def folder(self) -> Path | None:
-        """A folder to record to that does not exist yet, or None.
+        """A log folder that does not exist yet; None: no recording.
 
-        A second landing into `record` gets a number of its own.
+        `record` is returned as it is.
         """
         if self.record:
             return Path(self.record)
         if not self.log_root:
             return None
-        return unused(
-            Path(self.log_root) / f"{datetime.now(timezone.utc):%Y%m%dT%H%M%SZ}-{self.mode}"
-        )
+        name = f"{datetime.now(timezone.utc):%Y%m%dT%H%M%SZ}-{self.mode}"
+        return unused_folder(Path(self.log_root) / name)
 
 
-def unused(folder: Path) -> Path:
+def unused_folder(folder: Path) -> Path:
     """`folder`, or the first of `folder`-2, -3, ... that does not exist."""
     names = (folder if n == 1 else folder.with_name(f"{folder.name}-{n}") for n in count(1))
     return next(f for f in names if not f.exists())
 
 
 def make_settings(values: Mapping[str, Any], parameters: Parameters) -> Settings:
-    """The settings from `values` by name, each checked.
+    """Makes the settings of a landing.
 
-    Raises LandingError where two of them do not go together.
+    Args:
+        values: settings by name, each checked.
+        parameters: vehicle, ground and drop.
+
+    Raises:
+        LandingError: two settings contradict each other.
     """
     step_ns = whole_nanoseconds(values["step_size"])
     if values["stop_time"] < values["step_size"]:
         raise LandingError(
-            f"stop_time = {values['stop_time']:g} s is below the step of {values['step_size']:g} s; land for longer"
+            f"stop_time = {values['stop_time']:g} s is below the step of "
+            f"{values['step_size']:g} s; land for longer"
         )
     own = {t: max(1, round(t.period / values["step_size"])) for t in PUBLISHED}
     return Settings(
@@ -183,14 +191,15 @@ def make_settings(values: Mapping[str, Any], parameters: Parameters) -> Settings
         log_root=values["log_root"],
         wait_for_subscribers=values["wait_for_subscribers"],
         wait_timeout=values["wait_timeout"],
-        every={t: values[downsampling(t)] or own[t] for t in PUBLISHED},
+        every={t: values[downsampling_setting(t)] or own[t] for t in PUBLISHED},
     )
 
 
 def check_setting(name: str, value: Any) -> Any:
-    """`value` as the setting `name` takes it.
+    """`value` converted to the type of the setting `name`.
 
-    Raises LandingError: wrong type, not finite, out of bounds, not one of its choices.
+    Raises:
+        LandingError: wrong type, not finite, out of bounds, or not one of its choices.
     """
     s = SETTINGS[name]
     if isinstance(s.default, bool):
@@ -217,15 +226,17 @@ def check_setting(name: str, value: Any) -> Any:
 
 
 def whole_nanoseconds(step: float) -> int:
-    """The step in nanoseconds.
+    """The step [s] in nanoseconds, in which stamps are counted.
 
-    Raises LandingError unless it is above 0 and a whole number of them: stamps are counted.
+    Raises:
+        LandingError: it is not above 0, or no whole number of nanoseconds.
     """
     if not 0.0 < step < inf:
         raise LandingError(f"step_size = {step:g} s must be finite and above 0 s")
     nanoseconds = round(step * 1e9)
     if nanoseconds < 1 or nanoseconds / 1e9 != step:
         raise LandingError(
-            f"step_size = {step!r} s is not a whole number of nanoseconds, which stamps are counted in; round it to 1e-9 s"
+            f"step_size = {step!r} s is not a whole number of nanoseconds, "
+            "in which stamps are counted; round it to 1e-9 s"
         )
     return nanoseconds

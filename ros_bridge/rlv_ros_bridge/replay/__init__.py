@@ -1,0 +1,1 @@
+"""Replay of a log: selection, clock, keyboard, and the node that publishes."""

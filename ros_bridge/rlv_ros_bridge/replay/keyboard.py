@@ -1,4 +1,4 @@
-"""Single keys from the terminal, which is left as it was found."""
+"""Reads single keys from the terminal, and restores the terminal's settings."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import tty
 from types import FrameType, TracebackType
 from typing import Any
 
-# What a terminal sends for a key, cursor keys in both of their modes.
+# The bytes that a terminal sends for a key; cursor keys in both of their modes.
 KEYS = {
     b" ": "space",
     b"q": "q",
@@ -25,49 +25,49 @@ KEYS = {
     },
 }
 KEY = re.compile(b"|".join(map(re.escape, KEYS)))
-# The beginning of a key whose rest has not arrived yet.
-BEGUN = re.compile(rb"\x1b[\[O]?\Z")
-# Signals that end a process unless somebody takes them.
-ENDING = (signal.SIGHUP, signal.SIGQUIT)
+# The first bytes of a key whose last byte has not arrived yet.
+PARTIAL_KEY = re.compile(rb"\x1b[\[O]?\Z")
+# Signals that end a process without a handler.
+END_SIGNALS = (signal.SIGHUP, signal.SIGQUIT)
 
 
 class Keyboard:
-    """Keys of the terminal on standard input while it is entered; where that is no terminal, or
-    another program has it, none ever come.
+    """Keys of the terminal on standard input, while it is entered.
 
-    The terminal's settings are restored at the end, also by an error, SIGHUP, SIGQUIT, and while
-    the process is stopped by Ctrl-Z. Ctrl-C stays a signal. Python takes signals in the main thread
-    only, so in others no keys come.
+    There are no keys where standard input is no terminal, where another program is in the
+    terminal's foreground, and outside the main thread, in which alone Python handles signals.
+
+    The terminal's settings are restored at the end, also on an error, on SIGHUP and SIGQUIT, and
+    while the process is stopped by Ctrl-Z. Ctrl-C stays a signal.
     """
 
     def __init__(self) -> None:
         self._fd = -1
         self._saved: list[Any] = []
-        self._begun = b""
+        self._partial_key = b""
         self._handlers: dict[int, Any] = {}
 
     @property
-    def there(self) -> bool:
-        """Whether keys can come."""
+    def available(self) -> bool:
+        """Whether keys can be read."""
         return self._fd >= 0
 
     def __enter__(self) -> Keyboard:
         try:
             fd = sys.stdin.fileno()
-            mine = threading.current_thread() is threading.main_thread()
-            if not (mine and os.isatty(fd) and os.tcgetpgrp(fd) == os.getpgrp()):
+            in_main_thread = threading.current_thread() is threading.main_thread()
+            if not (in_main_thread and os.isatty(fd) and os.tcgetpgrp(fd) == os.getpgrp()):
                 return self
             self._saved = termios.tcgetattr(fd)
         except (AttributeError, OSError, ValueError, termios.error):
-            # No standard input at all, or a terminal that does not control this process.
+            # No standard input, or a terminal that does not control this process.
             return self
         self._fd = fd
-        for number in (*ENDING, signal.SIGTSTP):
-            self._handlers[number] = signal.signal(
-                number, self._suspend if number == signal.SIGTSTP else self._end
-            )
+        for number in (*END_SIGNALS, signal.SIGTSTP):
+            handler = self._on_suspend if number == signal.SIGTSTP else self._on_end
+            self._handlers[number] = signal.signal(number, handler)
         try:
-            self._set()
+            self._read_single_keys()
         except BaseException:
             self.__exit__(None, None, None)
             raise
@@ -85,53 +85,56 @@ class Keyboard:
         self._handlers, self._fd = {}, -1
 
     def keys(self, seconds: float = 0.0) -> list[str]:
-        """The keys pressed since the last time; waits at most `seconds` for one.
+        """The keys pressed since the last call, as named in `KEYS`; others are left out.
 
-        Others than those of `KEYS` are left out.
+        Waits at most `seconds` [s] for the first.
         """
-        if not self.there:
+        if not self.available:
             return []
         try:
-            if not select.select([self._fd], [], [], seconds)[0] or not self._in_front:
+            if not select.select([self._fd], [], [], seconds)[0] or not self._in_foreground:
                 return []
             data = os.read(self._fd, 1024)
         except OSError:
             data = b""
         if not data:
-            # The terminal is gone.
+            # The terminal was closed.
             self._fd = -1
             return []
-        data = self._begun + data
-        begun = BEGUN.search(data)
-        self._begun = begun.group() if begun else b""
+        data = self._partial_key + data
+        partial = PARTIAL_KEY.search(data)
+        self._partial_key = partial.group() if partial else b""
         return [KEYS[found.group()] for found in KEY.finditer(data)]
 
     @property
-    def _in_front(self) -> bool:
-        """Whether the terminal is ours: reading or setting another's would stop this process."""
+    def _in_foreground(self) -> bool:
+        """Whether this process is in the terminal's foreground.
+
+        In the background, reading or setting the terminal would stop it.
+        """
         return os.tcgetpgrp(self._fd) == os.getpgrp()
 
-    def _set(self) -> None:
-        if self._in_front:
+    def _read_single_keys(self) -> None:
+        if self._in_foreground:
             tty.setcbreak(self._fd, termios.TCSANOW)
 
     def _restore(self) -> None:
         try:
-            if self.there and self._in_front:
+            if self.available and self._in_foreground:
                 termios.tcsetattr(self._fd, termios.TCSANOW, self._saved)
         except (OSError, termios.error):
-            # The terminal is gone, and its settings with it.
+            # The terminal was closed; there is nothing to restore.
             pass
 
-    def _end(self, number: int, _frame: FrameType | None) -> None:
+    def _on_end(self, number: int, _frame: FrameType | None) -> None:
         self._restore()
         signal.signal(number, self._handlers[number])
         os.kill(os.getpid(), number)
 
-    def _suspend(self, number: int, _frame: FrameType | None) -> None:
+    def _on_suspend(self, number: int, _frame: FrameType | None) -> None:
         self._restore()
         signal.signal(number, signal.SIG_DFL)
         os.kill(os.getpid(), number)
-        # From here on it goes on again.
-        signal.signal(number, self._suspend)
-        self._set()
+        # The process has been continued (SIGCONT).
+        signal.signal(number, self._on_suspend)
+        self._read_single_keys()

@@ -1,6 +1,4 @@
-"""Plays a log back: the recorded bytes, in the log's order, with its original timing and quality of
-service.
-"""
+"""Plays a log: the recorded bytes, with their original timing and quality of service."""
 
 from __future__ import annotations
 
@@ -30,20 +28,21 @@ from ..messages.qos import CLOCK, parse_qos
 from ..messages.rclpy_qos import qos_profile
 from ..messages.restamp import Restamper
 from ..messages.samples import set_stamp
-from ..node.pacer import spread
+from ..node.pacer import lateness_percentiles
 from ..ros.setup import StopFlag, ros_context, wait_for_acknowledgement, wait_for_subscribers
 from .clock import ReplayClock
 from .keyboard import Keyboard
 from .selection import ReplayOptions, Selection
 
-# The system wakes a sleeper up to some hundred microseconds late: the rest is waited for awake.
-SPIN_SECONDS = 300e-6
-LOOK_ROUND_SECONDS = 0.05
-# One look at the node's services costs half a millisecond: in a pause, or at the latest after half
-# a second.
-PAUSE_SECONDS = 2e-3
-LONGEST_DEAF_SECONDS = 0.5
-# How often the keyboard is asked [s], and what a press of up changes the rate by.
+# The system ends a sleep up to some hundred microseconds late, so the last part of a wait is a busy
+# loop [s].
+BUSY_WAIT_SECONDS = 300e-6
+# Serving the node's services once costs half a millisecond. It is done every SERVICE_SECONDS if the
+# next message is not due for SERVICE_GAP_SECONDS, else every LONGEST_SERVICE_SECONDS.
+SERVICE_SECONDS = 0.05
+SERVICE_GAP_SECONDS = 2e-3
+LONGEST_SERVICE_SECONDS = 0.5
+# Period of reading the keyboard [s], and the factor by which a cursor key changes the rate.
 KEY_SECONDS = 0.02
 RATE_FACTOR = 1.1
 BAR = "replay {percentage:3.0f}%|{bar}| {n:.2f}/{total:.2f} s [{elapsed}<{remaining}]{postfix}"
@@ -51,13 +50,15 @@ BAR = "replay {percentage:3.0f}%|{bar}| {n:.2f}/{total:.2f} s [{elapsed}<{remain
 
 @dataclass(frozen=True)
 class ReplaySummary:
-    """How a replay went: messages and whole turns played, the signal that ended it (or 0), whether
-    a key did; lateness of messages in median, 99th percentile and at most, and wall time given up
-    after stalls [s]; whether the log was cut.
+    """The figures of a replay.
+
+    `messages` and complete `rounds` were played. `signal` is the number of the signal that ended
+    it, or 0; `quit` whether a key did. The lateness of the messages is in s, as is `lost`, the wall
+    time that was not made up for after stalls. `cut` says that the log is incomplete.
     """
 
     messages: int
-    turns: int
+    rounds: int
     signal: int
     quit: bool
     median_lateness: float
@@ -69,9 +70,18 @@ class ReplaySummary:
 
 
 class ReplayNode(Node):
-    """Publishes a selection of a log's messages, at a pace that keys of `keyboard` and services
-    (`~/pause`, `~/resume`, `~/play_next`) change. Raises LandingError: a message type is not
-    installed, a topic's new name cannot be.
+    """Publishes a selection of a log's messages.
+
+    Keys and the services `~/pause`, `~/resume` and `~/play_next` change its pace.
+
+    Args:
+        selection: the messages to play.
+        options: how to play them.
+        keyboard: source of keys.
+        stop: notes signals, which end the replay.
+
+    Raises:
+        LandingError: a message type is not installed, or a topic's new name is not valid.
     """
 
     def __init__(
@@ -83,12 +93,12 @@ class ReplayNode(Node):
         self._keyboard = keyboard
         self._stop = stop
         self._quit = False
-        self._clock_of_log = ReplayClock(options.rate, options.start_paused)
-        self._spinner = SingleThreadedExecutor(context=self.context)
-        self._spinner.add_node(self)
-        self._offer_services()
-        # `struts` last, as in the landing node: who waits for a match on it finds the others
-        # matched.
+        self._replay_clock = ReplayClock(options.rate, paused=options.start_paused)
+        self._service_executor = SingleThreadedExecutor(context=self.context)
+        self._service_executor.add_node(self)
+        self._create_services()
+        # A subscriber that waits for a match on `struts` finds the others matched: it comes last,
+        # as in the landing node.
         channels = sorted(
             selection.channels, key=lambda c: c.topic.endswith(f"/{landing_topics.STRUTS.name}")
         )
@@ -100,9 +110,9 @@ class ReplayNode(Node):
                 publishers[name] = self.create_publisher(
                     message_class(c.type_name), name, qos_profile(parse_qos(c.qos))
                 )
-        self._outlets = {c.topic: publishers[selection.names[c.topic]] for c in channels}
+        self._publisher_of = {c.topic: publishers[selection.names[c.topic]] for c in channels}
         self._types = {c.topic: c.type_name for c in channels}
-        self._waited_for = channels[-1].topic
+        self._match_topic = channels[-1].topic
         self._clock_message = message_class(landing_topics.CLOCK.type_name)()
         self._clock_publisher = None
         if options.clock > 0.0:
@@ -110,63 +120,64 @@ class ReplayNode(Node):
                 type(self._clock_message), landing_topics.CLOCK.name, qos_profile(CLOCK)
             )
         self._lateness: list[float] = []
-        self._spun = self._asked = 0.0
+        self._services_served = self._keyboard_read = 0.0
 
-    def _offer_services(self) -> None:
-        clock = self._clock_of_log
-        for name, act, otherwise in (
+    def _create_services(self) -> None:
+        clock = self._replay_clock
+        for name, action, refusal in (
             ("pause", clock.pause, "the replay is paused already"),
             ("resume", clock.resume, "the replay is not paused"),
             ("play_next", clock.step, "the replay is not paused; pause it first"),
         ):
-            self.create_service(Trigger, f"~/{name}", partial(_answer, act, otherwise))
+            self.create_service(Trigger, f"~/{name}", partial(_answer, action, refusal))
 
     def play(self) -> ReplaySummary:
-        """The selection once, or turn after turn with `loop`, until its end, a signal, or the key
-        q.
+        """Plays the selection once, or round after round with the option `loop`.
+
+        It ends at the end of the selection, on a signal, or on the key q.
         """
         o, selection, stop = self._options, self._selection, self._stop
         wait_for_subscribers(
-            self._outlets[self._waited_for],
+            self._publisher_of[self._match_topic],
             o.wait_for_subscribers,
             o.wait_timeout,
-            self._spinner,
+            self._service_executor,
             stop,
         )
-        played = turns = 0
-        # One step of the log lies between the last message of a turn and the first of the next.
+        played = rounds = 0
+        # One step of the log lies between the last message of a round and the first of the next.
         period = selection.length + selection.step
-        # The progress bars' lock is made here, for that takes milliseconds.
+        # tqdm makes its lock on first use, which takes milliseconds.
         tqdm.get_lock()  # type: ignore[no-untyped-call]
         gc.collect()
         gc.freeze()
         gc.disable()
         try:
-            self._clock_of_log.start(time.perf_counter())
+            self._replay_clock.start(time.perf_counter())
             while not self._ended:
-                count = self._turn(turns * period)
+                count = self._play_round(rounds * period)
                 played += count
                 if count < len(selection.messages):
                     break
-                turns += 1
+                rounds += 1
                 if not o.loop:
                     break
         finally:
             gc.enable()
             gc.unfreeze()
         acknowledged = wait_for_acknowledgement(
-            list(self._outlets.values()), interrupted=bool(stop)
+            list(self._publisher_of.values()), interrupted=bool(stop)
         )
-        median, p99, largest = spread(self._lateness)
+        median, p99, largest = lateness_percentiles(self._lateness)
         return ReplaySummary(
             messages=played,
-            turns=turns,
+            rounds=rounds,
             signal=stop.number,
             quit=self._quit,
             median_lateness=median,
             p99_lateness=p99,
             largest_lateness=largest,
-            lost=self._clock_of_log.lost,
+            lost=self._replay_clock.lost,
             acknowledged=acknowledged,
             cut=selection.cut,
         )
@@ -175,9 +186,9 @@ class ReplayNode(Node):
     def _ended(self) -> bool:
         return bool(self._stop) or self._quit
 
-    def _turn(self, epoch: int) -> int:
-        """One turn; `epoch` [ns] is added to the stamps. How many messages were played."""
-        selection, clock = self._selection, self._clock_of_log
+    def _play_round(self, epoch: int) -> int:
+        """Plays the selection once, with `epoch` [ns] added to the stamps; the messages played."""
+        selection, clock = self._selection, self._replay_clock
         restamp = Restamper(self._types, epoch) if epoch else None
         next_tick = epoch / 1e9 if self._clock_publisher is not None else math.inf
         with tqdm(
@@ -185,7 +196,7 @@ class ReplayNode(Node):
             disable=not sys.stderr.isatty(),
             bar_format=BAR,
             file=sys.stderr,
-            postfix=self._pace,
+            postfix=self._status,
         ) as bar:
             for i, message in enumerate(selection.messages):
                 position = (epoch + message.log_time - selection.first) / 1e9
@@ -193,49 +204,48 @@ class ReplayNode(Node):
                     if not self._wait_until(next_tick, bar):
                         return i
                     self._publish_clock(selection.first + round(next_tick * 1e9))
-                    # Ticks are even in wall time, whatever the rate is at present.
+                    # Messages of /clock are even in wall time, at any rate.
                     next_tick += clock.rate / self._options.clock
                 if not self._wait_until(position, bar):
                     return i
                 late = time.perf_counter() - clock.due(position)
                 data = message.data if restamp is None else restamp(message.topic, message.data)
-                self._outlets[message.topic].publish(data)
+                self._publisher_of[message.topic].publish(data)
                 if math.isfinite(late):
                     self._lateness.append(late)
-                clock.give_up(late)
-                clock.passed(position)
-                done = (message.log_time - selection.first) / 1e9
-                if done - bar.n > 0.02 or clock.paused:
-                    bar.update(done - bar.n)
+                clock.skip_stall(late)
+                clock.mark_played(position)
+                played = (message.log_time - selection.first) / 1e9
+                if played - bar.n > 0.02 or clock.paused:
+                    bar.update(played - bar.n)
         return len(selection.messages)
 
     def _wait_until(self, position: float, bar: Any) -> bool:
-        """Waits until the time `position` of the log is due; False where the replay is to end."""
-        clock = self._clock_of_log
+        """Waits until the time `position` [s] of the log is due; False if the replay is to end."""
+        clock = self._replay_clock
         while not self._ended:
             now = time.perf_counter()
-            if self._keyboard.there and now - self._asked > KEY_SECONDS:
-                self._asked = now
-                self._obey(self._keyboard.keys(), bar)
+            if self._keyboard.available and now - self._keyboard_read > KEY_SECONDS:
+                self._keyboard_read = now
+                self._handle_keys(self._keyboard.keys(), bar)
                 continue
             left = clock.due(position) - now
             if left <= 0.0:
                 return True
             if clock.paused:
-                self._spinner.spin_once(timeout_sec=KEY_SECONDS)
-            elif left > SPIN_SECONDS:
-                deaf = now - self._spun
-                if (
-                    deaf > LOOK_ROUND_SECONDS and left > PAUSE_SECONDS
-                ) or deaf > LONGEST_DEAF_SECONDS:
-                    self._spinner.spin_once(timeout_sec=0)
-                    self._spun = time.perf_counter()
+                self._service_executor.spin_once(timeout_sec=KEY_SECONDS)
+            elif left > BUSY_WAIT_SECONDS:
+                unserved = now - self._services_served
+                in_gap = unserved > SERVICE_SECONDS and left > SERVICE_GAP_SECONDS
+                if in_gap or unserved > LONGEST_SERVICE_SECONDS:
+                    self._service_executor.spin_once(timeout_sec=0)
+                    self._services_served = time.perf_counter()
                 else:
-                    time.sleep(min(left - SPIN_SECONDS, KEY_SECONDS))
+                    time.sleep(min(left - BUSY_WAIT_SECONDS, KEY_SECONDS))
         return False
 
-    def _obey(self, keys: Sequence[str], bar: Any) -> None:
-        clock = self._clock_of_log
+    def _handle_keys(self, keys: Sequence[str], bar: Any) -> None:
+        clock = self._replay_clock
         for key in keys:
             now = time.perf_counter()
             if key == "space":
@@ -247,11 +257,11 @@ class ReplayNode(Node):
             else:
                 clock.change_rate(RATE_FACTOR if key == "up" else 1.0 / RATE_FACTOR, now)
         if keys:
-            bar.set_postfix_str(self._pace)
+            bar.set_postfix_str(self._status)
 
     @property
-    def _pace(self) -> str:
-        clock = self._clock_of_log
+    def _status(self) -> str:
+        clock = self._replay_clock
         return f"rate {clock.rate:.3g}{', paused' if clock.paused else ''}"
 
     def _publish_clock(self, nanoseconds: int) -> None:
@@ -260,14 +270,14 @@ class ReplayNode(Node):
             self._clock_publisher.publish(serialize_message(self._clock_message))
 
     def destroy_node(self) -> None:
-        """Also lets go of the executor."""
-        self._spinner.shutdown()
+        """Shuts the executor down, and destroys the node."""
+        self._service_executor.shutdown()
         super().destroy_node()
 
 
-def _answer(act: Callable[[float], bool], otherwise: str, _request: Any, response: Any) -> Any:
-    response.success = act(time.perf_counter())
-    response.message = "" if response.success else otherwise
+def _answer(action: Callable[[float], bool], refusal: str, _request: Any, response: Any) -> Any:
+    response.success = action(time.perf_counter())
+    response.message = "" if response.success else refusal
     return response
 
 
@@ -279,9 +289,15 @@ def _check_name(name: str) -> None:
 
 
 def replay(options: ReplayOptions, ros_args: Sequence[str], stop: StopFlag) -> ReplaySummary:
-    """Plays a log in a ROS 2 of its own, started with `ros_args`.
+    """Plays a log in a ROS 2 started for it.
 
-    Raises LandingError: bad options, a log or a topic that is not there.
+    Args:
+        options: the log, and how to play it.
+        ros_args: ROS arguments, `--ros-args ...`.
+        stop: notes signals, which end the replay.
+
+    Raises:
+        LandingError: bad options, or a log or topic that does not exist.
     """
     options.check()
     selection = Selection(LogReader(options.path), options)

@@ -1,7 +1,4 @@
-"""What a replay is to play: its options, and the part of the log that they choose.
-
-Needs no ROS 2.
-"""
+"""The options of a replay, and the part of the log that they select. Needs no ROS 2."""
 
 from __future__ import annotations
 
@@ -21,10 +18,11 @@ from .clock import FASTEST, SLOWEST
 
 @dataclass(frozen=True)
 class ReplayOptions:
-    """What to play, and how.
+    """The options of a replay.
 
-    Times in s of the log; `clock` is the rate of /clock in Hz of wall time, 0 for none; `remap`
-    holds texts OLD:=NEW.
+    Times are in s of the log, `wait_timeout` in s of wall time. `rate` is seconds of the log per
+    second. `clock` is the rate of /clock in Hz of wall time; 0: no /clock. `remap` holds texts
+    OLD:=NEW.
     """
 
     path: Path
@@ -40,7 +38,11 @@ class ReplayOptions:
     wait_timeout: float = 30.0
 
     def check(self) -> None:
-        """Raises LandingError for a value that cannot be."""
+        """Checks every value against its bounds.
+
+        Raises:
+            LandingError: a value is out of bounds.
+        """
         for name, value, unit, lo, hi in (
             ("--rate", self.rate, "", SLOWEST, FASTEST),
             ("--start", self.start, "s", 0.0, math.inf),
@@ -58,10 +60,14 @@ class ReplayOptions:
 
 
 class Selection:
-    """The part of a log that is to be played, in memory; `names` tells for each topic of the log
-    under which name it is played.
+    """The part of a log that is to be played, in memory.
 
-    Raises LandingError where there is nothing to play.
+    `messages` are in the log's order, from the time `first` on, over `length` [ns]. `names` gives
+    for each topic of the log the name under which it is played. `cut` says that the log is
+    incomplete.
+
+    Raises:
+        LandingError: there is nothing to play, or a remap is not valid.
     """
 
     def __init__(self, reader: LogReader, options: ReplayOptions) -> None:
@@ -73,7 +79,7 @@ class Selection:
         chosen = {
             t
             for t in reader.select(options.topics)
-            if options.topics or playable(reader.channels[t].type_name)
+            if options.topics or can_be_published(reader.channels[t].type_name)
         }
         self.first = min(m.log_time for m in messages) + round(options.start * 1e9)
         last = (
@@ -90,30 +96,38 @@ class Selection:
                 f"nothing to play from --start {options.start:g} s on: the log is {length:g} s long"
             )
         self.channels = [c for c in reader.channels.values() if c.topic in chosen]
-        self.names = renamed(reader, sorted(chosen), options.remap)
+        self.names = remapped_names(reader, sorted(chosen), options.remap)
         self.length = max(m.log_time for m in self.messages) - self.first
         self.cut = reader.cut
 
     @property
     def step(self) -> int:
-        """The smallest time between two instants [ns]; a millisecond where there is only one."""
+        """The smallest time between two instants [ns]; 1 ms if there is only one."""
         times = sorted({m.log_time for m in self.messages})
         return min((b - a for a, b in pairwise(times)), default=1_000_000)
 
 
-def playable(type_name: str) -> bool:
-    """Whether messages of that type can be published here; of all that a log holds only those of
-    `/tf` may be left out.
+def can_be_published(type_name: str) -> bool:
+    """Whether messages of the type can be published here.
+
+    Of the types in our logs only that of `/tf` may not be installed.
     """
     return type_name != TF.type_name or is_installed(type_name)
 
 
-def renamed(reader: LogReader, topics: Sequence[str], remap: Sequence[str]) -> dict[str, str]:
-    """The names under which `topics` (full) are played: their own, but for `remap`, texts OLD:=NEW,
-    full or relative to the namespace.
+def remapped_names(
+    reader: LogReader, topics: Sequence[str], remap: Sequence[str]
+) -> dict[str, str]:
+    """The names under which topics are played.
 
-    Raises LandingError: a text that is no OLD:=NEW, a topic that is not there or is given two
-        names, two types under one name.
+    Args:
+        reader: the log.
+        topics: full names.
+        remap: texts OLD:=NEW; both names full or relative to the namespace.
+
+    Raises:
+        LandingError: a text that is not OLD:=NEW, a topic that does not exist or gets two names, or
+            one name for topics of two types.
     """
     names = {topic: topic for topic in topics}
     given: dict[str, str] = {}
@@ -124,7 +138,8 @@ def renamed(reader: LogReader, topics: Sequence[str], remap: Sequence[str]) -> d
         (topic,) = reader.select([old])
         if topic not in names:
             raise LandingError(
-                f"--remap {text!r}: {topic} is not among the topics chosen by --topics; add it there or leave the remap out"
+                f"--remap {text!r}: {topic} is not among the topics chosen by --topics; "
+                "add it there or leave the remap out"
             )
         if topic in given:
             raise LandingError(
@@ -138,6 +153,7 @@ def renamed(reader: LogReader, topics: Sequence[str], remap: Sequence[str]) -> d
         other, other_kind = types.setdefault(name, (topic, kind))
         if kind != other_kind:
             raise LandingError(
-                f"{other} ({other_kind}) and {topic} ({kind}) cannot both be played as {name}; choose another name"
+                f"{other} ({other_kind}) and {topic} ({kind}) cannot both be played as {name}; "
+                "choose another name"
             )
     return names

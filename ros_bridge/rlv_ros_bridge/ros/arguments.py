@@ -1,4 +1,4 @@
-"""What the bridge's commands pass on to ROS 2."""
+"""Separates ROS arguments from the options of the bridge's commands."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ import click
 
 from rlv_landing.errors import LandingError, nearest
 
-PASS_ON: dict[str, Any] = {
+# Click settings of commands that hand `--ros-args ...` on to ROS 2.
+ROS_COMMAND_SETTINGS: dict[str, Any] = {
     "ignore_unknown_options": True,
     "help_option_names": ["-h", "--help"],
     "max_content_width": 120,
@@ -16,14 +17,17 @@ PASS_ON: dict[str, Any] = {
 
 
 def split_ros_args(arguments: tuple[str, ...]) -> list[str]:
-    """The ROS arguments among those left over. Raises LandingError for others."""
+    """The arguments from `--ros-args` on.
+
+    Args:
+        arguments: what click has not taken as an option.
+
+    Raises:
+        LandingError: an argument that is neither an option nor follows `--ros-args`.
+    """
     if arguments and arguments[0] != "--ros-args":
-        known = [
-            o
-            for p in click.get_current_context().command.params
-            for o in p.opts
-            if o.startswith("--")
-        ]
+        parameters = click.get_current_context().command.params
+        known = [option for p in parameters for option in p.opts if option.startswith("--")]
         hint = (
             nearest(arguments[0], [*known, "--ros-args"])
             or "; options are shown by --help, ROS's own follow --ros-args"

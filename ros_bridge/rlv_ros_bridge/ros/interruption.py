@@ -1,4 +1,4 @@
-"""Signals for commands that leave nothing half done behind."""
+"""Ends a command on SIGTERM so that it cleans up."""
 
 from __future__ import annotations
 
@@ -11,19 +11,17 @@ from types import FrameType
 
 
 @contextmanager
-def ends_tidily() -> Iterator[None]:
-    """SIGTERM ends the command as Ctrl-C does, by an exception that lets it clean up, with exit
-    code 143.
-    """
+def exit_on_sigterm() -> Iterator[None]:
+    """Turns SIGTERM into SystemExit with code 143: the command then cleans up as after Ctrl-C."""
 
-    def end(number: int, _frame: FrameType | None) -> None:
+    def exit_with_signal(number: int, _frame: FrameType | None) -> None:
         sys.exit(128 + number)
 
-    # Python takes signals in the main thread only; elsewhere the host's own handling stays.
+    # Python can set signal handlers in the main thread only; in another the host's stay.
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.signal(signal.SIGTERM, end)
+    before = signal.signal(signal.SIGTERM, exit_with_signal)
     try:
         yield
     finally:

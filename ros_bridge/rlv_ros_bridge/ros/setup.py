@@ -1,6 +1,4 @@
-"""ROS 2 for a command: start and stop it, take signals without being cut in the middle, wait for
-subscribers.
-"""
+"""Start and stop of ROS 2 for a command, noting of signals, and waits for subscribers."""
 
 from __future__ import annotations
 
@@ -21,19 +19,19 @@ if TYPE_CHECKING:
     from rclpy.executors import Executor
     from rclpy.publisher import Publisher
 
-# Fast DDS asks its readers every 3 s what they have got.
+# Longest wait for acknowledgements [s]. Fast DDS asks its readers for them every 3 s.
 ACKNOWLEDGE_SECONDS = 4.0
-INTERRUPTED_SECONDS = 0.2
-WAIT_SECONDS = 0.05
-# How often it is asked whether subscribers have been matched.
-MATCH_SECONDS = 0.01
+ACKNOWLEDGE_INTERRUPTED_SECONDS = 0.2
+# Periods of checking for a signal and for matched subscriptions [s].
+SIGNAL_POLL_SECONDS = 0.05
+MATCH_POLL_SECONDS = 0.01
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class StopFlag:
-    """Notes SIGINT and SIGTERM while it is entered, so that the loop ends at a good moment.
+    """Notes SIGINT and SIGTERM while it is entered, so that the loop ends after a whole step.
 
-    `number` is the first that came, or 0.
+    `number` is the number of the first signal, or 0.
     """
 
     def __init__(self) -> None:
@@ -44,16 +42,16 @@ class StopFlag:
         return self.number != 0
 
     def wait(self, seconds: float) -> None:
-        """Waits for a signal, at most `seconds`."""
+        """Waits for a signal, at most `seconds` [s]."""
         end = time.monotonic() + seconds
         while not self.number and time.monotonic() < end:
-            time.sleep(min(seconds, WAIT_SECONDS))
+            time.sleep(min(seconds, SIGNAL_POLL_SECONDS))
 
     def _note(self, number: int, _frame: FrameType | None) -> None:
         self.number = self.number or number
 
     def __enter__(self) -> StopFlag:
-        # Python takes signals in the main thread only; elsewhere the host's own handling stays.
+        # Python can set signal handlers in the main thread only; in another the host's stay.
         if threading.current_thread() is threading.main_thread():
             for number in SIGNALS:
                 self._previous[number] = signal.signal(number, self._note)
@@ -71,21 +69,27 @@ class StopFlag:
 
 
 def require_ros() -> None:
-    """Raises LandingError, saying what to install, where ROS 2 or a part of it is missing."""
+    """Checks that ROS 2 is installed.
+
+    Raises:
+        LandingError: ROS 2 or a part of it is missing; the text says what to install.
+    """
     _ensure_log_folder()
     try:
         import rclpy  # noqa: F401
     except ImportError as e:
         raise LandingError(
-            f'ROS 2 is missing ({e}); install it with pip install "rlv-landing[ros]", or source your ROS 2'
+            f'ROS 2 is missing ({e}); install it with pip install "rlv-landing[ros]", '
+            "or source your ROS 2"
         ) from None
 
 
 @contextmanager
 def ros_context(args: Sequence[str] = ()) -> Iterator[Any]:
-    """rclpy, started with the command line `args` (`--ros-args ...`) and shut down at the end.
+    """Starts rclpy with `args` (`--ros-args ...`), and shuts it down at the end.
 
-    Raises LandingError where there is no ROS 2, or it does not understand `args`.
+    Raises:
+        LandingError: ROS 2 is missing, or it does not accept `args`.
     """
     require_ros()
     import rclpy
@@ -102,7 +106,7 @@ def ros_context(args: Sequence[str] = ()) -> Iterator[Any]:
 
 
 def _ensure_log_folder() -> None:
-    """ROS 2 refuses to start where it finds no folder for its own logs."""
+    """Sets ROS_LOG_DIR where HOME cannot be written: without a log folder ROS 2 does not start."""
     if "ROS_LOG_DIR" in os.environ or "ROS_HOME" in os.environ:
         return
     home = os.environ.get("HOME", "")
@@ -115,9 +119,17 @@ def _ensure_log_folder() -> None:
 def wait_for_subscribers(
     publisher: Publisher[Any], count: int, timeout: float, executor: Executor, stop: StopFlag
 ) -> None:
-    """Returns once `count` subscriptions are matched on the publisher's topic, or a signal came.
+    """Spins `executor` until `count` subscriptions are matched, or a signal came.
 
-    Raises LandingError after `timeout` [s].
+    Args:
+        publisher: the publisher of the topic.
+        count: subscriptions to wait for.
+        timeout: longest wait [s].
+        executor: spun while waiting.
+        stop: ends the wait.
+
+    Raises:
+        LandingError: there are fewer after `timeout`.
     """
 
     def interrupted() -> bool:
@@ -130,28 +142,38 @@ def wait_for_subscribers(
 def wait_until_matched(
     publisher: Publisher[Any], count: int, timeout: float, interrupted: Callable[[], object]
 ) -> None:
-    """Returns once `count` subscriptions are matched on the publisher's topic, or `interrupted`
-    gets true.
+    """Waits until `count` subscriptions are matched, or `interrupted` returns true.
 
-    Raises LandingError after `timeout` [s].
+    Args:
+        publisher: the publisher of the topic.
+        count: subscriptions to wait for.
+        timeout: longest wait [s].
+        interrupted: called at each check.
+
+    Raises:
+        LandingError: there are fewer after `timeout`.
     """
     end = time.monotonic() + timeout
     while not interrupted() and (matched := publisher.get_subscription_count()) < count:
         if time.monotonic() > end:
             raise LandingError(
-                f"only {matched} of {count} subscribers of {publisher.topic_name} after {timeout:g} s; "
-                "start them first, or check their ROS_DOMAIN_ID"
+                f"only {matched} of {count} subscribers of {publisher.topic_name} after "
+                f"{timeout:g} s; start them first, or check their ROS_DOMAIN_ID"
             )
-        time.sleep(MATCH_SECONDS)
+        time.sleep(MATCH_POLL_SECONDS)
 
 
-def wait_for_acknowledgement(publishers: Sequence[Publisher[Any]], interrupted: bool) -> bool:
-    """Whether all reliable subscribers have acknowledged all samples in due time, which is short
-    where `interrupted`.
+def wait_for_acknowledgement(publishers: Sequence[Publisher[Any]], *, interrupted: bool) -> bool:
+    """Whether all reliable subscribers have acknowledged all samples in time.
+
+    Args:
+        publishers: whose samples are waited for.
+        interrupted: wait only briefly.
     """
     from rclpy.duration import Duration
 
-    end = time.monotonic() + (INTERRUPTED_SECONDS if interrupted else ACKNOWLEDGE_SECONDS)
+    timeout = ACKNOWLEDGE_INTERRUPTED_SECONDS if interrupted else ACKNOWLEDGE_SECONDS
+    end = time.monotonic() + timeout
     return all(
         p.wait_for_all_acked(Duration(seconds=max(0.0, end - time.monotonic()))) for p in publishers
     )

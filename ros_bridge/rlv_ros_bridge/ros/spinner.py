@@ -1,4 +1,4 @@
-"""A thread that answers for a node: its services, parameters, inputs and lifecycle."""
+"""A thread that spins a node: its services, parameters, inputs and lifecycle transitions."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from typing import Any, TypeVar
 
 from rclpy.node import Node
 
-LOOK_ROUND_SECONDS = 0.1
+# Longest time in the executor before the request to stop is checked [s].
+SPIN_SECONDS = 0.1
 
 Result = TypeVar("Result")
 
@@ -17,34 +18,38 @@ Result = TypeVar("Result")
 class Spinner:
     """Spins `node` in a thread of its own while it is entered.
 
-    All callbacks run there, and `call` runs there, too.
+    All callbacks of the node run in that thread. `call` runs functions in it.
     """
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self._executor = _executor(node)
+        self._executor = _make_executor(node)
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._spin, name="spinner", daemon=True)
 
     def _spin(self) -> None:
         while not self._stop.is_set():
-            self._executor.spin_once(timeout_sec=LOOK_ROUND_SECONDS)
+            self._executor.spin_once(timeout_sec=SPIN_SECONDS)
 
     def call(self, function: Callable[[], Result]) -> Result:
-        """`function`, run between two callbacks; what it returns or raises."""
+        """Runs `function` in the executor's thread, between two callbacks.
+
+        Returns:
+            What `function` returns. What it raises is raised here.
+        """
         done = threading.Event()
-        found: list[tuple[Result | None, BaseException | None]] = []
+        outcome: list[tuple[Result | None, BaseException | None]] = []
 
         def run() -> None:
             try:
-                found.append((function(), None))
+                outcome.append((function(), None))
             except BaseException as e:
-                found.append((None, e))
+                outcome.append((None, e))
             done.set()
 
         self._executor.create_task(run)
         done.wait()
-        result, error = found[0]
+        result, error = outcome[0]
         if error is not None:
             raise error
         return result  # type: ignore[return-value]
@@ -67,8 +72,8 @@ class Spinner:
         self._executor.shutdown()
 
 
-def _executor(node: Node) -> Any:
-    # The events executor takes a tenth of the others' time; older ROS 2 has none.
+def _make_executor(node: Node) -> Any:
+    # The events executor takes a tenth of the others' processor time. Older ROS 2 lacks it.
     try:
         from rclpy.experimental.events_executor import EventsExecutor
     except ImportError:

@@ -1,0 +1,1 @@
+"""The Rerun viewer of logs and of running landings."""

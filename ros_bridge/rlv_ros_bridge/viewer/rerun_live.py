@@ -1,4 +1,4 @@
-"""The live topics of a landing as Rerun scenes, one for each landing that is heard.
+"""The live topics of landings as Rerun scenes, one scene for each landing.
 
 Needs rerun-sdk and ROS 2.
 """
@@ -27,84 +27,90 @@ from ..ros.spinner import Spinner
 from .rerun_scene import AUXILIARY, BODY, MAIN, Scene
 
 WATCHED: tuple[Topic, ...] = (STRUTS, RPY, TWIST, *CONTACTS)
-# What is shown must not hold the landing up, so nothing is sent again; a second of it may wait
-# here.
+# Best effort, so that the viewer never delays the landing. One second of messages may wait.
 QOS = Qos(reliability="best_effort", depth=1000)
-# Samples that lack a topic longer than this are given up [ns].
-PATIENCE = 100_000_000
+# Samples that lack a topic are dropped when a sample is newer by this [ns].
+LONGEST_GAP = 100_000_000
 NANOSECONDS = 1_000_000_000
-# How often what was heard is shown [s], and how often signals are looked after.
-SHOW_SECONDS, LOOK_ROUND_SECONDS = 0.05, 0.1
-STILL = dict.fromkeys((f"leg[{leg}].contact.force_{axis}" for leg in LEGS for axis in "xyz"), 0.0)
+# Period of drawing [s], and of checking for signals [s].
+DRAW_SECONDS, POLL_SECONDS = 0.05, 0.1
+NO_CONTACT = dict.fromkeys(
+    (f"leg[{leg}].contact.force_{axis}" for leg in LEGS for axis in "xyz"), 0.0
+)
 
 
 class LiveScenes:
-    """Subscribes `node` to the landing below `namespace`; `begin` is told of each new scene, once
-    its first markers are there.
+    """Subscribes to a landing's topics, and draws them.
 
-    A stamp that lies before the one before begins a new scene: somebody has reset the landing.
-    `samples` counts what was shown, `failure` is what went wrong.
+    A stamp before the previous one starts a new scene: the landing was reset. `samples` counts what
+    was drawn. `failure` is the error of a scene that could not be made.
+
+    Args:
+        node: the node of the subscriptions.
+        namespace: that of the landing.
+        on_scene: called with each new scene, at its first markers.
     """
 
-    def __init__(self, node: Node, namespace: str, begin: Callable[[Scene], object]) -> None:
+    def __init__(self, node: Node, namespace: str, on_scene: Callable[[Scene], object]) -> None:
         self.samples = 0
         self.scene: Scene | None = None
         self.failure: LandingError | None = None
-        self._begin, self._last = begin, -1
-        self._columns = sum(len(READINGS[t.name][0]) for t in WATCHED)
+        self._on_scene, self._last_stamp = on_scene, -1
+        self._column_count = sum(len(READINGS[t.name][0]) for t in WATCHED)
+        # Columns by stamp, and markers with their stamps, that are not drawn yet.
         self._rows: dict[int, dict[str, float]] = {}
-        self._marked: list[tuple[int, Any]] = []
-        self._forces = STILL
+        self._markers: list[tuple[int, Any]] = []
+        self._forces = NO_CONTACT
         for topic in (*WATCHED, MARKERS):
-            take = self._take_markers if topic is MARKERS else self._taker(topic)
+            callback = self._receive_markers if topic is MARKERS else self._row_callback(topic)
             node.create_subscription(
                 message_class(topic.type_name),
                 resolve(namespace, topic.name),
-                take,
+                callback,
                 qos_profile(QOS),
             )
-        self._asking = AsyncParameterClient(node, resolve(namespace, "landing_node"))
-        node.create_timer(SHOW_SECONDS, self._show)
+        self._parameters = AsyncParameterClient(node, resolve(namespace, "landing_node"))
+        node.create_timer(DRAW_SECONDS, self._draw)
 
-    def _taker(self, topic: Topic) -> Callable[[Any], None]:
+    def _row_callback(self, topic: Topic) -> Callable[[Any], None]:
         names, reading = READINGS[topic.name]
 
-        def take(message: Any) -> None:
+        def receive(message: Any) -> None:
             self._rows.setdefault(stamp_of(message.header), {}).update(zip(names, reading(message)))
 
-        return take
+        return receive
 
-    def _take_markers(self, message: Any) -> None:
-        at = stamp_of(message.markers[0].header)
-        if at < self._last or self.scene is None:
-            self._show()
+    def _receive_markers(self, message: Any) -> None:
+        stamp = stamp_of(message.markers[0].header)
+        if stamp < self._last_stamp or self.scene is None:
+            self._draw()
             try:
                 self.scene = Scene(mode_of(message))
-                self._begin(self.scene)
+                self._on_scene(self.scene)
             except LandingError as e:
                 self.failure = e
                 return
-            self._rows = {t: row for t, row in self._rows.items() if t <= at}
-            self._ask_for_the_slope(self.scene)
-        self._last = at
-        self._marked.append((at, message))
+            self._rows = {t: row for t, row in self._rows.items() if t <= stamp}
+            self._request_slope(self.scene)
+        self._last_stamp = stamp
+        self._markers.append((stamp, message))
 
-    def _ask_for_the_slope(self, scene: Scene) -> None:
-        # A replay has no such parameter: its ground is drawn level.
-        if self._asking.services_are_ready():
+    def _request_slope(self, scene: Scene) -> None:
+        # A replay has no such parameter, so its ground is drawn level.
+        if self._parameters.services_are_ready():
 
-            def draw(answer: Any) -> None:
+            def draw_ground(answer: Any) -> None:
                 for slope in answer.result().values:
                     scene.ground(slope.double_value)
 
-            self._asking.get_parameters(["ground.slope"]).add_done_callback(draw)
+            self._parameters.get_parameters(["ground.slope"]).add_done_callback(draw_ground)
 
-    def _show(self) -> None:
-        complete = {t: row for t, row in sorted(self._rows.items()) if len(row) == self._columns}
-        newest = max(self._rows, default=0)
-        self._rows = {
-            t: row for t, row in self._rows.items() if t not in complete and t > newest - PATIENCE
+    def _draw(self) -> None:
+        complete = {
+            t: row for t, row in sorted(self._rows.items()) if len(row) == self._column_count
         }
+        oldest = max(self._rows, default=0) - LONGEST_GAP
+        self._rows = {t: row for t, row in self._rows.items() if t not in complete and t > oldest}
         if self.scene is None:
             return
         if complete:
@@ -115,43 +121,52 @@ class LiveScenes:
             )
             self.samples += len(rows)
             self._forces = rows[-1]
-        if self._marked:
-            self._draw(self.scene, complete)
-        self._marked = []
+        if self._markers:
+            self._draw_vehicle(self.scene, complete)
+        self._markers = []
 
-    def _draw(self, scene: Scene, complete: dict[int, dict[str, float]]) -> None:
-        time = np.array([at for at, _ in self._marked]) / NANOSECONDS
+    def _draw_vehicle(self, scene: Scene, complete: dict[int, dict[str, float]]) -> None:
+        time = np.array([stamp for stamp, _ in self._markers]) / NANOSECONDS
         body, main, auxiliary, feet = (
-            np.array([[(p.x, p.y, p.z) for p in m.markers[i].points] for _, m in self._marked])
+            np.array([[(p.x, p.y, p.z) for p in m.markers[i].points] for _, m in self._markers])
             for i in range(4)
         )
         shape = (len(time), -1, 2, 3)
         for entity, points in ((BODY, body), (MAIN, main), (AUXILIARY, auxiliary)):
             scene.lines(entity, time, (points.reshape(shape),))
         scene.footpads(time, feet)
-        forces = [complete.get(at, self._forces) for at, _ in self._marked]
-        columns = [
+        rows = [complete.get(stamp, self._forces) for stamp, _ in self._markers]
+        forces = [
             [to_ros(*(row[f"leg[{leg}].contact.force_{axis}"] for axis in "xyz")) for leg in LEGS]
-            for row in forces
+            for row in rows
         ]
-        scene.contacts(time, feet, np.array(columns))
+        scene.contacts(time, feet, np.array(forces))
 
 
 def watch(
-    namespace: str, begin: Callable[[Scene], object], going_on: Callable[[], object], stop: StopFlag
+    namespace: str,
+    on_scene: Callable[[Scene], object],
+    keep_running: Callable[[], bool],
+    stop: StopFlag,
 ) -> int:
-    """Shows the landings below `namespace` until a signal comes or `going_on` gets false; how many
-    samples were shown.
+    """Draws the landings below a namespace; the number of samples drawn.
 
-    Raises LandingError: no ROS 2, or markers that are no landing's; and what `going_on` raises.
+    Args:
+        namespace: that of the landing.
+        on_scene: called with each new scene.
+        keep_running: called at each poll; false ends it. What it raises is raised here.
+        stop: notes signals, which end it.
+
+    Raises:
+        LandingError: ROS 2 is missing, or markers that are no landing's.
     """
     with ros_context() as rclpy:
         node = rclpy.create_node("landing_view")
-        scenes = LiveScenes(node, namespace, begin)
+        scenes = LiveScenes(node, namespace, on_scene)
         try:
             with Spinner(node):
-                while not stop and going_on() and scenes.failure is None:
-                    stop.wait(LOOK_ROUND_SECONDS)
+                while not stop and keep_running() and scenes.failure is None:
+                    stop.wait(POLL_SECONDS)
         finally:
             node.destroy_node()
         if scenes.failure is not None:
@@ -162,15 +177,18 @@ def watch(
 
 
 def stamp_of(header: Any) -> int:
-    """A header's stamp [ns]."""
+    """The stamp of a header [ns]."""
     return int(header.stamp.sec) * NANOSECONDS + int(header.stamp.nanosec)
 
 
 def mode_of(markers: Any) -> str:
-    """The landing mode, told by where the main struts of `markers` are joined to the body: legs lie
-    in the body's plane, or all beside it.
+    """The landing mode of a vehicle in `markers`.
 
-    Raises LandingError where that is no mode of ours.
+    It follows from where the main struts are joined to the body: in its plane of symmetry or beside
+    it.
+
+    Raises:
+        LandingError: the joints fit no landing mode.
     """
     across = [p.y for p in markers.markers[1].points[::2]]
     radius = max(map(abs, across))
@@ -180,6 +198,7 @@ def mode_of(markers: Any) -> str:
             across, [y * radius / reach for _, y, _ in around(mode, 1.0, 0.0)], atol=1e-6
         ):
             return mode
+    joints = ", ".join(f"{y:.3g}" for y in across)
     raise LandingError(
-        f"the markers' struts are joined at y = {', '.join(f'{y:.3g}' for y in across)} m, which is no landing mode"
+        f"the markers' struts are joined to the body at y = {joints} m, which is no landing mode"
     )

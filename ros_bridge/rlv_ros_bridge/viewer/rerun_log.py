@@ -1,4 +1,4 @@
-"""A log's landing as a Rerun scene, all of it at once. Needs rerun-sdk."""
+"""The landing in a log as a Rerun scene. Needs rerun-sdk."""
 
 from __future__ import annotations
 
@@ -14,8 +14,13 @@ from rlv_landing.quantities import LEGS
 from .rerun_scene import AUXILIARY, BODY, MAIN, Array, Scene
 
 
-def scene_of(history: History, parameters: Parameters) -> Scene:
-    """The landing `history` of a vehicle with `parameters`, at every sample."""
+def landing_scene(history: History, parameters: Parameters) -> Scene:
+    """The scene of a landing, with every sample.
+
+    Args:
+        history: the landing.
+        parameters: its vehicle and ground.
+    """
     scene = Scene(parameters.drop.mode)
     scene.ground(parameters.ground.slope)
     time = history.time
@@ -35,7 +40,9 @@ def scene_of(history: History, parameters: Parameters) -> Scene:
 
 
 def in_ros_axes(points: Any) -> Array:
-    """Points of the paper's axes (x forward, y up, z right) in REP-103 axes (x forward, y left, z
-    up).
+    """Points in REP-103 axes (x forward, y left, z up).
+
+    Args:
+        points: (..., 3), in the paper's axes (x forward, y up, z right).
     """
     return np.stack([points[..., 0], -points[..., 2], points[..., 1]], axis=-1)

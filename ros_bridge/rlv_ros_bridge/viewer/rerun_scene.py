@@ -1,5 +1,6 @@
-"""A landing as Rerun draws it: the vehicle in space beside its curves, on the timeline of
-simulation time. Needs rerun-sdk.
+"""A landing in Rerun: the vehicle in space beside its curves, over simulation time.
+
+Needs rerun-sdk.
 """
 
 from __future__ import annotations
@@ -21,21 +22,26 @@ from rlv_landing.quantities import LEGS, MODES
 
 Array = NDArray[np.float64]
 TIMELINE = "sim_time"
+# Colours of lines, ground, contact forces and background.
 INK, GROUND, FORCE, PAPER = "#222222", "#a8adb2", "#e0a100", "#f4f5f6"
 BODY, MAIN, AUXILIARY, FOOTPADS, CONTACT, FLOOR = (
     f"vehicle/{part}"
     for part in ("body", "main_struts", "auxiliary_struts", "footpads", "contact_force", "ground")
 )
-# Radii of lines and footpads [m], and how long an arrow is [m/N].
+# Radii of lines and footpads [m], and the length of an arrow [m/N].
 RADII = {BODY: 0.012, MAIN: 0.03, AUXILIARY: 0.015, FOOTPADS: 0.05, CONTACT: 0.03, FLOOR: 0.004}
-ARROW = 3e-4
-EXTENT = np.linspace(-3.0, 3.0, 13)
+ARROW_LENGTH = 3e-4
+# Grid lines of the ground [m].
+GROUND_GRID = np.linspace(-3.0, 3.0, 13)
+# Where the view looks from and to [m].
 EYE, TARGET = (-2.0, -7.5, 2.2), (0.2, 0.0, 1.3)
 
 
 class Curve(NamedTuple):
-    """A plot: its entity, its title with unit, what is drawn (name of each line -> column), and how
-    many of its unit an SI unit is.
+    """A plot of one or more columns.
+
+    `lines` gives the column of each line by its name. `factor` converts from SI to the unit in the
+    title.
     """
 
     entity: str
@@ -45,14 +51,14 @@ class Curve(NamedTuple):
     colours: tuple[str, ...]
 
 
-def groups(mode: str) -> list[tuple[int, ...]]:
-    """The legs that touch down together, in the order in which they do; each group has one colour."""
+def leg_groups(mode: str) -> list[tuple[int, ...]]:
+    """The legs that touch down together, in order of touchdown; each group has one colour."""
     return [tuple(sorted(leg for leg, _ in g.legs)) for g in MODES[mode]]
 
 
 def curves(mode: str) -> list[Curve]:
     """The plots of a landing in `mode`."""
-    legs = groups(mode)
+    legs = leg_groups(mode)
     names = {f"leg {'/'.join(map(str, group))}": group[0] for group in legs}
 
     def strut(entity: str, title: str, column: str, factor: float) -> Curve:
@@ -76,16 +82,16 @@ def curves(mode: str) -> list[Curve]:
 
 
 class Scene:
-    """A recording of a landing in `mode`.
+    """A recording of a landing in the mode `mode`.
 
-    Lengths in m, axes as ROS has them (x forward, y left, z up), times in s.
+    Lengths are in m, times in s, axes as in REP-103 (x forward, y left, z up).
     """
 
     def __init__(self, mode: str) -> None:
         self.mode = mode
         self.stream = rr.RecordingStream("rlv-landing")
         colours = {
-            leg: rgb(colour) for group, colour in zip(groups(mode), COLOURS) for leg in group
+            leg: rgb(colour) for group, colour in zip(leg_groups(mode), COLOURS) for leg in group
         }
         legs = [colours[leg] for leg in LEGS]
         self._log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
@@ -117,16 +123,24 @@ class Scene:
         )
 
     def ground(self, slope: float) -> None:
-        """The ground at rest, which a positive `slope` [rad] lets fall along x."""
-        fall = -np.tan(slope)
-        along = [
-            [(EXTENT[0], y, fall * EXTENT[0]), (EXTENT[-1], y, fall * EXTENT[-1])] for y in EXTENT
-        ]
-        across = [[(x, EXTENT[0], fall * x), (x, EXTENT[-1], fall * x)] for x in EXTENT]
+        """Draws the ground at rest.
+
+        Args:
+            slope: inclination [rad]; positive: it descends along +x.
+        """
+        gradient = -np.tan(slope)
+        first, last = GROUND_GRID[0], GROUND_GRID[-1]
+        along = [[(x, y, gradient * x) for x in (first, last)] for y in GROUND_GRID]
+        across = [[(x, y, gradient * x) for y in (first, last)] for x in GROUND_GRID]
         self._log(FLOOR, rr.LineStrips3D.from_fields(strips=[*along, *across]))
 
     def curves(self, time: Array, columns: Mapping[str, Array]) -> None:
-        """Samples of the outputs `columns`, by name, SI."""
+        """Adds samples to the plots.
+
+        Args:
+            time: (times,) [s].
+            columns: outputs by name, each (times,), SI.
+        """
         for curve in self._curves:
             values = (
                 np.stack([columns[name] for name in curve.lines.values()], axis=-1) * curve.factor
@@ -138,14 +152,25 @@ class Scene:
             )
 
     def lines(self, entity: str, time: Array, lines: Iterable[Array]) -> None:
-        """Lines of `entity` at each time: arrays (times, lines, points, 3)."""
+        """Adds lines of the part `entity`.
+
+        Args:
+            entity: the part of the vehicle.
+            time: (times,) [s].
+            lines: arrays (times, lines, points, 3) [m].
+        """
         each = [list(group) for group in zip(*lines)]
         strips = [strip for group in each for part in group for strip in part]
         counts = [sum(len(part) for part in group) for group in each]
         self._send(entity, time, rr.LineStrips3D.columns(strips=strips).partition(counts))
 
     def footpads(self, time: Array, feet: Array) -> None:
-        """Footpads at each time: (times, legs, 3)."""
+        """Adds footpads.
+
+        Args:
+            time: (times,) [s].
+            feet: (times, legs, 3) [m].
+        """
         self._send(
             FOOTPADS,
             time,
@@ -153,18 +178,25 @@ class Scene:
         )
 
     def contacts(self, time: Array, feet: Array, forces: Array) -> None:
-        """Forces of the ground [N] on the footpads `feet`, both (times, legs, 3)."""
+        """Adds the ground's forces on the footpads.
+
+        Args:
+            time: (times,) [s].
+            feet: where they act, (times, legs, 3) [m].
+            forces: (times, legs, 3) [N].
+        """
         arrows = rr.Arrows3D.columns(
-            origins=feet.reshape(-1, 3), vectors=ARROW * forces.reshape(-1, 3)
+            origins=feet.reshape(-1, 3), vectors=ARROW_LENGTH * forces.reshape(-1, 3)
         )
         self._send(CONTACT, time, arrows.partition([len(LEGS)] * len(time)))
 
-    def blueprint(self, live: bool) -> Any:
-        """The vehicle on the left, curves on the right; a `live` landing is followed, another
-        played five times slower, in a loop.
+    def blueprint(self, *, live: bool) -> Any:
+        """The layout: the vehicle on the left, plots on the right.
+
+        Args:
+            live: follow the newest sample; otherwise play five times slower, in a loop.
         """
-        # The first plot's legend tells the colours of all that show legs; the last has lines of its
-        # own.
+        # The first plot's legend is that of all plots of legs; the last plot has its own.
         plots = [
             rrb.TimeSeriesView(
                 origin=f"/{c.entity}",
@@ -201,33 +233,38 @@ class Scene:
 
 
 class SavedScene:
-    """Writes a scene to `path`, whole or not at all. Raises LandingError: it cannot be written."""
+    """Writes a scene to `path`, whole or not at all.
+
+    Raises:
+        LandingError: it cannot be written.
+    """
 
     def __init__(self, path: Path) -> None:
         self._path, self._unfinished = path, path.with_name(f".{path.stem}.part{path.suffix}")
         self._scene: Scene | None = None
 
-    def begin(self, scene: Scene, live: bool) -> None:
-        """What `scene` has, and what it gets from now on."""
+    def begin(self, scene: Scene) -> None:
+        """Writes what `scene` holds, and what is added to it from now on."""
         self._scene = scene
-        with self._told():
-            scene.stream.save(self._unfinished, default_blueprint=scene.blueprint(live))
+        with self._errors_as_landing_error():
+            scene.stream.save(self._unfinished, default_blueprint=scene.blueprint(live=False))
 
     def finish(self) -> None:
-        """Makes sure that all is in the file, and gives it its name."""
+        """Completes the file, and gives it its name."""
         assert self._scene is not None
-        with self._told():
+        with self._errors_as_landing_error():
             self._scene.stream.flush()
             self._scene.stream.disconnect()
             self._unfinished.replace(self._path)
 
     @contextmanager
-    def _told(self) -> Iterator[None]:
+    def _errors_as_landing_error(self) -> Iterator[None]:
         try:
             yield
         except (OSError, RuntimeError, ValueError) as e:
+            reason = " ".join(str(e).split())
             raise LandingError(
-                f"{self._path} cannot be written: {' '.join(str(e).split())}; make room, or name another file"
+                f"{self._path} cannot be written: {reason}; make room, or name another file"
             ) from None
 
     def __enter__(self) -> SavedScene:
@@ -244,5 +281,5 @@ class SavedScene:
 
 
 def rgb(colour: str) -> tuple[int, ...]:
-    """`#rrggbb` as three numbers to 255."""
+    """The colour `#rrggbb` as three numbers from 0 to 255."""
     return tuple(bytes.fromhex(colour[1:]))

@@ -1,9 +1,9 @@
-"""Serves a Rerun viewer to browsers on this machine, and keeps it from talking to anybody else.
+"""Serves a Rerun viewer to browsers on this machine, without connections to other machines.
 
-Rerun's own program, from its wheel, keeps the data and the viewer's files; it is told to listen on
-the loopback address only and to send no statistics. The viewer itself, once in a browser, would ask
-for news and report its use; so its files are handed on from here, with a content security policy
-that has the browser connect it to nothing but the data.
+Rerun's program, from its wheel, keeps the data and the viewer's files. It listens on the loopback
+address only and sends no statistics. The viewer in a browser would fetch news and report its use.
+So a server here passes on its files with a content security policy, by which the browser connects
+it to the data only.
 """
 
 from __future__ import annotations
@@ -31,20 +31,22 @@ from rlv_landing.errors import LandingError
 
 LOOPBACK = "127.0.0.1"
 PR_SET_PDEATHSIG = 1
-HOSTING = re.compile(rf"web-viewer at (http://{re.escape(LOOPBACK)}:\d+)")
-# What late viewers still get, of a landing that is watched for hours.
-KEPT = "1GiB"
-END_SECONDS = 5.0
+# What Rerun's program prints with the address of the viewer's files.
+ADDRESS_LINE = re.compile(rf"web-viewer at (http://{re.escape(LOOPBACK)}:\d+)")
+# Memory for the data that a browser gets which connects late.
+MEMORY_LIMIT = "1GiB"
+# Longest wait for Rerun's program to end [s].
+TERMINATE_SECONDS = 5.0
 
 
-def quiet_environment(folder: Path) -> dict[str, str]:
-    """The environment in which Rerun's program collects no statistics: with a configuration of its
-    own in `folder` that says so.
+def private_environment(folder: Path) -> dict[str, str]:
+    """The environment of Rerun's program.
+
+    Its configuration, in `folder`, has the program send no statistics.
     """
     kept = ("PATH", "TMPDIR", "LANG", "LD_LIBRARY_PATH")
-    mine = {name: os.environ[name] for name in kept if name in os.environ}
     return {
-        **mine,
+        **{name: os.environ[name] for name in kept if name in os.environ},
         "HOME": str(folder),
         "XDG_CONFIG_HOME": str(folder),
         "NO_COLOR": "1",
@@ -53,27 +55,29 @@ def quiet_environment(folder: Path) -> dict[str, str]:
     }
 
 
-def program() -> str:
-    """Rerun's program."""
+def rerun_program() -> str:
+    """The path of Rerun's program."""
     return str(Path(rerun_cli.__file__).with_name("rerun"))
 
 
-def policy(data_port: int) -> str:
-    """The content security policy of the viewer's page: files from where it came from, data from
-    `data_port`, and nothing else.
-    """
+def content_security_policy(data_port: int) -> str:
+    """The policy of the viewer's page: files from its own server, data from `data_port`."""
     own = "'self' 'unsafe-inline'"
     return (
-        f"default-src {own} 'wasm-unsafe-eval' data: blob:; connect-src 'self' http://{LOOPBACK}:{data_port}; "
+        f"default-src {own} 'wasm-unsafe-eval' data: blob:; "
+        f"connect-src 'self' http://{LOOPBACK}:{data_port}; "
         "form-action 'none'; base-uri 'none'; frame-ancestors 'none'"
     )
 
 
 class ViewerServer:
-    """A viewer at `address`, on `port` of the loopback address, for what is sent to `data`; the
-    data's port is the next one.
+    """A viewer at `address`, to be entered, for the data that is sent to `data`.
 
-    To be entered. Raises LandingError: a port is taken, or Rerun's program does not run.
+    Args:
+        port: of the page, on the loopback address; the data's port is the next one.
+
+    Raises:
+        LandingError: a port is in use, or Rerun's program does not start.
     """
 
     def __init__(self, port: int) -> None:
@@ -81,26 +85,30 @@ class ViewerServer:
         for wanted in (self.port, self.data_port):
             require_free(wanted)
         self.data = f"rerun+http://{LOOPBACK}:{self.data_port}/proxy"
-        self.address = f"http://{LOOPBACK}:{self.port}/?url={quote(self.data, safe='')}&hide_welcome_screen&theme=light"
+        query = f"url={quote(self.data, safe='')}&hide_welcome_screen&theme=light"
+        self.address = f"http://{LOOPBACK}:{self.port}/?{query}"
         self._folder = Path(tempfile.mkdtemp(prefix="rlv-landing-view-"))
         self._process: subprocess.Popen[str] | None = None
-        self._front: ThreadingHTTPServer | None = None
+        self._page_server: ThreadingHTTPServer | None = None
 
     def __enter__(self) -> ViewerServer:
         try:
-            environment = quiet_environment(self._folder)
+            environment = private_environment(self._folder)
             subprocess.run(
-                [program(), "analytics", "disable"],
+                [rerun_program(), "analytics", "disable"],
                 env=environment,
                 capture_output=True,
                 check=True,
             )
-            self._front = front(self.port, self._start(environment), policy(self.data_port))
-            threading.Thread(target=self._front.serve_forever, name="viewer", daemon=True).start()
+            files = self._start(environment)
+            policy = content_security_policy(self.data_port)
+            server = self._page_server = make_page_server(self.port, files, policy)
+            threading.Thread(target=server.serve_forever, name="viewer", daemon=True).start()
         except (OSError, subprocess.CalledProcessError) as e:
             self.close()
             raise LandingError(
-                f'Rerun\'s viewer does not start: {e}; install it again with pip install "rlv-landing[view]"'
+                f"Rerun's viewer does not start: {e}; "
+                'install it again with pip install "rlv-landing[view]"'
             ) from None
         except BaseException:
             self.close()
@@ -108,40 +116,42 @@ class ViewerServer:
         return self
 
     def _start(self, environment: Mapping[str, str]) -> str:
-        """Starts Rerun's program; where it hosts the viewer's files."""
-        ports = (
-            "--port",
-            str(self.data_port),
-            "--web-viewer-port",
-            "0",
-            "--server-memory-limit",
-            KEPT,
-        )
+        """Starts Rerun's program; the address of the viewer's files."""
+        options = {
+            "--bind": LOOPBACK,
+            "--port": str(self.data_port),
+            "--web-viewer-port": "0",
+            "--server-memory-limit": MEMORY_LIMIT,
+        }
+        arguments = [text for option in options.items() for text in option]
         self._process = subprocess.Popen(
-            [program(), "--serve-web", "--bind", LOOPBACK, *ports],
+            [rerun_program(), "--serve-web", *arguments],
             env=environment,
             cwd=self._folder,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
-            # Ctrl-C is for this command, which ends it in order.
+            # Ctrl-C reaches this command only, which then ends the program.
             start_new_session=True,
             preexec_fn=_end_with_parent,
         )
-        assert self._process.stdout is not None
-        said = ""
-        for line in self._process.stdout:
-            if found := HOSTING.search(line):
-                threading.Thread(
-                    target=self._process.stdout.read, name="viewer's words", daemon=True
-                ).start()
+        output = self._process.stdout
+        assert output is not None
+        last_line = ""
+        for line in output:
+            if found := ADDRESS_LINE.search(line):
+                threading.Thread(target=output.read, name="viewer output", daemon=True).start()
                 return found[1]
-            said = line.strip() or said
-        raise LandingError(f"Rerun's viewer does not start: {said}")
+            last_line = line.strip() or last_line
+        raise LandingError(f"Rerun's viewer does not start: {last_line}")
 
-    def runs(self) -> bool:
-        """True. Raises LandingError where Rerun's program has ended by itself."""
+    def check_running(self) -> bool:
+        """Returns true while Rerun's program runs.
+
+        Raises:
+            LandingError: it has ended by itself.
+        """
         if self._process is not None and self._process.poll() is not None:
             raise LandingError(
                 f"Rerun's viewer ended with {self._process.returncode}; start the view again"
@@ -149,14 +159,14 @@ class ViewerServer:
         return True
 
     def close(self) -> None:
-        """Ends everything that was started here."""
-        if self._front is not None:
-            self._front.shutdown()
-            self._front.server_close()
+        """Ends everything that was started."""
+        if self._page_server is not None:
+            self._page_server.shutdown()
+            self._page_server.server_close()
         if self._process is not None:
             self._process.terminate()
             try:
-                self._process.wait(END_SECONDS)
+                self._process.wait(TERMINATE_SECONDS)
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
@@ -171,9 +181,13 @@ class ViewerServer:
         self.close()
 
 
-def front(port: int, files: str, security: str) -> ThreadingHTTPServer:
-    """A server on `port` that hands on what is at `files`, with the content security policy
-    `security`.
+def make_page_server(port: int, files: str, security_policy: str) -> ThreadingHTTPServer:
+    """A server on `port` that passes on the files at the address `files`.
+
+    Args:
+        port: on the loopback address.
+        files: address of the viewer's files.
+        security_policy: the content security policy of each answer.
     """
 
     class Handler(BaseHTTPRequestHandler):
@@ -182,24 +196,28 @@ def front(port: int, files: str, security: str) -> ThreadingHTTPServer:
                 with urlopen(files + urlsplit(self.path).path) as answer:
                     self.send_response(200)
                     self.send_header("Content-Type", answer.headers["Content-Type"])
-                    self.send_header("Content-Security-Policy", security)
+                    self.send_header("Content-Security-Policy", security_policy)
                     self.send_header("Referrer-Policy", "no-referrer")
                     self.end_headers()
                     shutil.copyfileobj(answer, self.wfile)
             except URLError:
                 self.send_error(404)
             except ConnectionError:
-                # The browser has left.
+                # The browser has closed the connection.
                 self.close_connection = True
 
         def log_message(self, format: str, *args: object) -> None:
-            """Nobody wants to read what a browser asks for."""
+            """Requests are not printed."""
 
     return ThreadingHTTPServer((LOOPBACK, port), Handler)
 
 
 def require_free(port: int) -> None:
-    """Raises LandingError where nothing can listen on `port` of the loopback address."""
+    """Checks that `port` of the loopback address can be listened on.
+
+    Raises:
+        LandingError: it cannot, or is out of bounds.
+    """
     if not 1024 <= port <= 65534:
         raise LandingError(f"port = {port} is outside [1024, 65534]")
     with socket.socket() as probe:
@@ -209,10 +227,11 @@ def require_free(port: int) -> None:
             probe.listen()
         except OSError as e:
             raise LandingError(
-                f"port {port} cannot be listened on: {e.strerror}; name another by --port, it and the next are used"
+                f"port {port} cannot be listened on: {e.strerror}; "
+                "name another by --port, it and the next are used"
             ) from None
 
 
 def _end_with_parent() -> None:
-    # Else `kill -9` of this command would leave the viewer's program behind.
+    # `kill -9` of this command would otherwise leave the viewer's program running.
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)

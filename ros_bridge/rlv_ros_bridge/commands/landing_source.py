@@ -1,0 +1,117 @@
+"""The landing that `animate` and `view` draw: from a log, or computed for the command."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rlv_landing.errors import LandingError
+
+from ..logs.libraries import require_log_readers
+
+if TYPE_CHECKING:
+    from rlv_landing.history import History
+    from rlv_landing.parameters import Parameters
+
+DEFAULT_END = 1.0
+LONGEST_END = 60.0
+SAMPLE_STEP = 1e-3
+
+
+@dataclass(frozen=True)
+class VehicleOptions:
+    """The options that choose vehicle, ground and drop, as on the command line."""
+
+    preset: str | None
+    file: str | None
+    mode: str | None
+    pairs: tuple[str, ...]
+
+    @classmethod
+    def take(cls, options: dict[str, Any]) -> VehicleOptions:
+        """Takes the options out of `options`, those of a command by name."""
+        return cls(*(options.pop(name) for name in ("preset", "file", "mode", "pairs")))
+
+    @property
+    def given(self) -> bool:
+        """Whether at least one of them is given."""
+        return bool(self.preset or self.file or self.mode or self.pairs)
+
+    def parameters(self) -> Parameters:
+        """The parameters that they choose.
+
+        Raises:
+            LandingError: an unknown name, or a value out of bounds.
+        """
+        from rlv_landing.choices import choose_parameters, parse_pairs
+        from rlv_landing.parameters import PARAMETER_QUANTITIES
+
+        values = parse_pairs(self.pairs, PARAMETER_QUANTITIES, "parameter")
+        return choose_parameters(self.preset, self.file, self.mode, values)
+
+
+def compute_landing(vehicle: VehicleOptions, end: float | None) -> tuple[History, Parameters]:
+    """Computes the landing of a vehicle, in samples of 1 ms, and gives its parameters.
+
+    Args:
+        vehicle: the options that choose it.
+        end: simulation time of the last sample [s]; None: 1 s.
+
+    Raises:
+        LandingError: bad options, or a time out of bounds.
+    """
+    from rlv_landing import Landing
+
+    parameters = vehicle.parameters()
+    until = DEFAULT_END if end is None else end
+    if not 0.0 < until <= LONGEST_END:
+        raise LandingError(f"--end = {until:g} s is outside (0, {LONGEST_END:g}] s")
+    return Landing(parameters).run(until, SAMPLE_STEP), parameters
+
+
+def read_landing(path: Path, vehicle: VehicleOptions) -> tuple[History, Parameters, bool]:
+    """Reads the landing in a log, its vehicle's parameters, and whether the log is incomplete.
+
+    Warns where the ground was moved, for it is drawn at rest.
+
+    Args:
+        path: the log.
+        vehicle: for a log that does not carry its parameters.
+
+    Raises:
+        LandingError: no such log, no landing in it, or the vehicle is given by both or by neither.
+    """
+    require_log_readers()
+    from ..logs.bag_reader import open_log
+    from ..logs.history import read_history
+    from ..messages.topics import APPLIED_GROUND, resolve
+
+    reader = open_log(path)
+    history, _ = read_history(reader)
+    ground = resolve(reader.namespace, APPLIED_GROUND.name)
+    if ground in reader.channels and next(iter(reader.messages([ground])), None) is not None:
+        click.echo("warning: the ground was moved in this landing; it is drawn at rest", err=True)
+    if history.parameters is not None:
+        if vehicle.given:
+            raise LandingError(
+                f"{path} carries its parameters; leave --preset, --parameters, --mode and --set out"
+            )
+        return history, history.parameters, reader.cut
+    if not vehicle.given:
+        raise LandingError(
+            f"{path} does not carry the vehicle's parameters; "
+            "name them by --parameters FILE.toml, or --preset and --mode"
+        )
+    return history, vehicle.parameters(), reader.cut
+
+
+def warn_incomplete(log: Path) -> None:
+    """Warns that the log is incomplete, and says how to save the rest."""
+    click.echo(
+        f"warning: {log} is cut or damaged; what is whole was drawn, "
+        "`rlv-landing log recover` saves it",
+        err=True,
+    )

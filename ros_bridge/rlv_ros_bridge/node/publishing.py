@@ -1,0 +1,54 @@
+"""The publishers of the landing node, one for each topic."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from rclpy.node import Node
+
+from ..messages import topics
+from ..messages.message_types import is_installed, message_class
+from ..messages.qos import CLOCK, LATCHED, Qos
+from ..messages.rclpy_qos import qos_profile
+from ..messages.topics import Topic, resolve
+from .publish_queue import PublishQueue, TopicPublisher
+
+
+@dataclass(frozen=True)
+class Publishing:
+    """The publishers of a node by topic, the queue in front of them, and their topics' full names.
+
+    `names` also holds topics without a publisher, which are only recorded. `qos` is the quality of
+    service of what is published at every step.
+    """
+
+    queue: PublishQueue
+    publishers: Mapping[Topic, TopicPublisher]
+    names: Mapping[Topic, str]
+    qos: Qos
+
+    def acknowledging(self) -> list[Any]:
+        """The rclpy publishers whose subscribers should acknowledge all samples of a landing."""
+        left_out = (*topics.LATCHED, topics.CLOCK)
+        return [p.publisher for topic, p in self.publishers.items() if topic not in left_out]
+
+
+def create_publishing(node: Node, qos: Qos, *, clock: bool) -> Publishing:
+    """Creates the landing's publishers on `node`; `clock`: also that of `/clock`."""
+    # A subscriber that waits for a match on `struts` finds the others matched: it comes last.
+    others = reversed([t for t in topics.RECORDED if t not in topics.LATCHED])
+    profiles = {**dict.fromkeys(topics.LATCHED, LATCHED), **dict.fromkeys(others, qos)}
+    if clock:
+        profiles[topics.CLOCK] = CLOCK
+    queue = PublishQueue()
+    publishers: dict[Topic, TopicPublisher] = {}
+    names: dict[Topic, str] = {}
+    for topic, profile in profiles.items():
+        names[topic] = resolve(node.get_namespace(), topic.name)
+        if topic is not topics.TF or is_installed(topic.type_name):
+            kind = message_class(topic.type_name)
+            publisher = node.create_publisher(kind, names[topic], qos_profile(profile))
+            publishers[topic] = queue.add(TopicPublisher(publisher))
+    return Publishing(queue, publishers, names, qos)

@@ -1,0 +1,146 @@
+"""Tools for tests of logs: small, cut and changed logs, made with MCAP's own writer and readers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from mcap.data_stream import RecordBuilder
+from mcap.reader import make_reader
+from mcap.records import (
+    Attachment,
+    Channel,
+    Chunk,
+    DataEnd,
+    Footer,
+    Header,
+    Message,
+    Metadata,
+    Schema,
+)
+from mcap.stream_reader import StreamReader
+from mcap.writer import Writer
+
+from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.messages.qos import TELEMETRY
+
+CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
+CDR = bytes([0, 1, 0, 0])
+Change = Callable[[Any], Any]
+
+
+def small_log(folder: Path, chunks: int = 4, messages: int = 12) -> Path:
+    """A complete log of two topics in `chunks` chunks of `messages` messages each; its file."""
+    topics = [RecordedTopic(name, CLOCK_TYPE, TELEMETRY) for name in ("/a", "/b")]
+    recorder = Recorder(
+        folder, topics, {"step_size": "0.001", "stop_time": "1.0"}, {"parameters.toml": b"# none\n"}
+    )
+    for k in range(chunks * messages):
+        recorder.write("/b" if k % 3 else "/a", 1000 * k, CDR + k.to_bytes(8, "little"))
+        if k % messages == messages - 1:
+            recorder._chunk.write()
+    recorder.close()
+    assert not recorder.error
+    return recorder.path
+
+
+def messages_of(file: Path) -> list[tuple[str, int, int, bytes]]:
+    """Topic, time, sequence and bytes of every message, in the file's order.
+
+    MCAP's own seeking reader reads them.
+    """
+    with file.open("rb") as f:
+        found = make_reader(f, validate_crcs=True).iter_messages(log_time_order=False)
+        return [(channel.topic, m.log_time, m.sequence, m.data) for _, channel, m in found]
+
+
+def rewrite(source: Path, folder: Path, change: Change = lambda record: record) -> Path:
+    """A complete log: `source` with `change` applied to messages, attachments and metadata.
+
+    A record for which `change` returns None is left out.
+    """
+    folder.mkdir()
+    target = folder / f"{folder.name}_0.mcap"
+    schemas: dict[int, int] = {0: 0}
+    channels: dict[int, int] = {}
+    topics: dict[int, str] = {}
+    with source.open("rb") as f, target.open("wb") as out:
+        writer = Writer(out, chunk_size=50_000, enable_data_crcs=True)
+        for record in StreamReader(f).records:
+            if isinstance(record, Header):
+                writer.start(record.profile, record.library)
+            elif isinstance(record, Schema) and record.id not in schemas:
+                schemas[record.id] = writer.register_schema(
+                    record.name, record.encoding, record.data
+                )
+            elif isinstance(record, Channel) and record.id not in channels:
+                topics[record.id] = record.topic
+                channels[record.id] = writer.register_channel(
+                    record.topic,
+                    record.message_encoding,
+                    schemas[record.schema_id],
+                    record.metadata,
+                )
+            elif isinstance(record, Message):
+                message = change((topics[record.channel_id], record))
+                if message is not None:
+                    m = message[1]
+                    writer.add_message(
+                        channels[m.channel_id], m.log_time, m.data, m.publish_time, m.sequence
+                    )
+            elif isinstance(record, Attachment):
+                a = change(record)
+                if a is not None:
+                    writer.add_attachment(a.create_time, a.log_time, a.name, a.media_type, a.data)
+            elif isinstance(record, Metadata):
+                m = change(record)
+                if m is not None:
+                    writer.add_metadata(m.name, m.metadata)
+        writer.finish()
+    return target
+
+
+def write_with_chunk(file: Path, chunk: Chunk, library: str = "") -> None:
+    """A file whose only chunk is `chunk`, with an end, as if `library` had written it."""
+    builder = RecordBuilder()
+    for record in (Header("ros2", library), chunk, DataEnd(0), Footer(0, 0, 0)):
+        record.write(builder)
+    file.write_bytes(b"\x89MCAP0\r\n" + builder.end() + b"\x89MCAP0\r\n")
+
+
+def in_message(topic: str, nanoseconds: int, change: Callable[[bytes], bytes | None]) -> Change:
+    """For `rewrite`: changes the bytes of one message, or leaves it out."""
+
+    def apply(record: Any) -> Any:
+        if isinstance(record, tuple) and record[0] == topic and record[1].log_time == nanoseconds:
+            data = change(record[1].data)
+            return None if data is None else (topic, replace(record[1], data=data))
+        return record
+
+    return apply
+
+
+def in_metadata(change: Mapping[str, str | None]) -> Change:
+    """For `rewrite`: changes our metadata's texts, or leaves them out."""
+
+    def apply(record: Any) -> Any:
+        if isinstance(record, Metadata) and record.name == "rlv_landing":
+            new = {**record.metadata, **change}
+            return Metadata("rlv_landing", {k: v for k, v in new.items() if v is not None})
+        return record
+
+    return apply
+
+
+def in_attachment(change: Callable[[bytes], bytes | None]) -> Change:
+    """For `rewrite`: changes the parameters that a log carries, or leaves them out."""
+
+    def apply(record: Any) -> Any:
+        if isinstance(record, Attachment):
+            data = change(record.data)
+            return None if data is None else replace(record, data=data)
+        return record
+
+    return apply

@@ -1,0 +1,131 @@
+"""The bridge as an ament_python package: colcon builds it, and what it installs lands."""
+
+from __future__ import annotations
+
+import ast
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import yaml
+from bridge_tools import ROOT, TIMEOUT, environment, new_domain
+
+import rlv_landing
+from rlv_ros_bridge.logs.history import history_of
+from rlv_ros_bridge.logs.reader import LogReader
+from rlv_ros_bridge.node.settings import SETTINGS
+
+PACKAGE = ROOT / "ros_bridge"
+LAUNCH = PACKAGE / "launch" / "landing.launch.py"
+
+
+def test_colcon_builds_the_package_and_its_node_lands(fmu: Path, tmp_path: Path) -> None:
+    ignored = shutil.ignore_patterns("__pycache__", "*.egg-info", "build", "install", "log")
+    shutil.copytree(PACKAGE, tmp_path / "src" / "ros_bridge", ignore=ignored)
+    build = [
+        str(Path(sys.executable).with_name("colcon")),
+        "--log-base",
+        "log",
+        "build",
+        "--event-handlers",
+        "console_direct+",
+    ]
+    done = subprocess.run(
+        build,
+        cwd=tmp_path,
+        env=environment(),
+        capture_output=True,
+        text=True,
+        timeout=4 * TIMEOUT,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    installed = tmp_path / "install" / "rlv_ros_bridge"
+    share = installed / "share" / "rlv_ros_bridge"
+    for file in (
+        "package.xml",
+        "launch/landing.launch.py",
+        "config/landing.yaml",
+        "config/landing.rviz",
+        "config/foxglove.json",
+        "config/foreign_dds.xml",
+    ):
+        assert (share / file).is_file(), file
+    assert (
+        installed / "share" / "ament_index" / "resource_index" / "packages" / "rlv_ros_bridge"
+    ).is_file()
+    (site,) = (installed / "lib").glob("python*/site-packages")
+    env = environment(new_domain())
+    env["PYTHONPATH"] = os.pathsep.join([str(site), str(ROOT / "fmu_src")])
+    # As the launch file starts it.
+    line = [
+        str(installed / "lib" / "rlv_ros_bridge" / "landing_node"),
+        "--ros-args",
+        "--params-file",
+        str(share / "config" / "landing.yaml"),
+    ]
+    line += [
+        "-p",
+        f"fmu:={fmu}",
+        "-p",
+        "realtime_factor:=0.0",
+        "-p",
+        "log_root:=logs",
+        "-p",
+        "mode:=1-2-1",
+        "-r",
+        "__ns:=/landing",
+    ]
+    done = subprocess.run(
+        line, cwd=tmp_path, env=env, capture_output=True, text=True, timeout=TIMEOUT, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    (log,) = (tmp_path / "logs").iterdir()
+    assert len(history_of(LogReader(log))) == 1001
+
+
+def test_the_package_declares_its_version_and_all_that_it_imports() -> None:
+    package = ElementTree.parse(PACKAGE / "package.xml")
+    assert package.findtext("version") == rlv_landing.__version__
+    named = {e.text for e in package.iter("exec_depend")}
+    imported = set()
+    for file in (*(PACKAGE / "rlv_ros_bridge").rglob("*.py"), LAUNCH):
+        for node in ast.walk(ast.parse(file.read_text())):
+            if isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+                imported.add(node.module.split(".")[0])
+            elif isinstance(node, ast.Import):
+                imported |= {alias.name.split(".")[0] for alias in node.names}
+    ros = {
+        name
+        for name in imported
+        if name.endswith(("_msgs", "_srvs", "_interfaces"))
+        or name in ("rclpy", "launch", "launch_ros")
+    }
+    assert ros <= named, ros - named
+
+
+def test_the_launch_file_and_its_parameter_file_name_parameters_of_the_node() -> None:
+    # ROS 2's launch is not on PyPI: what can be seen without running it.
+    tree = ast.parse(LAUNCH.read_text())
+    compile(tree, str(LAUNCH), "exec")
+    (given,) = (
+        node
+        for node in ast.walk(tree)
+        if isinstance(node, ast.keyword) and node.arg == "parameters"
+    )
+    keys = {
+        key.value
+        for d in ast.walk(given)
+        if isinstance(d, ast.Dict)
+        for key in d.keys
+        if isinstance(key, ast.Constant)
+    }
+    assert keys
+    assert keys <= set(SETTINGS)
+    values = yaml.safe_load((PACKAGE / "config" / "landing.yaml").read_text())["/**"][
+        "ros__parameters"
+    ]
+    assert set(values) <= set(SETTINGS)
