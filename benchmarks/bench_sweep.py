@@ -26,7 +26,8 @@ from rich.table import Table
 from rlv_landing.studies.sweep.result_files import PART_ROWS, Results
 from rlv_landing.studies.sweep.row import Task
 from rlv_landing.studies.sweep.study import read_study
-from rlv_landing.studies.sweep.sweep import THREAD_ROWS, default_workers
+from rlv_landing.studies.sweep.sweep import THREAD_ROWS
+from rlv_landing.workers import default_workers
 
 STUDY = """
 [study]

@@ -4,13 +4,13 @@ of a rigid block (docs/envelope.md).
 
 from __future__ import annotations
 
-import os
 from math import degrees, radians
 
 from rlv_landing import load_preset
 from rlv_landing.studies.envelope.search import envelope
 from rlv_landing.studies.envelope.study import Axis, EnvelopeStudy
 from rlv_landing.studies.envelope.tip_over import LOCKED, RigidBlock
+from rlv_landing.workers import default_workers
 
 RAISED = (-0.5, 0.0, 0.5)
 SLOPES = (0.0, 5.0, 10.0)
@@ -46,7 +46,7 @@ def main() -> None:
                 block = RigidBlock.of(parameters)
                 points = [
                     c
-                    for line in envelope(study, os.cpu_count() or 1).families[0].lines
+                    for line in envelope(study, default_workers()).families[0].lines
                     for c in line
                 ]
                 ratios = [c.x / block.critical_speed(c.y, -0.5) for c in points]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
 import sys
 from pathlib import Path
@@ -120,6 +119,7 @@ def envelope(
     from ..studies.envelope.store import Store
     from ..studies.envelope.study import study_from
     from ..tables.envelope_tables import envelope_tables
+    from ..workers import default_workers
 
     check_writable(plot, ".svg" if plot is not None and plot.suffix == ".svg" else ".png", force)
     document = toml_keys.read(study)[0] if study is not None else {}
@@ -152,7 +152,7 @@ def envelope(
                 )
                 bar.update(count - bar.n)
 
-            found = run(asked, workers or os.cpu_count() or 1, store, tell)
+            found = run(asked, workers or default_workers(), store, tell)
     except KeyboardInterrupt:
         click.echo(
             f"interrupted; {len(store.found)} landings are kept in {work}, --resume goes on",

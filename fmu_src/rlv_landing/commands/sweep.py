@@ -85,8 +85,8 @@ def show_plan(task: Task, workers: int | None, as_json: bool, notes: tuple[str, 
     """Print how many landings a study makes, its first rows, and how long it may take by one timed
     landing.
     """
-    from ..studies.sweep.sweep import default_workers
     from ..tables.sweep_tables import FIRST_ROWS, plan_table
+    from ..workers import default_workers
 
     count = workers or default_workers()
     notes = (*notes, *task.study.notes)

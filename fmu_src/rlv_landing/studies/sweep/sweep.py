@@ -4,7 +4,6 @@ order of their index.
 
 from __future__ import annotations
 
-import os
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -13,6 +12,7 @@ from threading import Event
 from typing import Any, Protocol
 
 from ...errors import LandingError
+from ...workers import default_workers
 from .result_files import LEADING, Results
 from .row import Plan, Task
 
@@ -88,11 +88,6 @@ class Threads:
             if len(whole[-1]) < self.rows:
                 break
         return whole
-
-
-def default_workers() -> int:
-    """The cores that this process may use."""
-    return len(os.sched_getaffinity(0))
 
 
 @contextmanager
