@@ -87,7 +87,7 @@ def animate(
     output = files[-1]
     if output.suffix not in ENDINGS:
         raise LandingError(f"{output} must end in {' or '.join(ENDINGS)}")
-    check_writable(output, output.suffix, force)
+    check_writable(output, output.suffix, force=force)
     given = (preset, file, mode, pairs)
     cut = False
     if len(files) == 2:

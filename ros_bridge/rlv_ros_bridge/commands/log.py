@@ -178,8 +178,8 @@ def export(
         )
     if output is not None and output.suffix not in ENDINGS:
         raise LandingError(f"{output} must end in {' or '.join(ENDINGS)}")
-    check_writable(output, output.suffix if output is not None else "", force)
-    check_writable(plot, ".png", force)
+    check_writable(output, output.suffix if output is not None else "", force=force)
+    check_writable(plot, ".png", force=force)
     if plot is not None and topics:
         raise LandingError("--plot needs every topic; leave --topics out")
     reader = open_log(log)

@@ -81,7 +81,7 @@ def view(
         SIGINT or SIGTERM.
     """
     given = (preset, file, mode, pairs)
-    check_writable(save, ".rrd", force)
+    check_writable(save, ".rrd", force=force)
     if log is None and any(given):
         raise LandingError(
             "live topics need no vehicle named; leave --preset, --parameters, --mode and --set out"
