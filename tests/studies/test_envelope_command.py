@@ -57,7 +57,7 @@ def test_the_command_writes_what_the_study_found(command: Callable, tmp_path):
     assert [(float(r[V]), float(r[TILT])) for r in rows] == [approx(p) for p in points]
     assert json.loads((tmp_path / "w" / "boundary.json").read_text()) == told
     drawn = picture.read_text()
-    assert all(c.landed.condition in drawn for line in found.families[0].lines for c in line)
+    assert all(c.landing.condition in drawn for line in found.families[0].lines for c in line)
 
 
 def test_a_study_file_gives_the_same_as_options_and_options_win(command: Callable, tmp_path):
@@ -88,7 +88,12 @@ def test_all_lost_is_said_so(command: Callable, tmp_path):
         (["--tolerance", "ground.slope=1"], "ground.slope is not an axis"),
         (["--plot", "picture.pdf"], "picture.pdf must end in .png"),
         (["missing.toml"], "there is no study missing.toml"),
-        (["--family", "ground.slope"], "has no '='"),
+        (["--family", "ground.slope"], "--family 'ground.slope' has no '='"),
+        (["--set", "ground.friction"], "quantity 'ground.friction' has no '='"),
+        (["--set", "ground.frictoin=0.3"], "did you mean ground.friction"),
+        (["--input", "external.force_x=1e9"], "external.force_x = 1e+09 N is outside"),
+        (["--limit", "main_strut.force=5 m"], "has the wrong unit"),
+        (["--tolerance", "drop.tilt"], "--tolerance 'drop.tilt' has no '='"),
     ],
 )
 def test_options_that_cannot_be_are_refused_before_anything_lands(
