@@ -24,9 +24,9 @@ from rich.console import Console
 from rich.table import Table
 
 from rlv_landing.studies.sweep.result_files import PART_ROWS, Results
-from rlv_landing.studies.sweep.row import Task
 from rlv_landing.studies.sweep.study import read_study
 from rlv_landing.studies.sweep.sweep import THREAD_ROWS
+from rlv_landing.studies.sweep.sweep_row import Task
 from rlv_landing.workers import default_workers
 
 STUDY = """
@@ -130,8 +130,8 @@ def parts(study: Path) -> dict[str, float]:
     with ThreadPoolExecutor(1) as pool:
         handed = best(lambda: pool.submit(task.rows, 0, THREAD_ROWS).result()) / THREAD_ROWS
     with tempfile.TemporaryDirectory() as folder:
-        results = Results(Path(folder) / "r", task.about(), read.text, task.quantities(), PART_ROWS)
-        row = [0, 0, 0, *values.values(), *plan.row(values)]
+        results = Results(Path(folder) / "r", task)
+        row = [0, 0, 0, *values.values(), *plan.sweep_row(values)]
         block = [[i, *row[1:]] for i in range(PART_ROWS - 1)]
 
         def write() -> None:

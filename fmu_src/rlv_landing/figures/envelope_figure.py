@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..quantities import Quantity, shown
-from ..studies.envelope.results import runs
+from ..studies.envelope.results import stretches
 from ..studies.envelope.search import Envelope, Family
 from ..studies.sweep.factors import value_text
 from .plots import COLOURS
@@ -39,7 +39,7 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
     figure = Figure(figsize=(1.5 + 4.6 * columns, 1.6 + 4.2 * rows), layout="constrained")
     conditions = list(
         dict.fromkeys(
-            r.condition for f in envelope.families for line in f.lines for r in runs(line)
+            r.condition for f in envelope.families for line in f.lines for r in stretches(line)
         )
     )
     markers = {condition: MARKERS[k % len(MARKERS)] for k, condition in enumerate(conditions)}
@@ -105,8 +105,8 @@ def _draw(
     for lost in (False, True):
         points = [
             (x / sx, y / sy)
-            for x, y, landed in family.landings
-            if landed.lost(envelope.study.criterion) == lost
+            for x, y, landing in family.landings
+            if landing.lost(envelope.study.criterion) == lost
         ]
         if points:
             xs, ys = map(list, zip(*points))
@@ -121,13 +121,13 @@ def _draw(
             )
     for line in family.lines:
         ax.plot([c.x / sx for c in line], [c.y / sy for c in line], color=colour, linewidth=1.6)
-        for run in runs(line):
-            marked = (run.points[0], run.points[len(run.points) // 2])
+        for stretch in stretches(line):
+            marked = (stretch.points[0], stretch.points[len(stretch.points) // 2])
             xs, ys = [c.x / sx for c in marked], [c.y / sy for c in marked]
             ax.plot(
                 xs,
                 ys,
-                markers[run.condition],
+                markers[stretch.condition],
                 color=colour,
                 markeredgecolor="white",
                 markersize=7,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..quantities import shown
-from ..studies.envelope.results import NAMES, runs, verdict
+from ..studies.envelope.results import NAMES, stretches, verdict
 from ..studies.envelope.search import Envelope, Family
 from ..studies.sweep.factors import value_text
 from .landing import new_table, render
@@ -35,11 +35,12 @@ def envelope_tables(found: Envelope) -> str:
     )
     for f in found.families:
         for line in f.lines:
-            for run in runs(line):
+            for stretch in stretches(line):
                 ends = [
-                    f"({c.x / sx:.4g}, {c.y / sy:.4g})" for c in (run.points[0], run.points[-1])
+                    f"({c.x / sx:.4g}, {c.y / sy:.4g})"
+                    for c in (stretch.points[0], stretch.points[-1])
                 ]
-                critical.add_row(_family(f), *ends, run.condition, str(len(run.points)))
+                critical.add_row(_family(f), *ends, stretch.condition, str(len(stretch.points)))
     open_ended = sum(f.count("moving") for f in found.families)
     parts = [
         render(table, 170),

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from ..studies.sweep.row import Task
 from ..studies.sweep.sensitivity import Indices
 from ..studies.sweep.summary import Summary
+from ..studies.sweep.sweep_row import Task
 from .landing import new_table, render
 
 FIRST_ROWS = 5
