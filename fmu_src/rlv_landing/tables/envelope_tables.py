@@ -1,4 +1,4 @@
-"""What an envelope found, as people read it in a terminal."""
+"""The tables of an envelope."""
 
 from __future__ import annotations
 
@@ -10,9 +10,7 @@ from .landing import new_table, render
 
 
 def envelope_tables(found: Envelope) -> str:
-    """Every family with its landings' outcomes, the critical conditions along the boundaries, and
-    what it took.
-    """
+    """Outcomes by family, critical conditions along the boundaries, and the number of landings."""
     study = found.study
     table = new_table(
         f"lost: {study.criterion}; {study.x.name} and {study.y.name}",
@@ -48,12 +46,14 @@ def envelope_tables(found: Envelope) -> str:
     ]
     if open_ended:
         parts.append(
-            f"{open_ended} landings were neither at rest nor toppled at {study.until:g} s and count as not toppled\n"
+            f"{open_ended} landings were neither at rest nor toppled at {study.until:g} s "
+            "and count as not toppled\n"
         )
     parts.append(
         f"{found.landings} landings; a uniform grid of the same resolution takes {found.uniform}, "
         f"{found.uniform / found.landings:.0f} times as many\n"
-        f"an island that lies within one of the {study.cells} x {study.cells} coarse cells and touches no corner is not seen; --cells\n"
+        f"an island that lies within one of the {study.cells} x {study.cells} coarse cells "
+        "and touches no corner is not found; --cells\n"
     )
     return "".join(parts)
 
