@@ -18,17 +18,15 @@ from ..tables.landing import counts_line, near_zero_note, number, parameter_reco
 from ..validation.paper import Scalar
 from ..validation.validate import Validation
 from .plots import inline_svg
-from .report_figures import (  # fmt: skip
-    AUXILIARY,
-    FORCE,
+from .report_figures import (
     NUMBERS,
-    STROKE,
     acceleration_figure,
     curve_figure,
     error_figure,
     loop_figure,
     measures_figure,
 )
+from .report_marks import AUXILIARY, FORCE, STROKE
 from .report_movement import movement_figure
 
 TEMPLATE = Path(__file__).with_name("report.html.j2")

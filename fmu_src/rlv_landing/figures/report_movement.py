@@ -11,7 +11,7 @@ import numpy as np
 
 from ..parameters import Parameters
 from .plots import COLOURS
-from .report_figures import PITCH, draw_marks, marks
+from .report_marks import PITCH, draw_marks, marks
 from .wireframe import Lines, ground_height, wireframe
 
 if TYPE_CHECKING:
