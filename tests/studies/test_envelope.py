@@ -32,9 +32,7 @@ LIMITS = {"main_strut.force": 9e3, "contact.force": 2e4}
 
 
 def small(**changes) -> EnvelopeStudy:
-    """Speeds and tilts to both sides; few cells, landings given up early, for a landing takes its
-    time.
-    """
+    """Speeds and tilts to both sides, with few cells and short landings to save time."""
     x, y = Axis(V, -6.0, 6.0, 0.75), Axis(TILT, radians(-12), radians(12), radians(4))
     return EnvelopeStudy(
         **{
@@ -140,7 +138,7 @@ def test_landings_of_another_study_are_refused(tmp_path):
     Store(small(), tmp_path / "a.jsonl").close()
     with pytest.raises(LandingError, match="holds landings of another study or version"):
         Store(small(until=3.0), tmp_path / "a.jsonl", resume=True)
-    with pytest.raises(LandingError, match=r"a\.jsonl exists; --resume goes on with it"):
+    with pytest.raises(LandingError, match=r"a\.jsonl exists; --resume continues with it"):
         Store(small(), tmp_path / "a.jsonl")
     (tmp_path / "b.jsonl").write_text("not ours")
     with pytest.raises(LandingError, match="holds landings of another study or version"):
@@ -203,7 +201,8 @@ AXES = {
     [
         (
             {"x": {**AXES["x"], "name": "drop.horizontal"}},
-            r"unknown quantity for an axis 'drop\.horizontal'; did you mean drop\.horizontal_velocity",
+            r"unknown quantity for an axis 'drop\.horizontal'; "
+            r"did you mean drop\.horizontal_velocity",
         ),
         (
             {"x": {**AXES["x"], "name": "drop.mode"}},
@@ -219,7 +218,8 @@ AXES = {
         ),
         (
             {"x": {**AXES["x"], "tolerance": 0}},
-            r"tolerance = 0 m/s is outside \[1\.14441e-05, 12\] m/s; give the resolution that you need",
+            r"tolerance = 0 m/s is outside \[1\.14441e-05, 12\] m/s; "
+            r"give the resolution that you need",
         ),
         ({"x": {**AXES["x"], "tolerance": 1e-9}}, r"tolerance = 1e-09 m/s is outside"),
         (

@@ -1,6 +1,4 @@
-"""The results of a sweep outlive whatever ends it: Ctrl-C, SIGTERM, kill -9, a full disk; and go on
-where they stopped.
-"""
+"""The results of a sweep survive Ctrl-C, SIGTERM, kill -9 and a full disk, and can be continued."""
 
 from __future__ import annotations
 
@@ -35,7 +33,7 @@ def test_an_ended_sweep_keeps_its_rows_and_resume_makes_the_rest(tmp_path, numbe
         assert process.returncode == -number
     else:
         assert process.returncode == 130, err
-        assert "of 40000 landings are kept in r, --resume goes on" in err
+        assert "of 40000 landings are kept in r, --resume continues" in err
         assert "Traceback" not in err
     kept = [row["index"] for part in parts(folder) for row in rows(part)]
     assert kept == list(range(len(kept)))
@@ -83,15 +81,15 @@ def files_up_to(size: int) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
-def test_a_full_disk_keeps_what_is_done_and_resume_goes_on_when_there_is_room(tmp_path, command):
+def test_a_full_disk_keeps_what_is_done_and_resume_continues_when_there_is_room(tmp_path, command):
     study = write_study(tmp_path, samples=60)
     folder = tmp_path / "r"
     with files_up_to(30_000):
         done = command("sweep", str(study), "--results", str(folder))
     assert done.code == 1, done.err
     assert (
-        f"cannot be written: File too large; make room; 0 of 120 landings are kept in {folder}, --resume goes on"
-        in done.err
+        "cannot be written: File too large; make room; "
+        f"0 of 120 landings are kept in {folder}, --resume continues" in done.err
     )
     assert len(done.err.strip().splitlines()) == 1
     assert not list(folder.rglob("*.part"))
@@ -153,7 +151,7 @@ def test_a_changed_study_is_not_resumed_and_the_change_is_named(tmp_path, comman
     before = (tmp_path / "r" / "results.parquet").read_bytes()
     refused = command("sweep", str(study), "--results", folder)
     assert refused.code == 2
-    assert "--resume goes on with it, --results names another folder" in refused.err
+    assert "--resume continues with it, --results names another folder" in refused.err
     study.write_text(
         study.read_text()
         .replace("until = 0.1", "until = 0.2")

@@ -44,7 +44,10 @@ def side(parameters: Parameters, vx: float) -> str:
 
 
 def test_a_strike_keeps_the_angular_momentum_about_the_foot():
-    """In Cartesian components: r x M v + I w before, r x M (w x r) + I w after, clockwise positive."""
+    """Cartesian components: r x M v + I w before, r x M (w x r) + I w after.
+
+    Clockwise is positive.
+    """
     pitch, vx, vy, rate = 0.15, 2.0, -0.7, 0.3
     # body axes to inertial, clockwise: the foot is at (1, -1.96)
     rx, ry = -(1.0 * cos(pitch) - 1.96 * sin(pitch)), -(-1.0 * sin(pitch) - 1.96 * cos(pitch))

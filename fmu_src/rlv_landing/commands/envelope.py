@@ -134,7 +134,7 @@ def envelope(
         found = _search(asked, store, options["workers"] or default_workers())
     except KeyboardInterrupt:
         click.echo(
-            f"interrupted; {len(store.found)} landings are kept in {work}, --resume goes on",
+            f"interrupted; {len(store.found)} landings are kept in {work}, --resume continues",
             err=True,
         )
         sys.exit(INTERRUPTED)

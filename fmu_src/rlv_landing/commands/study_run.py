@@ -165,7 +165,7 @@ def _run_or_exit(task: Task, results: Results, engine: Engine, *, strict: bool) 
             reason, status = f"error: {e}", FAILED
     click.echo(
         f"{reason}; {results.rows_done} of {len(task)} landings are kept in {results.folder}, "
-        "--resume goes on",
+        "--resume continues",
         err=True,
     )
     sys.exit(status)

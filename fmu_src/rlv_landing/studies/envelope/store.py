@@ -35,7 +35,7 @@ class Store:
         if path is None:
             return
         if path.exists() and not resume:
-            raise LandingError(f"{path} exists; --resume goes on with it, or name another folder")
+            raise LandingError(f"{path} exists; --resume continues with it, or name another folder")
         self._file = path.open("a+", encoding="ascii", newline="\n")
         self._file.seek(0)
         lines = self._file.read().splitlines(keepends=True)

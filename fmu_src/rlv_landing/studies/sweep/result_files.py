@@ -77,7 +77,7 @@ class Results:
         if study.exists():
             if not resume:
                 raise LandingError(
-                    f"{self.folder} holds a study's results; --resume goes on with it, "
+                    f"{self.folder} holds a study's results; --resume continues with it, "
                     "--results names another folder"
                 )
             self._compare()
