@@ -1,7 +1,7 @@
 """A co-simulation master in Python: FMPy's instances, a fixed step, Jacobi.
 
-Jacobi: all instances make their step with the inputs of its start; then outputs go to the inputs
-    that they are connected to.
+Jacobi: all instances make their step with the inputs of its start. Then outputs go to the inputs
+that they are connected to.
 """
 
 from __future__ import annotations
@@ -39,15 +39,18 @@ class Component:
         self.slave.instantiate()
 
     def start(self, parameters: dict[str, float]) -> None:
+        """Initialise the instance at time 0 with `parameters`."""
         self.slave.setupExperiment(startTime=0.0)
         self.slave.enterInitializationMode()
         self.set(parameters)
         self.slave.exitInitializationMode()
 
     def set(self, values: dict[str, float]) -> None:
+        """Set real variables by name."""
         self.slave.setReal([self.references[name] for name in values], list(values.values()))
 
     def get(self) -> list[float]:
+        """The real outputs, in the order of `outputs`."""
         return self.slave.getReal(self._output_references)
 
 
@@ -59,8 +62,18 @@ def simulate(
     until: float = 3.0,
     progress: Callable[[float], object] | None = None,
 ) -> dict[str, np.ndarray]:
-    """The real outputs of all components at every communication point from 0 to `until` [s]: `time`
-    and `component.output` -> values.
+    """Run all components from 0 to `until`.
+
+    Args:
+        fmus: The FMU of each component.
+        connections: (component, output) -> (component, input).
+        parameters: Parameters of each component.
+        step: Communication step [s].
+        until: End time [s].
+        progress: Called with the time after each step.
+
+    Returns:
+        The real outputs at every communication point: `time` and `component.output` -> values.
     """
     with TemporaryDirectory() as folder:
         components = {name: Component(name, file, Path(folder)) for name, file in fmus.items()}
@@ -76,7 +89,8 @@ def simulate(
             if k > 0:
                 for component in components.values():
                     component.slave.doStep(time, step)
-                time += step  # summed, as Ecos does: the communication points of both are the same to the last digit
+                # summed, as Ecos does: both have the same communication points to the last digit
+                time += step
             transfer(
                 components,
                 connections,

@@ -49,7 +49,7 @@ def save_picture(results: dict[str, dict[str, np.ndarray]], path: Path) -> None:
     )
     for ax, label in zip(axes, labels):
         ax.set_ylabel(label)
-        ax.grid(True, linewidth=0.3)
+        ax.grid(visible=True, linewidth=0.3)
         ax.margins(x=0.0)
     axes[0].set_title("Engine tail-off and touchdown on a calm and on a moving deck", loc="left")
     axes[0].legend(loc="lower left", frameon=False)

@@ -1,5 +1,6 @@
-"""Land on a calm and on a moving deck: FMPy and Ecos run the same system of three FMUs; compare
-them and draw what happens.
+"""Land on a calm and on a moving deck with FMPy and with Ecos.
+
+Both run the same system of three FMUs; their results are compared and drawn.
 """
 
 from __future__ import annotations
@@ -45,6 +46,7 @@ LEGS = (1, 2, 3, 4)
     help="The picture's file  [default: ship_deck.png in --out]",
 )
 def main(out: Path, until: float, step: float, picture: Path | None) -> None:
+    """Run both decks and draw them."""
     out.mkdir(parents=True, exist_ok=True)
     picture = picture or out / "ship_deck.png"
     try:
@@ -62,8 +64,12 @@ def main(out: Path, until: float, step: float, picture: Path | None) -> None:
 def run(
     name: str, parameters: Parameters, fmus: dict[str, Path], out: Path, until: float, step: float
 ) -> dict[str, np.ndarray]:
-    """Land on the deck `name` by FMPy and by Ecos, write both results and the SSP file to `out`,
-    tell what happened; return FMPy's.
+    """Land on the deck `name` by FMPy and by Ecos, and print a report.
+
+    Both results and the SSP file are written to `out`.
+
+    Returns:
+        FMPy's result: column -> values.
     """
     with tqdm(
         total=2.0 * until, desc=f"{name} deck", bar_format="{l_bar}{bar}| {n:.2f} of {total:.2f} s"
@@ -86,13 +92,14 @@ def run(
             header=",".join(table),
             comments="",
         )
-    click.echo(told(name, result, again))
+    click.echo(report(name, result, again))
     return result
 
 
 def difference(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> tuple[float, str]:
-    """The largest difference of two results as part of the quantity's largest value, and that
-    quantity's name.
+    """The largest difference of two results, and the name of its quantity.
+
+    It is a part of the quantity's largest value.
     """
     parts = (
         (float(np.abs(one[name] - other[name]).max() / (np.abs(one[name]).max() or 1.0)), name)
@@ -101,11 +108,14 @@ def difference(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> tupl
     return max(parts)
 
 
-def told(name: str, result: dict[str, np.ndarray], again: dict[str, np.ndarray]) -> str:
+def report(name: str, result: dict[str, np.ndarray], again: dict[str, np.ndarray]) -> str:
     """Two lines about a landing."""
     touching = np.any([result[f"landing.leg[{leg}].contact.force_y"] > 0.0 for leg in LEGS], axis=0)
     if not touching.any():
-        return f"{name} deck: no footpad has touched it by {result['time'][-1]:g} s; take a longer --until"
+        return (
+            f"{name} deck: no footpad has touched it by {result['time'][-1]:g} s; "
+            "take a longer --until"
+        )
     first = int(np.argmax(touching))
     speed = result["deck.heave_rate"][first - 1] - result["landing.body.vy"][first - 1]
     force = -min(result[f"landing.leg[{leg}].main_strut.force"].min() for leg in LEGS)
@@ -117,7 +127,8 @@ def told(name: str, result: dict[str, np.ndarray], again: dict[str, np.ndarray])
         else "give the same digits"
     )
     return (
-        f"{name} deck: touches at {result['time'][first]:.3f} s with {speed:.2f} m/s relative to the deck; "
+        f"{name} deck: touches at {result['time'][first]:.3f} s "
+        f"with {speed:.2f} m/s relative to the deck; "
         f"main struts up to {force:.0f} N and {1e3 * stroke:.1f} mm\n"
         f"  FMPy and Ecos {compared}"
     )

@@ -1,4 +1,4 @@
-"""The same system as an SSP file (System Structure and Parameterization 1.0), and Ecos running it."""
+"""The system as an SSP file (System Structure and Parameterization 1.0), and its run in Ecos."""
 
 from __future__ import annotations
 
@@ -29,8 +29,9 @@ def write(
     parameters: Parameters,
     until: float,
 ) -> None:
-    """Write the system to `path` (.ssp): the FMUs, their connections, and the parameters of all of
-    them as the set `start`.
+    """Write the system to `path` (.ssp): its FMUs, connections and parameters.
+
+    The parameters of all FMUs are the set `start`.
     """
     prefixes = {f"xmlns:{prefix}": uri for prefix, uri in NAMESPACES.items()}
     root = Element("ssd:SystemStructureDescription", prefixes, name=path.stem, version="1.0")
@@ -61,8 +62,9 @@ def write(
 def add_component(
     elements: Element, name: str, file: Path, connections: Connections, parameters: dict[str, float]
 ) -> None:
-    """Add the FMU `file` as the component `name`: what is connected, and its parameters, of the
-    types that the FMU states.
+    """Add the FMU `file` as the component `name`, with its connectors and parameters.
+
+    Their types are those of the FMU's model description.
     """
     types = {v.name: v.type for v in fmpy.read_model_description(str(file)).modelVariables}
     element = SubElement(
@@ -106,13 +108,22 @@ def run_in_ecos(
     until: float = 3.0,
     progress: Callable[[float], object] | None = None,
 ) -> dict[str, np.ndarray]:
-    """Ecos runs the SSP file `path`: the real outputs `columns` (`component.output`) and `time`, as
-    `master.simulate` gives them.
+    """Run the SSP file `path` in Ecos.
 
-    Raises FileNotFoundError where Ecos or its libtbb is not installed.
+    Args:
+        path: The file.
+        columns: The real outputs to return, `component.output`.
+        step: Communication step [s].
+        until: End time [s].
+        progress: Called with the time after each step.
+
+    Returns:
+        `time` and the columns, as `master.simulate` returns them.
+
+    Raises:
+        FileNotFoundError: Ecos or its libtbb is not installed.
     """
-    # the wheel `tbb` puts libtbb where the loader does not look; once loaded, it is found by its
-    # name
+    # the wheel `tbb` puts libtbb where the loader does not search; once loaded, it is found by name
     libtbb = Path(sys.prefix) / "lib" / "libtbb.so.12"
     if not (libtbb.is_file() and find_spec("ecospy")):
         raise FileNotFoundError(

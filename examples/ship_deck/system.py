@@ -1,6 +1,4 @@
-"""The system: three FMUs, what is connected to what, and the parameters of a calm and a moving
-deck.
-"""
+"""The system: three FMUs, their connections, and the parameters of a calm and a moving deck."""
 
 from __future__ import annotations
 
@@ -17,8 +15,8 @@ ROOT = HERE.parent.parent
 LANDING = ROOT / "build" / "RlvLanding.fmu"
 SLAVES = {"deck": "ship_deck.py", "engine": "engine_tail_off.py"}
 
-# output of a component -> input of another; the rates too, since the ground goes on at them within
-# a step
+# output of a component -> input of another; the rates too, since the ground moves at them within a
+# step
 CONNECTIONS = {
     **{
         ("deck", name): ("landing", f"ground.{name}")
@@ -30,8 +28,8 @@ CONNECTIONS = {
     },
 }
 
-# A landing burn: at time 0 the vehicle hangs 0.2 m above the deck with its engine holding most of
-# its weight.
+# a landing burn: at time 0 the vehicle is 0.2 m above the deck and its engine carries most of its
+# weight
 DROP = {
     "drop.contact_time": 0.2,
     "drop.vertical_velocity": -2.0,
@@ -45,9 +43,10 @@ DECKS = {"calm": CALM, "moving": MOVING}
 
 
 def build(folder: Path, landing: Path = LANDING) -> dict[str, Path]:
-    """The file of every component; those of deck and engine are built into `folder`.
+    """The FMU of every component; those of deck and engine are built into `folder`.
 
-    Raises FileNotFoundError if `landing` is missing.
+    Raises:
+        FileNotFoundError: `landing` is missing.
     """
     if not landing.is_file():
         raise FileNotFoundError(f"{landing} is missing: run make build/RlvLanding.fmu")
@@ -63,8 +62,9 @@ def build(folder: Path, landing: Path = LANDING) -> dict[str, Path]:
 
 
 def add_front(fmu: Path) -> None:
-    """Give an FMU of pythonfmu the C front of RlvLanding.fmu, without which it runs in hosts that
-    are Python processes only.
+    """Give an FMU of pythonfmu the C front of RlvLanding.fmu.
+
+    Without it the FMU runs only in hosts that are Python processes.
     """
     sys.path.insert(0, str(ROOT / "fmu_src"))
     from fmu_build.binary import replace_binaries

@@ -1,4 +1,4 @@
-"""Identification: it finds known parameters again, repeats itself, and continues after an interrupt.
+"""Identification: it finds known parameters again, repeats itself, and resumes after an interrupt.
 
 Input that makes no sense is refused.
 """

@@ -1,4 +1,4 @@
-"""Studies for the tests of sweeps, the command in a process of its own, and the rows that it leaves."""
+"""Studies for the tests of sweeps, and the command in a process of its own."""
 
 from __future__ import annotations
 

@@ -201,8 +201,10 @@ AXES = {
     [
         (
             {"x": {**AXES["x"], "name": "drop.horizontal"}},
-            r"unknown quantity for an axis 'drop\.horizontal'; "
-            r"did you mean drop\.horizontal_velocity",
+            (
+                r"unknown quantity for an axis 'drop\.horizontal'; "
+                r"did you mean drop\.horizontal_velocity"
+            ),
         ),
         (
             {"x": {**AXES["x"], "name": "drop.mode"}},
@@ -218,8 +220,10 @@ AXES = {
         ),
         (
             {"x": {**AXES["x"], "tolerance": 0}},
-            r"tolerance = 0 m/s is outside \[1\.14441e-05, 12\] m/s; "
-            r"give the resolution that you need",
+            (
+                r"tolerance = 0 m/s is outside \[1\.14441e-05, 12\] m/s; "
+                r"give the resolution that you need"
+            ),
         ),
         ({"x": {**AXES["x"], "tolerance": 1e-9}}, r"tolerance = 1e-09 m/s is outside"),
         (

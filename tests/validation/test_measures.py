@@ -63,9 +63,9 @@ def test_a_constant_force_has_efficiency_1():
 
 
 def test_the_dampers_work_is_what_the_model_says_they_hold_and_have_dissipated(validation):
-    """int -F ds = change of liquid and stop energy + dissipation in orifice, seal and stop.
+    """The work int -F ds is the change of liquid and stop energy plus the dissipation.
 
-    The sums are over the whole landing and all legs.
+    Dissipation is in orifice, seal and stop; the sums are over the whole landing and all legs.
     """
     for history in validation.histories.values():
         done = sum(

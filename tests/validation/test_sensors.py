@@ -183,8 +183,10 @@ def broken(what: str) -> History:
         ("inf", r"stroke = inf m at t = 0\.02 s"),
         (
             "gap",
-            r"time goes on by 0\.0102 s at t = 0\.0498 s "
-            r"where samples are 0\.0002 s apart; .* resample",
+            (
+                r"time goes on by 0\.0102 s at t = 0\.0498 s "
+                r"where samples are 0\.0002 s apart; .* resample"
+            ),
         ),
         ("back", r"time goes back by 0\.0002 s at t = 0\.0498 s"),
         ("twice", r"time stands still for 0 s at t = 0\.0498 s"),

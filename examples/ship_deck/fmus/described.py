@@ -1,4 +1,4 @@
-"""What pythonfmu's own variables lack: a unit. Both FMUs of this example carry this file."""
+"""Variables with units, which pythonfmu's own lack. Both FMUs of this example carry this file."""
 
 from xml.etree.ElementTree import Element, SubElement
 
@@ -23,6 +23,7 @@ class RealWithUnit(Real):
         self.unit = unit
 
     def to_xml(self) -> Element:
+        """The variable's element, with its unit."""
         element = super().to_xml()
         element[0].set("unit", self.unit)
         return element
@@ -32,6 +33,7 @@ class DescribedSlave(Fmi2Slave):
     """A slave whose variables have units: parameters with a start value, and outputs."""
 
     def parameter(self, name: str, unit: str, start: float, meaning: str) -> None:
+        """Register a parameter with its start value."""
         setattr(self, name, start)
         fixed = {
             "causality": Fmi2Causality.parameter,
@@ -41,11 +43,13 @@ class DescribedSlave(Fmi2Slave):
         self.register_variable(RealWithUnit(name, unit, description=meaning, **fixed))
 
     def output(self, name: str, unit: str, meaning: str) -> None:
+        """Register an output."""
         setattr(self, name, 0.0)
         calculated = {"causality": Fmi2Causality.output, "initial": Fmi2Initial.calculated}
         self.register_variable(RealWithUnit(name, unit, description=meaning, **calculated))
 
     def to_xml(self, model_options=None) -> Element:
+        """The model description, with unit definitions and initial unknowns."""
         root = super().to_xml(model_options or {})
         definitions = Element("UnitDefinitions")
         for unit, exponents in BASE_UNITS.items():

@@ -6,8 +6,9 @@ from described import DescribedSlave
 
 
 class EngineTailOff(DescribedSlave):
-    """Force on the body in the inertial frame and moment about its CG: what `external.*` of
-    RlvLanding takes.
+    """Force on the body in the inertial frame and moment about its CG.
+
+    They are the inputs `external.*` of RlvLanding.
     """
 
     def __init__(self, **kwargs):
@@ -31,13 +32,16 @@ class EngineTailOff(DescribedSlave):
         self.output("moment", "N.m", "moment of the thrust about the CG, clockwise positive")
 
     def exit_initialization_mode(self):
+        """Set the outputs at time 0."""
         self.burn(0.0)
 
     def do_step(self, current_time, step_size):
+        """Set the outputs at the end of the step."""
         self.burn(current_time + step_size)
         return True
 
     def burn(self, time: float) -> None:
+        """Set the outputs at `time` [s]."""
         force = self.thrust * exp(-max(0.0, time - self.cut_off) / self.decay)
         self.force_x, self.force_y = force * sin(self.direction), force * cos(self.direction)
         self.moment = force * self.arm

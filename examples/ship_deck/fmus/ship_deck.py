@@ -8,8 +8,14 @@ from described import DescribedSlave
 def sinusoid(
     time: float, amplitude: float, period: float, phase: float, start_up: float
 ) -> tuple[float, float]:
-    """Value and rate at `time` [s] of a sinusoid that fades in over `start_up` [s], with (1 -
-    cos)/2, so that value and rate start at 0.
+    """Value and rate of a sinusoid that fades in with (1 - cos)/2 and starts from rest.
+
+    Args:
+        time: Time [s].
+        amplitude: Amplitude.
+        period: Period [s].
+        phase: Phase at time 0 [rad].
+        start_up: Duration of the fade [s].
     """
     omega = 2.0 * pi / period
     wave, wave_rate = (
@@ -26,8 +32,9 @@ def sinusoid(
 
 
 class ShipDeck(DescribedSlave):
-    """Heave (up) and tilt (clockwise positive) of the deck with their rates: what `ground.*` of
-    RlvLanding takes.
+    """Heave (up) and tilt (clockwise positive) of the deck with their rates.
+
+    They are the inputs `ground.*` of RlvLanding.
     """
 
     def __init__(self, **kwargs):
@@ -39,7 +46,7 @@ class ShipDeck(DescribedSlave):
         self.parameter("tilt_period", "s", 6.0, "period of the tilt")
         self.parameter("tilt_phase", "rad", 0.0, "phase of the tilt at time 0")
         self.parameter(
-            "start_up", "s", 0.5, "time over which the motion fades in; 0: it is there at once"
+            "start_up", "s", 0.5, "time over which the motion fades in; 0: it starts at once"
         )
         self.output("heave", "m", "lift of the deck")
         self.output("heave_rate", "m/s", "rate of the lift")
@@ -47,13 +54,16 @@ class ShipDeck(DescribedSlave):
         self.output("tilt_rate", "rad/s", "rate of the tilt")
 
     def exit_initialization_mode(self):
+        """Set the outputs at time 0."""
         self.move(0.0)
 
     def do_step(self, current_time, step_size):
+        """Set the outputs at the end of the step."""
         self.move(current_time + step_size)
         return True
 
     def move(self, time: float) -> None:
+        """Set the outputs at `time` [s]."""
         self.heave, self.heave_rate = sinusoid(
             time, self.heave_amplitude, self.heave_period, self.heave_phase, self.start_up
         )
