@@ -12,7 +12,8 @@ from pytest import approx
 from rlv_landing import Landing, LandingError, load_preset
 from rlv_landing.history import History
 from rlv_landing.quantities import LEGS
-from rlv_landing.studies.outcome import LIMITS, SEVERITY, outcome
+from rlv_landing.studies.limits import LIMITS
+from rlv_landing.studies.outcome import SEVERITY, outcome
 
 FIGURES = "yue2022-figures"
 HARD = {"drop.vertical_velocity": -3.5, "main_strut.stroke_max": 0.03}

@@ -162,7 +162,7 @@ def _study(path: Path | None, options: dict[str, Any]) -> EnvelopeStudy:
 
 def _override(document: dict[str, Any], options: dict[str, Any]) -> None:
     """Let the options replace what the study's document gives."""
-    from ..studies.outcome import LIMITS
+    from ..studies.limits import LIMITS
     from ..studies.sweep.factors import VARIABLES
 
     keys = document.setdefault("envelope", {})

@@ -54,7 +54,7 @@ def tables(document: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
     return value
 
 
-def only(given: Iterable[str], known: Iterable[str], what: str) -> None:
+def refuse_unknown(given: Iterable[str], known: Iterable[str], what: str) -> None:
     """Refuse a key that is not known; the error names the nearest."""
     known = list(known)
     for key in given:
@@ -62,12 +62,12 @@ def only(given: Iterable[str], known: Iterable[str], what: str) -> None:
             raise unknown(what, key, known)
 
 
-def flat(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+def by_dotted_name(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
     """Values by dotted name: `drop.tilt = 1` and `[drop] tilt = 1` are the same."""
     found: dict[str, Any] = {}
     for key, value in nested.items():
         if isinstance(value, dict):
-            found.update(flat(value, f"{prefix}{key}."))
+            found.update(by_dotted_name(value, f"{prefix}{key}."))
         else:
             found[f"{prefix}{key}"] = value
     return found
@@ -77,8 +77,8 @@ def values(
     nested: Mapping[str, Any], known: Mapping[str, Quantity], what: str
 ) -> dict[str, float | str]:
     """Values in SI by name, each a number in SI or a text with a unit."""
-    given = flat(nested)
-    only(given, known, what)
+    given = by_dotted_name(nested)
+    refuse_unknown(given, known, what)
     return {name: parse_value(known[name], value) for name, value in given.items()}
 
 
@@ -102,7 +102,7 @@ def texts(keys: Mapping[str, Any], key: str) -> list[str] | None:
     return value
 
 
-def whole(keys: Mapping[str, Any], key: str, default: int, lowest: int, highest: int) -> int:
+def integer(keys: Mapping[str, Any], key: str, default: int, lowest: int, highest: int) -> int:
     """A whole number within bounds, both included."""
     value = keys.get(key, default)
     if isinstance(value, bool) or not isinstance(value, int) or not lowest <= value <= highest:

@@ -9,7 +9,8 @@ from typing import Any
 from ...errors import LandingError
 from ...landing import Landing
 from ...parameters import PARAMETER_QUANTITIES
-from ..outcome import PassedLimit, outcome
+from ..limits import PassedLimit
+from ..outcome import outcome
 from ..whole_landing import whole_landing
 from .study import EnvelopeStudy
 

@@ -18,7 +18,8 @@ from ...parameters import PARAMETER_QUANTITIES, Parameters, check_value
 from ...presets import parse_value, to_toml
 from ...quantities import Quantity
 from .. import toml_keys
-from ..outcome import DEFAULT_SLIDE, LIMITS
+from ..limits import LIMITS
+from ..outcome import DEFAULT_SLIDE
 from ..sweep.factors import VARIABLES, variable
 from .boundary import Lattice
 
@@ -200,11 +201,11 @@ def study_from(document: Mapping[str, Any], folder: Path = Path()) -> EnvelopeSt
         LandingError: Unknown keys or names, wrong units, values out of bounds, no axes, or an empty
             family.
     """
-    toml_keys.only(document, TABLES, "table")
+    toml_keys.refuse_unknown(document, TABLES, "table")
     keys = toml_keys.table(document, "envelope")
-    toml_keys.only(keys, KEYS, "key of [envelope]")
+    toml_keys.refuse_unknown(keys, KEYS, "key of [envelope]")
     fixed = toml_keys.values(toml_keys.table(document, "set"), VARIABLES, "quantity in [set]")
-    families = read_families(toml_keys.flat(toml_keys.table(document, "families")))
+    families = read_families(toml_keys.by_dotted_name(toml_keys.table(document, "families")))
     x, y = _axis(document, "x"), _axis(document, "y")
     for name in (x.name, y.name, *families[0]):
         if name in fixed:
@@ -225,15 +226,15 @@ def study_from(document: Mapping[str, Any], folder: Path = Path()) -> EnvelopeSt
         inputs={n: float(v) for n, v in fixed.items() if n not in PARAMETER_QUANTITIES},
         criterion=toml_keys.text(keys, "criterion", "toppled"),
         limits={name: float(v) for name, v in limits.items()},
-        cells=toml_keys.whole(keys, "cells", 8, 2, 256),
-        levels=toml_keys.whole(keys, "levels", 2, 0, 6),
+        cells=toml_keys.integer(keys, "cells", 8, 2, 256),
+        levels=toml_keys.integer(keys, "levels", 2, 0, 6),
         **numbers,
     )
 
 
 def read_families(keys: Mapping[str, Any]) -> tuple[dict[str, float | str], ...]:
     """Every combination of the values given by name; one empty family where there are none."""
-    toml_keys.only(keys, VARIABLES, "quantity in [families]")
+    toml_keys.refuse_unknown(keys, VARIABLES, "quantity in [families]")
     columns: list[Sequence[float | str]] = []
     for name, values in keys.items():
         if not isinstance(values, (list, tuple)) or not values:
@@ -250,7 +251,7 @@ def read_families(keys: Mapping[str, Any]) -> tuple[dict[str, float | str], ...]
 
 def _axis(document: Mapping[str, Any], key: str) -> Axis:
     keys = toml_keys.table(document, key)
-    toml_keys.only(keys, AXIS_KEYS, f"key of [{key}]")
+    toml_keys.refuse_unknown(keys, AXIS_KEYS, f"key of [{key}]")
     for needed in ("name", "low", "high"):
         if needed not in keys:
             raise LandingError(

@@ -87,7 +87,7 @@ class Cluster:
             except BaseException as e:
                 raise self._lost(e) from None
 
-    def room(self) -> int:
+    def capacity(self) -> int:
         """The number of tasks that may wait: enough that no worker runs out of work."""
         return 4 * self._threads() + 8
 

@@ -70,16 +70,16 @@ def grid(factors: Sequence[Factor]) -> Design:
             f"this grid has {count} points, more than {LARGEST}; take fewer levels, "
             'or method = "sobol" or "lhs"'
         )
-    places = (
+    indices = (
         np.unravel_index(np.arange(count), [len(values) for values in levels]) if levels else ()
     )
-    return Design({f.name: values[i] for f, values, i in zip(factors, levels, places)}, count)
+    return Design({f.name: values[i] for f, values, i in zip(factors, levels, indices)}, count)
 
 
 def drawn(factors: Sequence[Factor], method: str, count: int, seed: int) -> Design:
     """`count` samples of the factors by `lhs` or `sobol` (scrambled), by `scipy.stats.qmc`."""
-    places = unit_points(method, count, len(factors), seed)
-    return Design({f.name: f.at(places[:, i]) for i, f in enumerate(factors)}, count)
+    points = unit_points(method, count, len(factors), seed)
+    return Design({f.name: f.quantiles(points[:, i]) for i, f in enumerate(factors)}, count)
 
 
 def unit_points(method: str, count: int, dimensions: int, seed: int) -> Array:

@@ -51,10 +51,10 @@ class Factor:
         """The quantity's name."""
         return self.quantity.name
 
-    def at(self, places: Array) -> NDArray[Any]:
-        """The distribution's quantiles at `places`, 0 to 1."""
+    def quantiles(self, probabilities: Array) -> NDArray[Any]:
+        """The distribution's quantiles at `probabilities`, 0 to 1."""
         if self.distribution == "choice":
-            which = np.minimum((places * len(self.values)).astype(int), len(self.values) - 1)
+            which = np.minimum((probabilities * len(self.values)).astype(int), len(self.values) - 1)
             chosen: NDArray[Any] = column(self.values)[which]
             return chosen
         if self.distribution == "normal":
@@ -64,9 +64,9 @@ class Factor:
                 (self.low - self.mean) / self.deviation,
                 (self.high - self.mean) / self.deviation,
             )
-            drawn: Array = truncnorm.ppf(places, low, high, self.mean, self.deviation)
+            drawn: Array = truncnorm.ppf(probabilities, low, high, self.mean, self.deviation)
             return np.clip(drawn, self.low, self.high)
-        return np.clip(self.low + (self.high - self.low) * places, self.low, self.high)
+        return np.clip(self.low + (self.high - self.low) * probabilities, self.low, self.high)
 
     def levels(self) -> NDArray[Any]:
         """The values of a grid.
@@ -124,7 +124,7 @@ def read_factor(entry: Mapping[str, Any]) -> Factor:
         raise LandingError('a [[factor]] has no name; write for example name = "drop.tilt"')
     q = variable(entry["name"], "factor")
     where = f"factor {q.name}"
-    toml_keys.only(entry, ALL_KEYS, f"key of {where}")
+    toml_keys.refuse_unknown(entry, ALL_KEYS, f"key of {where}")
     unit = entry.get("unit", q.unit)
     if not isinstance(unit, str):
         raise LandingError(

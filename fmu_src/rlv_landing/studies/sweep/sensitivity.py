@@ -100,9 +100,10 @@ def sobol_design(study: Study) -> Design:
             "Sobol indices need samples = a power of 2, for example 256 or 1024, "
             f'with method = "sobol" or "lhs"; {found}'
         )
-    places = unit_points("sobol", n, 2 * len(study.factors), study.seed)
+    points = unit_points("sobol", n, 2 * len(study.factors), study.seed)
     a, b = (
-        [f.at(half[:, i]) for i, f in enumerate(study.factors)] for half in np.hsplit(places, 2)
+        [f.quantiles(half[:, i]) for i, f in enumerate(study.factors)]
+        for half in np.hsplit(points, 2)
     )
     blocks = len(study.factors) + 2
     columns = {}

@@ -17,7 +17,8 @@ from ...parameters import PARAMETER_QUANTITIES, Parameters
 from ...presets import to_toml
 from ...quantities import MODES, Quantity
 from .. import toml_keys
-from ..outcome import DEFAULT_SLIDE, LIMITS
+from ..limits import LIMITS
+from ..outcome import DEFAULT_SLIDE
 from .design import LARGEST, Design, drawn, grid
 from .factors import VARIABLES, Factor, read_factor
 from .responses import expand
@@ -160,9 +161,9 @@ def read_study(path: Path) -> Study:
 
 
 def _study(document: dict[str, Any], path: Path, text: str) -> Study:
-    toml_keys.only(document, TABLES, "table")
+    toml_keys.refuse_unknown(document, TABLES, "table")
     keys = toml_keys.table(document, "study")
-    toml_keys.only(keys, KEYS, "key of [study]")
+    toml_keys.refuse_unknown(keys, KEYS, "key of [study]")
     method = toml_keys.text(keys, "method", "table" if "table" in keys else "none")
     if method not in METHODS:
         raise unknown("method", method, METHODS)
@@ -201,7 +202,7 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
         name=name,
         method=method,
         samples=samples,
-        seed=toml_keys.whole(keys, "seed", 1, 0, 2**31 - 1),
+        seed=toml_keys.integer(keys, "seed", 1, 0, 2**31 - 1),
         parameters=parameters,
         modes=_modes(keys, parameters, {*given, *(table.columns if table is not None else ())}),
         responses=expand(toml_keys.texts(keys, "responses")),
@@ -272,4 +273,4 @@ def _samples(keys: Mapping[str, Any], method: str) -> int:
         return 0
     if "samples" not in keys:
         raise LandingError(f"{method} needs samples = N, the number of points")
-    return toml_keys.whole(keys, "samples", 0, 1, LARGEST)
+    return toml_keys.integer(keys, "samples", 0, 1, LARGEST)

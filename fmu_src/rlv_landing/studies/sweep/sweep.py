@@ -38,7 +38,7 @@ class Engine(Protocol):
     def result(self, task: Any) -> Rows:
         """Wait for a task's rows."""
 
-    def room(self) -> int:
+    def capacity(self) -> int:
         """The number of tasks that may wait at once."""
 
     def stop(self, tasks: Sequence[Any]) -> list[Rows]:
@@ -76,7 +76,7 @@ class Threads:
         """Wait for a task's rows."""
         return task.result()
 
-    def room(self) -> int:
+    def capacity(self) -> int:
         """The number of tasks that may wait: no thread runs out of work while one is slow."""
         return 4 * self._workers + 4
 
@@ -146,7 +146,7 @@ class Sweep:
                 for first in range(begin, end, engine.rows):
                     rows = self._task.rows(first, min(first + engine.rows, end))
                     waiting.append((first, engine.submit(rows)))
-                    while len(waiting) >= engine.room():
+                    while len(waiting) >= engine.capacity():
                         self._keep_first(waiting, engine)
             while waiting:
                 self._keep_first(waiting, engine)
