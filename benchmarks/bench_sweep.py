@@ -1,10 +1,11 @@
-"""Time of a sweep by its number of landings: `python benchmarks/bench_sweep.py 100 1000 10000
-100000`.
+"""Time of a sweep by its number of landings: `python benchmarks/bench_sweep.py 100 1000 10000`.
 
-Each count is swept in a process of its own by `rlv-landing sweep`, on all cores: a Latin hypercube
-over touchdown states, sink rate, friction and slope, both modes in turn, 1 s of landing at 1 kHz,
-all default responses. Prints wall time, processor time, landings a second and the largest resident
-memory, then what a landing's processor time is spent on, and appends rows to `results.jsonl`.
+Each count is swept in a process of its own by `rlv-landing sweep`, on all cores. The study is a
+Latin hypercube over touchdown states, sink rate, friction and slope, both modes in turn, 1 s of
+landing at 1 kHz, with all default responses.
+
+It prints wall time, processor time, landings a second and the largest resident memory, then the
+parts of a landing's processor time, and appends rows to `results.jsonl`.
 """
 
 from __future__ import annotations
@@ -24,9 +25,10 @@ from rich.console import Console
 from rich.table import Table
 
 from rlv_landing.studies.sweep.result_files import PART_ROWS, Results
-from rlv_landing.studies.sweep.row import Task
 from rlv_landing.studies.sweep.study import read_study
-from rlv_landing.studies.sweep.sweep import THREAD_ROWS, default_workers
+from rlv_landing.studies.sweep.sweep import THREAD_ROWS
+from rlv_landing.studies.sweep.sweep_row import Task
+from rlv_landing.workers import default_workers
 
 STUDY = """
 [study]
@@ -67,13 +69,18 @@ unit = "deg"
 low = -2.0
 high = 2.0
 """
-SWEEP = "import sys; from rlv_landing.cli import main; sys.argv = ['rlv-landing', 'sweep', *sys.argv[1:]]; main()"
+SWEEP = (
+    "import sys; from rlv_landing.cli import main; "
+    "sys.argv = ['rlv-landing', 'sweep', *sys.argv[1:]]; main()"
+)
 REPEATS = 40
 
 
 def swept(study: Path, folder: Path, workers: int) -> dict[str, float]:
-    """One sweep in a process of its own: wall and processor time [s] and largest resident memory
-    [MB].
+    """Run one sweep in a process of its own.
+
+    Returns:
+        Wall and processor time [s], and largest resident memory [MB].
     """
     start = time.perf_counter()
     child = os.posix_spawn(
@@ -102,7 +109,7 @@ def swept(study: Path, folder: Path, workers: int) -> dict[str, float]:
 
 
 def best(work: Callable[[], Any]) -> float:
-    """The least processor time of this thread [ms] that one call of `work` took."""
+    """The least processor time [ms] of this thread for one call of `work`."""
     least = float("inf")
     for _ in range(REPEATS):
         start = time.thread_time()
@@ -112,7 +119,7 @@ def best(work: Callable[[], Any]) -> float:
 
 
 def parts(study: Path) -> dict[str, float]:
-    """What the processor time of one landing is spent on [ms], each part the best of many."""
+    """The parts of one landing's processor time [ms], each the best of many."""
     read = read_study(study)
     task = Task(read, read.design)
     plan = task.plan
@@ -129,8 +136,8 @@ def parts(study: Path) -> dict[str, float]:
     with ThreadPoolExecutor(1) as pool:
         handed = best(lambda: pool.submit(task.rows, 0, THREAD_ROWS).result()) / THREAD_ROWS
     with tempfile.TemporaryDirectory() as folder:
-        results = Results(Path(folder) / "r", task.about(), read.text, task.quantities(), PART_ROWS)
-        row = [0, 0, 0, *values.values(), *plan.row(values)]
+        results = Results(Path(folder) / "r", task)
+        row = [0, 0, 0, *values.values(), *plan.sweep_row(values)]
         block = [[i, *row[1:]] for i in range(PART_ROWS - 1)]
 
         def write() -> None:
@@ -148,6 +155,36 @@ def parts(study: Path) -> dict[str, float]:
     }
 
 
+def print_tables(
+    rows: list[dict[str, Any]], counts: tuple[int, ...], spent: dict[str, float]
+) -> None:
+    """Print the times of all sweeps and the parts of a landing's."""
+    console = Console(width=110)
+    title = f"landings of {rows[0]['until']:g} s on {rows[0]['workers']} threads"
+    table = Table(title=title, title_justify="left")
+    for column in (
+        "landings",
+        "wall [s]",
+        "processor [s]",
+        "landings/s",
+        "processor/landing [ms]",
+        "memory [MB]",
+    ):
+        table.add_column(column, justify="right")
+    for count, row in zip(counts, rows):
+        cells = (
+            row["seconds"],
+            row["cpu"],
+            count / row["seconds"],
+            1e3 * row["cpu"] / count,
+            row["memory"],
+        )
+        table.add_row(str(count), *(f"{v:.1f}" for v in cells))
+    console.print(table)
+    for what, value in spent.items():
+        console.print(f"{what:>22}: {value:.3f} ms a landing")
+
+
 @click.command()
 @click.argument("counts", nargs=-1, type=click.IntRange(1))
 @click.option("--until", default=1.0, show_default=True, help="End of each landing [s].")
@@ -155,7 +192,7 @@ def parts(study: Path) -> dict[str, float]:
 @click.option(
     "--keep/--no-keep", default=True, show_default=True, help="Append the rows to results.jsonl."
 )
-def main(counts: tuple[int, ...], until: float, workers: int, keep: bool) -> None:
+def main(counts: tuple[int, ...], until: float, workers: int, *, keep: bool) -> None:
     """Sweep COUNTS landings each [default: 100 1000]."""
     rows: list[dict[str, Any]] = []
     with tempfile.TemporaryDirectory() as name:
@@ -171,28 +208,7 @@ def main(counts: tuple[int, ...], until: float, workers: int, keep: bool) -> Non
                 }
             )
         spent = parts(study)
-    table = Table(title=f"landings of {until:g} s on {workers} threads", title_justify="left")
-    for column in (
-        "landings",
-        "wall [s]",
-        "processor [s]",
-        "landings/s",
-        "processor/landing [ms]",
-        "memory [MB]",
-    ):
-        table.add_column(column, justify="right")
-    for count, row in zip(counts or (100, 1000), rows):
-        cells = (
-            row["seconds"],
-            row["cpu"],
-            count / row["seconds"],
-            1e3 * row["cpu"] / count,
-            row["memory"],
-        )
-        table.add_row(str(count), *(f"{v:.1f}" for v in cells))
-    Console(width=110).print(table)
-    for what, value in spent.items():
-        Console(width=110).print(f"{what:>22}: {value:.3f} ms a landing")
+    print_tables(rows, counts or (100, 1000), spent)
     if keep:
         append_rows([*rows, {"case": "parts of a swept landing [ms]", "until": until, **spent}])
 

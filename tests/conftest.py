@@ -9,13 +9,16 @@ import sys
 from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 from hypothesis import settings
 
 from rlv_landing import Landing, load_preset
+from rlv_landing.cli import main
 from rlv_landing.history import History
+from rlv_landing.validation.validate import Validation, validate
 
 ROOT = Path(__file__).resolve().parent.parent
 # the example's modules, as its `run.py` finds them
@@ -54,6 +57,36 @@ def mode(request: pytest.FixtureRequest) -> str:
 def drop_test(mode: str) -> History:
     """The drop test of `mode` with the preset yue2022-figures, 1 s at 0.2 ms."""
     return Landing(load_preset("yue2022-figures"), mode).run(1.0, 2e-4)
+
+
+@pytest.fixture(scope="session")
+def validation() -> Validation:
+    """Both drop tests of the preset yue2022-figures beside the paper."""
+    return validate(load_preset("yue2022-figures"))
+
+
+class Ended(NamedTuple):
+    """A command's exit code and what it printed."""
+
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def command(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Callable[..., Ended]:
+    """`command(*arguments)` runs `rlv-landing` in this process."""
+
+    def run(*arguments: str) -> Ended:
+        monkeypatch.setattr(sys, "argv", ["rlv-landing", *arguments])
+        with pytest.raises(SystemExit) as ended:
+            main()
+        captured = capsys.readouterr()
+        return Ended(int(ended.value.code or 0), captured.out, captured.err)
+
+    return run
 
 
 @pytest.fixture(scope="session")

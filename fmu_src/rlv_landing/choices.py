@@ -1,5 +1,6 @@
-"""From what a user types to parameters: preset, TOML file, mode and `name=value` pairs, in that
-order of strength.
+"""The parameters that a user chooses by preset, TOML file, mode and `name=value` pairs.
+
+Of these the later one wins.
 """
 
 from __future__ import annotations
@@ -14,23 +15,43 @@ from .presets import DEFAULT_PRESET, load_preset, parse_value, read_toml
 from .quantities import Quantity
 
 
+def split_pair(pair: str, what: str) -> tuple[str, str]:
+    """Name and value of a `name=value` text, both without spaces around them.
+
+    Args:
+        pair: The text.
+        what: The word for it in the error.
+
+    Raises:
+        LandingError: The text has no `=`.
+    """
+    name, equals, value = pair.partition("=")
+    if not equals:
+        raise LandingError(
+            f"{what} {pair!r} has no '='; write name=value, for example ground.friction=0.3"
+        )
+    return name.strip(), value.strip()
+
+
 def parse_pairs(
     pairs: Iterable[str], table: Mapping[str, Quantity], what: str
 ) -> dict[str, float | str]:
-    """`name=value` texts as values in SI by name; a value may carry a unit.
+    """Values in SI by name, from `name=value` texts; a value may carry a unit.
 
-    Raises LandingError: no `=`, unknown name, bad value.
+    Args:
+        pairs: The texts.
+        table: The quantities that may be named.
+        what: The word for such a quantity in errors.
+
+    Raises:
+        LandingError: A text has no `=`, an unknown name or a bad value.
     """
     values: dict[str, float | str] = {}
     for pair in pairs:
-        name, equals, text = pair.partition("=")
-        if not equals:
-            raise LandingError(
-                f"{what} {pair!r} has no '='; write name=value, for example ground.friction=0.3"
-            )
-        if name.strip() not in table:
-            raise unknown(what, name.strip(), table)
-        values[name.strip()] = parse_value(table[name.strip()], text.strip())
+        name, value = split_pair(pair, what)
+        if name not in table:
+            raise unknown(what, name, table)
+        values[name] = parse_value(table[name], value)
     return values
 
 
@@ -40,15 +61,22 @@ def choose_parameters(
     mode: str | None = None,
     values: Mapping[str, Any] | None = None,
 ) -> Parameters:
-    """The parameters that a user asks for: a TOML file or a preset, for a mode, with single
-    `values` by name on top.
+    """The parameters of a preset or TOML file, for one landing mode, with single values changed.
 
-    Raises LandingError: both a preset and a file, a file that is missing or wrong, unknown preset,
-        mode or name, bad values.
+    Args:
+        preset: A preset's name [default: yue2022-figures].
+        file: A TOML file, instead of a preset.
+        mode: The landing mode [default: `drop.mode` of `values`, else the parameters' own].
+        values: Values in SI by name.
+
+    Raises:
+        LandingError: Both a preset and a file, a file that is missing or wrong, an unknown preset,
+            mode or name, or a bad value.
     """
     if preset is not None and file is not None:
         raise LandingError(
-            'give a preset or a parameter file, not both; a file names its preset itself: preset = "..."'
+            "give a preset or a parameter file, not both; a file names its preset itself: "
+            'preset = "..."'
         )
     parameters = read_toml(file) if file is not None else load_preset(preset or DEFAULT_PRESET)
     changes = dict(values or {})

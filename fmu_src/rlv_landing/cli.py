@@ -1,6 +1,6 @@
 """The command line `rlv-landing`.
 
-Commands of the ROS 2 bridge join by the entry-point group `rlv_landing.commands`.
+Other packages add commands by the entry-point group `rlv_landing.commands`: the ROS 2 bridge does.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from . import __version__
 from .commands.audit import audit
 from .commands.envelope import envelope
 from .commands.identify import identify
+from .commands.options import HELP_NAMES
 from .commands.parameters import parameters
 from .commands.sensitivity import sensitivity
 from .commands.simulate import simulate
@@ -27,9 +28,10 @@ INTERRUPTED = 130
 
 
 class Commands(click.Group):
-    """Our commands and those that other packages add, loaded when they are called."""
+    """The package's commands, and those of other packages, loaded when they are called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
+        """The names of all commands, sorted."""
         return sorted(
             {
                 *super().list_commands(ctx),
@@ -38,6 +40,7 @@ class Commands(click.Group):
         )
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """The command of this name; None where there is none."""
         own = super().get_command(ctx, cmd_name)
         if own is not None:
             return own
@@ -47,32 +50,38 @@ class Commands(click.Group):
         return None
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+        """The command that the arguments name, as click expects it.
+
+        Raises:
+            LandingError: There is no such command.
+        """
         if args and self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
             raise LandingError(
-                f"there is no command {args[0]!r}{nearest(args[0], self.list_commands(ctx))}; `rlv-landing --help` lists them"
+                f"there is no command {args[0]!r}{nearest(args[0], self.list_commands(ctx))}; "
+                "`rlv-landing --help` lists them"
             )
         return super().resolve_command(ctx, args)
 
 
-@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=Commands, context_settings=HELP_NAMES)
 @click.version_option(__version__, prog_name="rlv-landing")
 def cli() -> None:
     """Touchdown of a vertical-landing rocket stage on four legs.
 
     \b
-    rlv-landing simulate --mode 1-2-1 --compare        land in this process; compare with the paper
-    rlv-landing parameters --toml > mine.toml          a parameter file to edit
-    rlv-landing validate --html report.html            every printed number and figure beside ours
-    rlv-landing identify --work identification         estimate what the paper does not print, or your vehicle's own
-    rlv-landing audit                                  energy, mass, momentum, rest, convergence
-    rlv-landing sweep study.toml                       many landings: factors in, a row of responses each
-    rlv-landing sensitivity study.toml                 which factors the responses depend on: Sobol indices
-    rlv-landing envelope examples/envelope.toml        where landings turn from stable to lost, and what is critical there
-    rlv-landing node --mode 2-2                        the ROS 2 node: steps the FMU, publishes, records
-    rlv-landing log info logs/NAME                     what a log holds
-    rlv-landing view logs/NAME                         a log, or the live topics, in a browser
-    rlv-landing animate logs/NAME landing.mp4          a log, or a landing, as a moving picture
-    rlv-landing replay logs/NAME                       publish it again
+    rlv-landing simulate --mode 1-2-1 --compare    land in this process; compare with the paper
+    rlv-landing parameters --toml > mine.toml      a parameter file to edit
+    rlv-landing validate --html report.html        every printed number and figure beside ours
+    rlv-landing identify --work identification     estimate parameters from landings
+    rlv-landing audit                              energy, mass, momentum, rest, convergence
+    rlv-landing sweep study.toml                   many landings: factors in, rows of responses out
+    rlv-landing sensitivity study.toml             Sobol indices of the responses
+    rlv-landing envelope examples/envelope.toml    the boundary between stable and lost landings
+    rlv-landing node --mode 2-2                    the ROS 2 node: steps the FMU, publishes, records
+    rlv-landing log info logs/NAME                 the contents of a log
+    rlv-landing view logs/NAME                     a log, or the live topics, in a browser
+    rlv-landing animate logs/NAME landing.mp4      a log, or a landing, as a moving picture
+    rlv-landing replay logs/NAME                   publish it again
 
     SI units and radians throughout; a value may carry its unit: --set drop.tilt="-2 deg".
     Exit codes: 0 done, 2 bad input, 1 failed, 130 interrupted.
@@ -84,7 +93,7 @@ for command in (simulate, parameters, validate, audit, identify, sweep, sensitiv
 
 
 def main() -> None:
-    """Run the command line; errors of the user's are one line on standard error."""
+    """Run the command line; an error of the user is one line on standard error."""
     try:
         status = cli.main(standalone_mode=False)
     except LandingError as e:

@@ -1,4 +1,4 @@
-"""Files that are there whole or not at all."""
+"""Files that are written whole or not at all."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ from pathlib import Path
 
 
 def write_durably(path: Path, data: bytes) -> None:
-    """Write `path` by a temporary name, with its folder's entry for it, onto the disk: after a
-    crash the old file is there, or the new.
+    """Write `path` by a temporary name, and its folder's entry for it, to the disk.
 
-    Raises OSError.
+    After a crash the file is the old one or the new one.
+
+    Raises:
+        OSError: The disk refuses.
     """
     temporary = path.with_name(path.name + ".part")
     try:
@@ -24,7 +26,7 @@ def write_durably(path: Path, data: bytes) -> None:
         with suppress(OSError):
             temporary.unlink()
         raise
-    # elsewhere a folder cannot be opened
+    # other systems cannot open a folder
     if os.name == "posix":
         folder = os.open(path.parent, os.O_RDONLY)
         try:

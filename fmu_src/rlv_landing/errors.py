@@ -1,5 +1,6 @@
-"""The errors that users see: one line that names the quantity, the value, the unit, the limit and
-what to do.
+"""The errors that users see, each in one line.
+
+The line names the quantity, the value, the unit, the limit and the remedy.
 """
 
 from __future__ import annotations
@@ -8,15 +9,16 @@ from collections.abc import Iterable
 
 
 class LandingError(ValueError):
-    """Something the user gave cannot be used; the message is one line and says what to do."""
+    """The user's input cannot be used; the message is one line and gives the remedy."""
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """`; did you mean X?` for the known name nearest to `name`, or nothing where none is near.
+    """`; did you mean X?` for the known name nearest to `name`; empty where none is near.
 
     The last parts of dotted names count too, so that `mass` finds `vehicle.mass`.
     """
-    from difflib import get_close_matches  # which takes longer to import than most of this package
+    # imported here: it takes longer to import than most of this package
+    from difflib import get_close_matches
 
     known = list(known)
     close = get_close_matches(name, known, n=1, cutoff=0.6)
@@ -31,7 +33,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 
 def unknown(what: str, name: object, known: Iterable[str]) -> LandingError:
-    """The error for a `name` that is not among the `known`."""
+    """The error for a `name` that is not among the `known`; `what` is the word for it."""
     known = list(known)
     hint = nearest(str(name), known) or (
         f"; known are {', '.join(known)}" if len(known) <= 8 else ""

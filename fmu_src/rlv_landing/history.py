@@ -1,4 +1,4 @@
-"""A landing's history: named columns over time."""
+"""The history of a landing: named columns over time."""
 
 from __future__ import annotations
 
@@ -15,10 +15,18 @@ from .parameters import Parameters
 
 
 class History:
-    """Columns named as the FMU's variables, in SI units, over `time` [s]:
+    """Columns over time, named as the FMU's variables, in SI units.
+
     `history["leg[1].main_strut.force"]` is an array (n,).
 
-    `parameters` are those of the landing, where they are known.
+    Attributes:
+        time: Times of the samples [s], (n,).
+        names: The columns' names.
+        data: The columns, (n, names).
+        parameters: The landing's parameters, where they are known.
+
+    Raises:
+        LandingError: `data` has another shape, or a column is unknown.
     """
 
     def __init__(
@@ -30,7 +38,8 @@ class History:
     ) -> None:
         if data.shape != (len(time), len(names)):
             raise LandingError(
-                f"a history of {len(time)} times and {len(names)} names cannot hold an array of shape {data.shape}"
+                f"a history of {len(time)} times and {len(names)} names "
+                f"cannot have data of shape {data.shape}"
             )
         self.time = time
         self.names = tuple(names)
@@ -62,7 +71,7 @@ class History:
             self.write_csv(f)
 
     def write_csv(self, file: TextIO) -> None:
-        """The same to an open file."""
+        """Write all columns to an open CSV file, SI units, full precision."""
         writer = csv.writer(file)
         writer.writerow(list(self))
         for t, row in zip(self.time.tolist(), self.data.tolist()):

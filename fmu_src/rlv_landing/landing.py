@@ -16,10 +16,10 @@ from .quantities import (
     INPUT_NAMES,
     INPUT_QUANTITIES,
     LEG_QUANTITIES,
+    MIRRORED,
     MODES,
     OUTPUT_NAMES,
     SHARED_QUANTITIES,
-    Z_TURNS,
 )
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def output_order(mode: str) -> list[tuple[int, float]]:
             order.append(
                 (
                     shared + len(LEG_QUANTITIES) * group + i,
-                    float(side) if q.name in Z_TURNS else 1.0,
+                    float(side) if q.name in MIRRORED else 1.0,
                 )
             )
     return order

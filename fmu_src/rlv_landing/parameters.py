@@ -1,7 +1,7 @@
-"""The vehicle, its ground and its drop: annotated values, checked at the door.
+"""The vehicle, its ground and its drop: annotated values, checked on construction.
 
-The defaults are the preset `yue2022-figures`; `source` tells the paper's own values from identified
-ones. Lengths down from the CG are given as positive depths, as in the paper's Table 1.
+The defaults are the preset `yue2022-figures`; `source` separates the paper's own values from
+identified ones. Lengths down from the CG are given as positive depths, as in the paper's Table 1.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class AuxiliaryStrut:
 
 @dataclass(frozen=True)
 class Ground:
-    """The ground and what a footpad feels on it. Eqs. (14)-(17)."""
+    """The ground and its contact with a footpad. Eqs. (14)-(17)."""
 
     slope: Annotated[float, Q("rad", "slope of the ground at rest, clockwise positive (falling towards +x)", -0.7, 0.7, "alpha", "paper", "deg")] = 0.0
     gravity: Annotated[float, Q("m/s2", "gravitational acceleration", 0.0, 50.0, "g", "closure")] = 9.81
@@ -95,9 +95,7 @@ class Ground:
 
 @dataclass(frozen=True)
 class Drop:
-    """How the vehicle comes down: its state at the first contact, and how long it has flown freely
-    by then.
-    """
+    """The vehicle's state at the first contact, and the duration of the free flight before it."""
 
     mode: Annotated[str, Q("", "landing mode: legs that touch first - second - third", source="paper", choices=tuple(MODES))] = "2-2"
     contact_time: Annotated[float, Q("s", "time of the first contact; the flight before it is free", 0.0, 60.0, source="identified")] = 0.08965464
@@ -131,17 +129,18 @@ def _table() -> dict[str, Quantity]:
 
 
 PARAMETER_QUANTITIES: dict[str, Quantity] = _table()
-# name -> its group, its field there
-_PLACES: dict[str, tuple[str, str]] = {
+# name -> (group, field of the group)
+_FIELDS: dict[str, tuple[str, str]] = {
     name: (name.split(".")[0], name.split(".")[1]) for name in PARAMETER_QUANTITIES
 }
 
 
 def check_value(q: Quantity, value: Any) -> float | str:
-    """`value` as the quantity `q` takes it.
+    """The value as the quantity `q` takes it.
 
-    Raises LandingError naming quantity, value, unit and limit where the type is wrong, the value is
-    not finite or out of bounds.
+    Raises:
+        LandingError: The type is wrong, or the value is not finite or out of bounds; the message
+            names quantity, value, unit and limit.
     """
     if q.choices:
         if not isinstance(value, str) or value not in q.choices:
@@ -161,10 +160,16 @@ def check_value(q: Quantity, value: Any) -> float | str:
 
 @dataclass(frozen=True)
 class Parameters:
-    """All that a landing needs to be told.
+    """All parameters of a landing.
 
-    `by_mode` holds values that belong to one landing mode only; `sources` says where values come
-    from that are not the table's defaults.
+    Attributes:
+        vehicle: The body and its footpads.
+        main_strut: The main strut.
+        auxiliary_strut: The auxiliary strut.
+        ground: The ground and its contact.
+        drop: The state at first contact.
+        by_mode: Values that belong to one landing mode only: mode -> name -> value.
+        sources: Sources of values that are not the table's defaults, by name.
     """
 
     vehicle: Vehicle = field(default_factory=Vehicle)
@@ -177,7 +182,7 @@ class Parameters:
 
     def __post_init__(self) -> None:
         groups = {group: vars(getattr(self, group)) for group in GROUPS}
-        for name, (group, what) in _PLACES.items():
+        for name, (group, what) in _FIELDS.items():
             check_value(PARAMETER_QUANTITIES[name], groups[group][what])
         self._check_together()
 
@@ -187,24 +192,27 @@ class Parameters:
             yield name, self[name]
 
     def __getitem__(self, name: str) -> float | str:
-        if name not in _PLACES:
+        if name not in _FIELDS:
             raise unknown("parameter", name, PARAMETER_QUANTITIES)
-        group, what = _PLACES[name]
+        group, what = _FIELDS[name]
         value: float | str = getattr(getattr(self, group), what)
         return value
 
     def source(self, name: str) -> str:
-        """Where the value of `name` comes from."""
+        """The source of the value of `name`."""
         return self.sources.get(name, PARAMETER_QUANTITIES[name].source)
 
     def with_values(
         self, values: Mapping[str, Any], source: str | Mapping[str, str] = "user"
     ) -> Parameters:
-        """A copy with `values` by name, each checked; they hold in every mode.
+        """A copy with `values` by name, each checked; they are valid in every mode.
 
-        `source` is one for all, or by name (default `user`).
+        Args:
+            values: Values in SI by name.
+            source: Their source: one for all, or by name (default `user`).
 
-        Raises LandingError for an unknown name or a bad value.
+        Raises:
+            LandingError: An unknown name or a bad value.
         """
         changed = self._replaced(values, _sources(values, source))
         by_mode = {
@@ -216,9 +224,14 @@ class Parameters:
     def with_mode_values(
         self, values: Mapping[str, Mapping[str, Any]], source: str | Mapping[str, str] = "user"
     ) -> Parameters:
-        """A copy with `values` that belong to one mode each: mode -> name -> value.
+        """A copy with `values` that belong to one mode each; `for_mode` applies them.
 
-        They come in with `for_mode`. `source` as above.
+        Args:
+            values: Values in SI: mode -> name -> value.
+            source: Their source: one for all, or by name (default `user`).
+
+        Raises:
+            LandingError: An unknown mode or name, or a bad value.
         """
         by_mode = {mode: dict(own) for mode, own in self.by_mode.items()}
         sources = dict(self.sources)
@@ -229,7 +242,11 @@ class Parameters:
         return replace(self, by_mode=by_mode, sources=sources)
 
     def for_mode(self, mode: str) -> Parameters:
-        """A copy for the landing `mode`, with the values that belong to that mode."""
+        """A copy for the landing `mode`, with the values that belong to that mode.
+
+        Raises:
+            LandingError: The mode is unknown.
+        """
         if mode not in MODES:
             raise unknown("landing mode", mode, MODES)
         return self._replaced({**self.by_mode.get(mode, {}), "drop.mode": mode}, {})
@@ -237,9 +254,9 @@ class Parameters:
     def _replaced(self, values: Mapping[str, Any], sources: Mapping[str, str]) -> Parameters:
         grouped: dict[str, dict[str, float | str]] = {}
         for name, value in values.items():
-            if name not in _PLACES:
+            if name not in _FIELDS:
                 raise unknown("parameter", name, PARAMETER_QUANTITIES)
-            group, what = _PLACES[name]
+            group, what = _FIELDS[name]
             grouped.setdefault(group, {})[what] = check_value(PARAMETER_QUANTITIES[name], value)
         parts: dict[str, Any] = {
             group: replace(getattr(self, group), **changed) for group, changed in grouped.items()
@@ -274,6 +291,6 @@ def _sources(names: Iterable[str], source: str | Mapping[str, str]) -> dict[str,
 
 @cache
 def azimuth(degrees: int) -> tuple[float, float]:
-    """Sine and cosine of an azimuth, exactly 0 where they should be."""
+    """Sine and cosine of an azimuth [deg], exactly 0 at multiples of 90 degrees."""
     s, c = sin(radians(degrees)), cos(radians(degrees))
     return (0.0 if abs(s) < 1e-15 else s), (0.0 if abs(c) < 1e-15 else c)

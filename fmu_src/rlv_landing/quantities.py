@@ -1,7 +1,6 @@
-"""The one table of quantities: what the model takes and gives, with unit, meaning, bounds and
-source.
+"""The table of quantities: the model's inputs and outputs with unit, meaning, bounds and source.
 
-Everything that names a quantity is made from here or from the annotated parameters in
+Everything that names a quantity is made from this table or from the annotated parameters in
 `parameters.py`: the FMU's variables, the TOML reader, `--set`, the columns of a history and the
 reference pages.
 """
@@ -19,10 +18,19 @@ Source = Literal["paper", "derived", "closure", "identified", "user"]
 class Quantity:
     """One named number (or choice) of the model.
 
-    `unit` is SI and what the number is in; `display_unit` what people like to read. `lo <= value <=
-    hi` must hold. `symbol` is the paper's, and the kernel's, name. `source` says where a default
-    comes from: the paper, derived from it, a closure that the paper leaves open, or identified from
-    the paper's printed numbers. `nominal` is the order of magnitude of inputs and outputs.
+    Attributes:
+        unit: SI unit of the number.
+        meaning: The meaning, in words.
+        lo: Least value allowed.
+        hi: Largest value allowed.
+        symbol: The paper's and the kernel's name.
+        source: Source of a default: the paper, derived from it, a closure that the paper leaves
+            open, or identified from the paper's printed numbers.
+        display_unit: The unit that people read.
+        choices: The texts allowed, for a quantity that is no number.
+        name: The name.
+        default: The default.
+        kind: The FMI type.
     """
 
     unit: str
@@ -39,9 +47,7 @@ class Quantity:
 
     @property
     def nominal(self) -> float:
-        """Order of magnitude [SI unit], by the unit that people read the quantity in; 1 for plain
-        numbers.
-        """
+        """Order of magnitude [SI unit], by the display unit; 1 for plain numbers."""
         return NOMINALS.get(self.display_unit or self.unit, 1.0)
 
 
@@ -58,7 +64,7 @@ DISPLAY_UNITS = {
 
 
 def shown(q: Quantity) -> tuple[str, float]:
-    """The unit that people read the quantity in, and how much of the SI unit one of it is."""
+    """The unit that people read, and its size in the SI unit."""
     return (
         (q.display_unit, DISPLAY_UNITS[q.display_unit][1])
         if q.display_unit in DISPLAY_UNITS
@@ -66,7 +72,7 @@ def shown(q: Quantity) -> tuple[str, float]:
     )
 
 
-# unit that a quantity is read in -> its order of magnitude [SI unit]; 1 where none is listed
+# display unit -> order of magnitude [SI unit]; 1 where none is listed
 NOMINALS = {
     "mm": 1e-2,
     "deg": 0.1,
@@ -103,16 +109,54 @@ BASE_UNITS: dict[str, dict[str, int]] = {
 }
 
 INPUT_QUANTITIES: tuple[Quantity, ...] = (
-    Quantity("N", "external force on the body at its CG, along inertial x", -1e7, 1e7, name="external.force_x", display_unit="kN"),
-    Quantity("N", "external force on the body at its CG, along inertial y (up)", -1e7, 1e7, name="external.force_y", display_unit="kN"),
-    Quantity("N.m", "external moment on the body, clockwise positive, as the pitch", -1e7, 1e7, name="external.moment"),
+    Quantity(
+        "N",
+        "external force on the body at its CG, along inertial x",
+        -1e7,
+        1e7,
+        name="external.force_x",
+        display_unit="kN",
+    ),
+    Quantity(
+        "N",
+        "external force on the body at its CG, along inertial y (up)",
+        -1e7,
+        1e7,
+        name="external.force_y",
+        display_unit="kN",
+    ),
+    Quantity(
+        "N.m",
+        "external moment on the body, clockwise positive, as the pitch",
+        -1e7,
+        1e7,
+        name="external.moment",
+    ),
     Quantity("m", "lift of the ground along inertial y", -100.0, 100.0, name="ground.heave"),
-    Quantity("m/s", "rate of the lift; the ground goes on at it until inputs are set again", -100.0, 100.0, name="ground.heave_rate"),
-    Quantity("rad", "tilt of the ground about the inertial origin, on top of ground.slope, clockwise positive", -1.0, 1.0,
-             name="ground.tilt", display_unit="deg"),
-    Quantity("rad/s", "rate of the tilt; the ground goes on at it until inputs are set again", -10.0, 10.0,
-             name="ground.tilt_rate", display_unit="deg/s"),
-)  # fmt: skip
+    Quantity(
+        "m/s",
+        "rate of the lift; the ground goes on at it until inputs are set again",
+        -100.0,
+        100.0,
+        name="ground.heave_rate",
+    ),
+    Quantity(
+        "rad",
+        "tilt of the ground about the inertial origin, on top of ground.slope, clockwise positive",
+        -1.0,
+        1.0,
+        name="ground.tilt",
+        display_unit="deg",
+    ),
+    Quantity(
+        "rad/s",
+        "rate of the tilt; the ground goes on at it until inputs are set again",
+        -10.0,
+        10.0,
+        name="ground.tilt_rate",
+        display_unit="deg/s",
+    ),
+)
 
 BODY_QUANTITIES: tuple[Quantity, ...] = (
     Quantity("m", "CG of the upper mass along inertial x", name="body.x"),
@@ -120,13 +164,18 @@ BODY_QUANTITIES: tuple[Quantity, ...] = (
     Quantity("rad", "pitch psi, clockwise positive", name="body.pitch", display_unit="deg"),
     Quantity("m/s", "velocity of the CG along inertial x", name="body.vx"),
     Quantity("m/s", "velocity of the CG along inertial y", name="body.vy"),
-    Quantity("rad/s", "pitch rate, clockwise positive", name="body.pitch_rate", display_unit="deg/s"),
+    Quantity(
+        "rad/s", "pitch rate, clockwise positive", name="body.pitch_rate", display_unit="deg/s"
+    ),
     Quantity("m/s2", "acceleration of the CG along inertial x", name="body.ax"),
     Quantity("m/s2", "acceleration of the CG along inertial y", name="body.ay"),
     Quantity("rad/s2", "pitch acceleration, clockwise positive", name="body.pitch_acceleration"),
-    Quantity("m/s2", "inertial acceleration of the top sensor along the body's axis: -g in free fall, 0 at rest",
-             name="body.top_axial_acceleration"),
-)  # fmt: skip
+    Quantity(
+        "m/s2",
+        "inertial acceleration of the top sensor along the body's axis: -g in free fall, 0 at rest",
+        name="body.top_axial_acceleration",
+    ),
+)
 
 ENERGY_QUANTITIES: tuple[Quantity, ...] = (
     Quantity("J", "kinetic energy of body and footpads", 0.0, name="energy.kinetic"),
@@ -165,15 +214,27 @@ ENERGY_QUANTITIES: tuple[Quantity, ...] = (
     Quantity("J", "sum of all that was dissipated", name="energy.dissipated"),
     Quantity(
         "J",
-        "energy balance: held + dissipated - work - held at the start; 0 but for the integrator's error",
+        "energy balance: held + dissipated - work - held at the start; "
+        "0 but for the integrator's error",
         name="energy.balance",
     ),
 )
 
 STATUS_QUANTITIES: tuple[Quantity, ...] = (
-    Quantity("", "0 falling, 1 contact, 2 settled, 3 toppled (beyond its feet, or over)", 0, 3, name="status.phase", kind="integer"),
-    Quantity("m", "from the whole vehicle's CG along x to the nearer outermost footpad, negative beyond", name="status.stability_margin"),
-)  # fmt: skip
+    Quantity(
+        "",
+        "0 falling, 1 contact, 2 settled, 3 toppled (beyond its feet, or over)",
+        0,
+        3,
+        name="status.phase",
+        kind="integer",
+    ),
+    Quantity(
+        "m",
+        "from the whole vehicle's CG along x to the nearer outermost footpad, negative beyond",
+        name="status.stability_margin",
+    ),
+)
 
 LEG_QUANTITIES: tuple[Quantity, ...] = (
     Quantity(
@@ -234,7 +295,8 @@ LEG_QUANTITIES: tuple[Quantity, ...] = (
 )
 
 LEGS = (1, 2, 3, 4)
-Z_TURNS = ("footpad.z", "contact.force_z")
+# quantities of a leg whose sign changes in its mirror image
+MIRRORED = ("footpad.z", "contact.force_z")
 
 
 def _leg_quantity(leg: int, q: Quantity) -> Quantity:
@@ -256,7 +318,7 @@ OUTPUT_QUANTITIES: tuple[Quantity, ...] = SHARED_QUANTITIES + tuple(
     _leg_quantity(leg, q) for leg in LEGS for q in LEG_QUANTITIES
 )
 OUTPUT_NAMES: tuple[str, ...] = tuple(q.name for q in OUTPUT_QUANTITIES)
-# What the integrator has done: `Landing.statistics`.
+# counts of the integrator's work: `Landing.statistics`
 STATISTIC_QUANTITIES: tuple[Quantity, ...] = (
     Quantity(
         "", "steps of the integrator since the start", 0.0, name="solver.steps", kind="integer"
@@ -281,16 +343,18 @@ INPUT_NAMES: tuple[str, ...] = tuple(q.name for q in INPUT_QUANTITIES)
 
 @dataclass(frozen=True)
 class LegGroup:
-    """Legs that are each other's mirror image: `legs` of (number, side), side -1 where Z is turned;
-    `azimuth` [deg] of side +1.
+    """Legs that are each other's mirror images.
+
+    Attributes:
+        azimuth: Azimuth of the legs of side +1 [deg].
+        legs: (number, side) of each leg; side -1 is the mirror image, with z reversed.
     """
 
     azimuth: int
     legs: tuple[tuple[int, int], ...] = field(default=())
 
 
-# The landing modes. Legs are numbered round the body; the mode exists in this table and nowhere
-# else.
+# the landing modes; legs are numbered round the body, and no other place knows the mode
 MODES: dict[str, tuple[LegGroup, ...]] = {
     "2-2": (LegGroup(135, ((1, 1), (2, -1))), LegGroup(45, ((4, 1), (3, -1)))),
     "1-2-1": (LegGroup(180, ((1, 1),)), LegGroup(90, ((4, 1), (2, -1))), LegGroup(0, ((3, 1),))),

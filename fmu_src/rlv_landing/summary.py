@@ -1,4 +1,4 @@
-"""What a landing came to: outcome and peaks of every leg."""
+"""The summary of a landing: outcome, and the peaks of every leg."""
 
 from __future__ import annotations
 
@@ -12,10 +12,13 @@ OUTCOMES = ("falling", "in contact, not yet at rest", "settled", "toppled")
 
 
 def summarise(history: History) -> dict[str, Any]:
-    """Outcome, end time [s], smallest stability margin [m], and per leg: contact time, peak forces
-    [N] and stroke [m] with times [s].
+    """The summary of a landing.
 
-    What the history has no column for is left out (a log has no stability margin).
+    An item whose column the history lacks is left out (a log has no stability margin).
+
+    Returns:
+        Outcome, end time [s], smallest stability margin [m], and per leg: contact time [s], peak
+        forces [N] and stroke [m] with their times [s].
     """
     t = history.time
     result: dict[str, Any] = {"end_time": float(t[-1])}

@@ -1,6 +1,4 @@
-"""The state at first contact, and before it: the free flight of the vehicle with its legs fully
-extended.
-"""
+"""The state at first contact, and the free flight before it with the legs fully extended."""
 
 from __future__ import annotations
 
@@ -9,13 +7,14 @@ from math import cos, sin
 from .parameters import Parameters, azimuth
 from .quantities import MODES
 
-# parts of the free flight, before the first contact, at which the footpads must be above the ground
+# parts of the free flight's duration at which the footpads are checked to be above the ground
 FLIGHT_CHECKS = tuple(i / 64.0 for i in range(65))
 
 
 def footpad_at_rest(parameters: Parameters) -> tuple[float, float]:
-    """Radius and height (body axes, from the CG) [m] of a footpad whose struts are both at full
-    length: the outer meeting point.
+    """Radius and height [m] of a footpad whose struts are both at full length.
+
+    Body axes, from the CG; of the two points the outer one.
     """
     return footpad_between(
         parameters, parameters.main_strut.length, parameters.auxiliary_strut.length
@@ -23,8 +22,14 @@ def footpad_at_rest(parameters: Parameters) -> tuple[float, float]:
 
 
 def footpad_between(parameters: Parameters, main: float, auxiliary: float) -> tuple[float, float]:
-    """Radius and height (body axes, from the CG) [m] of a footpad whose struts have these lengths
-    [m]: the outer meeting point.
+    """Radius and height [m] of a footpad whose struts have the given lengths.
+
+    Body axes, from the CG; of the two points the outer one.
+
+    Args:
+        parameters: The vehicle.
+        main: Length of the main strut [m].
+        auxiliary: Length of the auxiliary strut [m].
     """
     m, a = parameters.main_strut, parameters.auxiliary_strut
     x1, y1, x2, y2 = m.joint_radius, -m.joint_depth, a.joint_radius, -a.joint_depth
@@ -40,11 +45,10 @@ def footpad_between(parameters: Parameters, main: float, auxiliary: float) -> tu
 
 
 class FreeFlight:
-    """The flight of the vehicle with its legs fully extended, and where it ends: at the first
-    contact. [derived]
+    """The free flight with the legs fully extended, up to the first contact.
 
     The whole vehicle's CG flies a parabola and the pitch rate is constant. At contact the body's CG
-    is above the ground's origin.
+    is above the ground's origin. [derived]
     """
 
     def __init__(self, parameters: Parameters) -> None:
@@ -62,8 +66,12 @@ class FreeFlight:
         self._vy = drop.vertical_velocity - self._rate * arm * sin(self._end)
 
     def clearance(self, x: float, y: float, pitch: float) -> float:
-        """Height [m] of the lowest footpad above the ground at rest, along its normal, with the CG
-        at (`x`, `y`).
+        """Height [m] of the lowest footpad above the ground at rest, along its normal.
+
+        Args:
+            x: The body's CG along inertial x [m].
+            y: The body's CG along inertial y (up) [m].
+            pitch: Pitch, clockwise positive [rad].
         """
         s, c = sin(pitch), cos(pitch)
         across, up = self._normal
@@ -77,14 +85,8 @@ class FreeFlight:
 
     def before_contact(self, t: float) -> tuple[float, float, float, float, float, float]:
         """Body state (x, y, pitch, vx, vy, pitch rate) `t` [s] before the first contact."""
-        arm, rate, end, g, vx, vy = (
-            self._arm,
-            self._rate,
-            self._end,
-            self._gravity,
-            self._vx,
-            self._vy,
-        )
+        arm, rate, end = self._arm, self._rate, self._end
+        g, vx, vy = self._gravity, self._vx, self._vy
         pitch = end - rate * t
         x = arm * sin(end) - vx * t - arm * sin(pitch)
         y = self._contact_y + arm * cos(end) - vy * t - 0.5 * g * t * t - arm * cos(pitch)

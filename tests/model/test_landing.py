@@ -73,13 +73,13 @@ def test_reset_starts_the_same_landing_again():
 
 
 def test_setting_an_input_to_what_it_is_changes_nothing():
-    plain, told = Landing(), Landing()
-    for landing in (plain, told):
+    plain, set_again = Landing(), Landing()
+    for landing in (plain, set_again):
         landing.advance_to(0.1)
-    told.set_inputs({"external.force_x": 0.0, "ground.heave": 0.0})
-    for landing in (plain, told):
+    set_again.set_inputs({"external.force_x": 0.0, "ground.heave": 0.0})
+    for landing in (plain, set_again):
         landing.advance_to(0.3)
-    assert told.values() == plain.values()
+    assert set_again.values() == plain.values()
 
 
 def test_every_output_has_a_name_a_unit_and_a_meaning_of_its_own():
@@ -93,13 +93,19 @@ def test_every_output_has_a_name_a_unit_and_a_meaning_of_its_own():
 
 
 def test_outputs_agree_with_each_other(drop_test: History):
-    """The order of the kernel's outputs is that of the names: quantities that are each other's rate
-    or sum say so.
+    """The order of the kernel's outputs is that of the names.
+
+    Quantities that are each other's rate or sum show it.
     """
     t = drop_test.time
-    rates = (("body.x", "body.vx"), ("body.y", "body.vy"), ("body.pitch", "body.pitch_rate"), ("body.vx", "body.ax"),
-             ("leg[1].main_strut.stroke", "leg[1].main_strut.stroke_rate"),
-             ("leg[3].auxiliary_strut.stroke", "leg[3].auxiliary_strut.stroke_rate"))  # fmt: skip
+    rates = (
+        ("body.x", "body.vx"),
+        ("body.y", "body.vy"),
+        ("body.pitch", "body.pitch_rate"),
+        ("body.vx", "body.ax"),
+        ("leg[1].main_strut.stroke", "leg[1].main_strut.stroke_rate"),
+        ("leg[3].auxiliary_strut.stroke", "leg[3].auxiliary_strut.stroke_rate"),
+    )
     for value, rate in rates:
         change = np.diff(drop_test[value])
         integral = 0.5 * (drop_test[rate][1:] + drop_test[rate][:-1]) * np.diff(t)
@@ -198,8 +204,9 @@ def all_comparisons(every: float, rtol: float = 1e-6):
 
 
 def test_preset_reproduces_at_least_38_42_48_of_the_48_printed_scalars():
-    """Within 5, 10, 20 % of the paper's simulation: what the identification that the preset stems
-    from claims.
+    """The counts are those that the identification of the preset claims.
+
+    They are within 5, 10, 20 % of the paper's simulation.
     """
     found = counts(all_comparisons(2e-4))
     assert found["of"] == 48
@@ -214,8 +221,9 @@ def test_every_printed_scalar_has_a_meaning_and_reads_finite():
 
 
 def test_table2_literally_gives_shorter_contact_intervals_than_the_figures():
-    """The paper's own figures show 151 ms (2-2), and 105 and 157 ms (1-2-1): Table 2's -2 deg
-    cannot give them.
+    """The paper's own figures show 151 ms (2-2), and 105 and 157 ms (1-2-1).
+
+    Table 2's tilt of -2 deg cannot give these.
     """
     two = Reading(Landing(load_preset("yue2022-table2"), "2-2").run(1.0))
     assert two.contact_time(3) - two.contact_time(1) < 0.09

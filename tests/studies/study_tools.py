@@ -1,6 +1,4 @@
-"""What the tests of sweeps share: studies, the command in a process of its own, and the rows it
-leaves.
-"""
+"""Studies for the tests of sweeps, and the command in a process of its own."""
 
 from __future__ import annotations
 
@@ -68,14 +66,14 @@ def run(
 
 
 def start(*arguments: object, cwd: Path) -> subprocess.Popen[str]:
-    """The command, begun."""
+    """The command, running."""
     return subprocess.Popen(
         command(*arguments), cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
 
 
 def wait_for(process: subprocess.Popen[str], condition: Callable[[], bool]) -> None:
-    """Until the condition holds; fails if the process ends before."""
+    """Wait until the condition is true; fail if the process ends before."""
     while not condition():
         with suppress(subprocess.TimeoutExpired):
             process.wait(0.02)

@@ -17,13 +17,13 @@ class Shape:
     """A judge of `inside(u, v)`, u and v from 0 to 1, that counts."""
 
     def __init__(self, inside, lattice=LATTICE):
-        self.inside, self.lattice, self.asked = inside, lattice, []
+        self.inside, self.lattice, self.judged = inside, lattice, []
 
     def at(self, point):
         return bool(self.inside(point[0] / self.lattice.size[0], point[1] / self.lattice.size[1]))
 
     def __call__(self, points):
-        self.asked += points
+        self.judged += points
         return [self.at(p) for p in points]
 
     def trace(self):
@@ -53,8 +53,8 @@ def test_a_circle_is_one_closed_line_and_a_slant_one_open():
 def test_no_point_is_judged_twice_and_far_fewer_than_a_uniform_grid_are():
     shape = Shape(disc(0.5, 0.5, 0.3))
     shape.trace()
-    assert len(set(shape.asked)) == len(shape.asked)
-    assert 100 * len(shape.asked) < LATTICE.uniform == (8 * 32 + 1) * (8 * 64 + 1)
+    assert len(set(shape.judged)) == len(shape.judged)
+    assert 100 * len(shape.judged) < LATTICE.uniform == (8 * 32 + 1) * (8 * 64 + 1)
 
 
 @given(x=st.floats(0.1, 0.9), y=st.floats(0.1, 0.9))
@@ -70,7 +70,7 @@ def test_an_island_within_a_coarse_cell_is_not_seen():
 def test_one_verdict_everywhere_has_no_boundary_and_takes_the_coarse_corners_only():
     shape = Shape(lambda u, v: True)
     assert shape.trace() == []
-    assert len(shape.asked) == 81
+    assert len(shape.judged) == 81
 
 
 @pytest.mark.parametrize(

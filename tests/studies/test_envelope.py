@@ -1,4 +1,4 @@
-"""Envelopes of real landings: what they claim, each claim landed again or known by symmetry."""
+"""Envelopes of real landings beside landings made again and symmetry."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import pytest
 from pytest import approx
 
 from rlv_landing import Landing, LandingError, load_preset
-from rlv_landing.studies.envelope.landed import FAILED, Landed, land
-from rlv_landing.studies.envelope.results import record, runs, verdict
+from rlv_landing.studies.envelope.judged_landing import FAILED, JudgedLanding, judged_landing
+from rlv_landing.studies.envelope.results import record, stretches, verdict
 from rlv_landing.studies.envelope.search import Envelope, envelope
 from rlv_landing.studies.envelope.store import Store
 from rlv_landing.studies.envelope.study import CRITERIA, Axis, EnvelopeStudy, study_from
@@ -32,9 +32,7 @@ LIMITS = {"main_strut.force": 9e3, "contact.force": 2e4}
 
 
 def small(**changes) -> EnvelopeStudy:
-    """Speeds and tilts to both sides; few cells, landings given up early, for a landing takes its
-    time.
-    """
+    """Speeds and tilts to both sides, with few cells and short landings to save time."""
     x, y = Axis(V, -6.0, 6.0, 0.75), Axis(TILT, radians(-12), radians(12), radians(4))
     return EnvelopeStudy(
         **{
@@ -74,11 +72,11 @@ def test_the_two_sides_are_no_further_apart_than_the_tolerance(found):
 
 def test_on_level_ground_a_landing_from_the_other_side_is_as_stable(found):
     """Speed and tilt turned: legs 1 and 2 are to 4 and 3 as a mirror image."""
-    landings = {(round(x, 9), round(y, 9)): landed for x, y, landed in found.families[0].landings}
-    for (x, y), landed in landings.items():
+    landings = {(round(x, 9), round(y, 9)): landing for x, y, landing in found.families[0].landings}
+    for (x, y), landing in landings.items():
         other = landings.get((round(-x, 9), round(-y, 9)))
         if other is not None:
-            assert (landed.name, landed.towards) == (
+            assert (landing.name, landing.towards) == (
                 other.name,
                 {"+x": "-x", "-x": "+x", "": ""}[other.towards],
             )
@@ -90,23 +88,23 @@ def test_the_critical_condition_is_that_of_the_lost_landing(found):
     c = found.families[0].lines[0][0]
     x, y = c.lost
     alone = outcome(Landing(GRIPPING.with_values({V: x, TILT: y})).run(2.0), LIMITS)
-    assert (c.landed.name, c.landed.time, c.landed.first_limit) == (
+    assert (c.landing.name, c.landing.time, c.landing.first_limit) == (
         alone.name,
         approx(alone.time),
         alone.first_limit,
     )
-    assert c.landed.condition.startswith(f"topples to {'+x' if x > 0.0 else '-x'}")
+    assert c.landing.condition.startswith(f"topples to {'+x' if x > 0.0 else '-x'}")
     if alone.first_limit is not None:
         assert (
             f"leg {alone.first_limit.leg} passes {alone.first_limit.name} first"
-            in c.landed.condition
+            in c.landing.condition
         )
 
 
 def test_runs_cover_a_line_in_order(found):
     for line in found.families[0].lines:
-        assert [c for run in runs(line) for c in run.points] == list(line)
-        assert all(a.condition != b.condition for a, b in zip(runs(line), runs(line)[1:]))
+        assert [c for stretch in stretches(line) for c in stretch.points] == list(line)
+        assert all(a.condition != b.condition for a, b in zip(stretches(line), stretches(line)[1:]))
 
 
 def test_the_result_does_not_depend_on_the_number_of_workers(found):
@@ -140,7 +138,7 @@ def test_landings_of_another_study_are_refused(tmp_path):
     Store(small(), tmp_path / "a.jsonl").close()
     with pytest.raises(LandingError, match="holds landings of another study or version"):
         Store(small(until=3.0), tmp_path / "a.jsonl", resume=True)
-    with pytest.raises(LandingError, match=r"a\.jsonl exists; --resume goes on with it"):
+    with pytest.raises(LandingError, match=r"a\.jsonl exists; --resume continues with it"):
         Store(small(), tmp_path / "a.jsonl")
     (tmp_path / "b.jsonl").write_text("not ours")
     with pytest.raises(LandingError, match="holds landings of another study or version"):
@@ -152,24 +150,24 @@ def test_landings_of_another_study_are_refused(tmp_path):
     ("criterion", "lost"), [("toppled", 1), ("bottomed out", 2), ("slid", 3), ("limit", 1)]
 )
 def test_a_criterion_counts_what_is_severer_too(criterion, lost):
-    assert [Landed(name, 1.0).lost(criterion) for name in SEVERITY] == [True] * lost + [False] * (
-        len(SEVERITY) - lost
-    )
-    assert Landed(FAILED, 1.0).lost(criterion)
+    assert [JudgedLanding(name, 1.0).lost(criterion) for name in SEVERITY] == [True] * lost + [
+        False
+    ] * (len(SEVERITY) - lost)
+    assert JudgedLanding(FAILED, 1.0).lost(criterion)
 
 
 def test_a_limit_passed_is_lost_by_the_criterion_limit_only():
     hard = small(criterion="limit")
-    landed = land(hard, {V: 0.3, TILT: 0.0, "drop.vertical_velocity": -3.0})
-    assert landed.first_limit is not None
-    assert {c for c in CRITERIA if landed.lost(c)} == {"limit"}
+    landing = judged_landing(hard, {V: 0.3, TILT: 0.0, "drop.vertical_velocity": -3.0})
+    assert landing.first_limit is not None
+    assert {c for c in CRITERIA if landing.lost(c)} == {"limit"}
 
 
 def test_a_vehicle_that_bottoms_out_says_with_which_leg():
-    landed = land(small(), {V: 0.3, TILT: -0.13, "main_strut.stroke_max": 0.02})
-    assert (landed.name, landed.condition.split(",")[0]) == (
+    landing = judged_landing(small(), {V: 0.3, TILT: -0.13, "main_strut.stroke_max": 0.02})
+    assert (landing.name, landing.condition.split(",")[0]) == (
         "bottomed out",
-        f"leg {landed.leg} bottoms out",
+        f"leg {landing.leg} bottoms out",
     )
 
 
@@ -178,7 +176,7 @@ def test_inputs_are_axes_too():
     study = small(x=Axis("external.moment", 0.0, 4000.0, 2000.0))
     (family,) = envelope(study).families
     assert verdict(family, "toppled") == "boundary found"
-    assert all(landed.towards == "+x" for x, _, landed in family.landings if x == 4000.0)
+    assert all(landing.towards == "+x" for x, _, landing in family.landings if x == 4000.0)
 
 
 @pytest.mark.parametrize("source", ["docs/envelope.md", "examples/envelope.toml"])
@@ -203,7 +201,10 @@ AXES = {
     [
         (
             {"x": {**AXES["x"], "name": "drop.horizontal"}},
-            r"unknown quantity for an axis 'drop\.horizontal'; did you mean drop\.horizontal_velocity",
+            (
+                r"unknown quantity for an axis 'drop\.horizontal'; "
+                r"did you mean drop\.horizontal_velocity"
+            ),
         ),
         (
             {"x": {**AXES["x"], "name": "drop.mode"}},
@@ -219,7 +220,10 @@ AXES = {
         ),
         (
             {"x": {**AXES["x"], "tolerance": 0}},
-            r"tolerance = 0 m/s is outside \[1\.14441e-05, 12\] m/s; give what you need",
+            (
+                r"tolerance = 0 m/s is outside \[1\.14441e-05, 12\] m/s; "
+                r"give the resolution that you need"
+            ),
         ),
         ({"x": {**AXES["x"], "tolerance": 1e-9}}, r"tolerance = 1e-09 m/s is outside"),
         (

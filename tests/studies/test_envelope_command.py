@@ -35,10 +35,14 @@ STUDY = EnvelopeStudy(
 def options(work: Path, *more: str) -> list[str]:
     """The small study on the command line."""
     return [
-        "envelope", "--work", str(work), "--set", "ground.friction=0.7", "--set", "drop.pitch_rate=0", "--x", f"{V}=-6..6",
-        "--y", f"{TILT}=-12 deg..12 deg", "--tolerance", f"{V}=0.75", "--tolerance", f"{TILT}=4 deg", "--cells", "2", "--levels", "0",
-        "--until", "2.0", "--limit", "main_strut.force=9 kN", "--limit", "contact.force=20 kN", *more,
-    ]  # fmt: skip
+        *("envelope", "--work", str(work)),
+        *("--set", "ground.friction=0.7", "--set", "drop.pitch_rate=0"),
+        *("--x", f"{V}=-6..6", "--y", f"{TILT}=-12 deg..12 deg"),
+        *("--tolerance", f"{V}=0.75", "--tolerance", f"{TILT}=4 deg"),
+        *("--cells", "2", "--levels", "0", "--until", "2.0"),
+        *("--limit", "main_strut.force=9 kN", "--limit", "contact.force=20 kN"),
+        *more,
+    ]
 
 
 def test_the_command_writes_what_the_study_found(command: Callable, tmp_path):
@@ -46,24 +50,25 @@ def test_the_command_writes_what_the_study_found(command: Callable, tmp_path):
     picture = tmp_path / "e.svg"
     done = command(*options(tmp_path / "w", "--json", "--plot", str(picture)))
     assert done.code == 0
-    told = json.loads(done.out)
+    printed = json.loads(done.out)
     ours = record(found)
-    assert told["landings"] == ours["landings"]
-    assert told["uniform_grid"] == found.uniform
-    points = [(c["x"], c["y"]) for line in told["families"][0]["boundary"] for c in line]
+    assert printed["landings"] == ours["landings"]
+    assert printed["uniform_grid"] == found.uniform
+    points = [(c["x"], c["y"]) for line in printed["families"][0]["boundary"] for c in line]
     assert points == [approx((c.x, c.y)) for line in found.families[0].lines for c in line]
     with (tmp_path / "w" / "boundary.csv").open(newline="") as f:
         rows = list(csv.DictReader(f))
     assert [(float(r[V]), float(r[TILT])) for r in rows] == [approx(p) for p in points]
-    assert json.loads((tmp_path / "w" / "boundary.json").read_text()) == told
+    assert json.loads((tmp_path / "w" / "boundary.json").read_text()) == printed
     drawn = picture.read_text()
-    assert all(c.landed.condition in drawn for line in found.families[0].lines for c in line)
+    assert all(c.landing.condition in drawn for line in found.families[0].lines for c in line)
 
 
 def test_a_study_file_gives_the_same_as_options_and_options_win(command: Callable, tmp_path):
     (tmp_path / "study.toml").write_text(
         "[envelope]\ncells = 2\nlevels = 0\nuntil = 1.5\n[set]\nground.friction = 0.1\n"
-        f'[x]\nname = "{V}"\nlow = -1.0\nhigh = 1.0\n[y]\nname = "{TILT}"\nlow = "-3 deg"\nhigh = "3 deg"\n'
+        f'[x]\nname = "{V}"\nlow = -1.0\nhigh = 1.0\n'
+        f'[y]\nname = "{TILT}"\nlow = "-3 deg"\nhigh = "3 deg"\n'
         '[families]\nground.slope = ["0 deg", "2 deg"]\n'
     )
     done = command(
@@ -75,7 +80,7 @@ def test_a_study_file_gives_the_same_as_options_and_options_win(command: Callabl
     assert json.loads((tmp_path / "w" / "boundary.json").read_text())["study"]["until"] == 1.0
 
 
-def test_all_lost_is_said_so(command: Callable, tmp_path):
+def test_all_lost_is_reported(command: Callable, tmp_path):
     done = command(*options(tmp_path / "w", "--input", "external.moment=9000"))
     assert done.code == 1
     assert "all lost" in done.out
@@ -88,7 +93,12 @@ def test_all_lost_is_said_so(command: Callable, tmp_path):
         (["--tolerance", "ground.slope=1"], "ground.slope is not an axis"),
         (["--plot", "picture.pdf"], "picture.pdf must end in .png"),
         (["missing.toml"], "there is no study missing.toml"),
-        (["--family", "ground.slope"], "has no '='"),
+        (["--family", "ground.slope"], "--family 'ground.slope' has no '='"),
+        (["--set", "ground.friction"], "quantity 'ground.friction' has no '='"),
+        (["--set", "ground.frictoin=0.3"], "did you mean ground.friction"),
+        (["--input", "external.force_x=1e9"], "external.force_x = 1e+09 N is outside"),
+        (["--limit", "main_strut.force=5 m"], "has the wrong unit"),
+        (["--tolerance", "drop.tilt"], "--tolerance 'drop.tilt' has no '='"),
     ],
 )
 def test_options_that_cannot_be_are_refused_before_anything_lands(
@@ -100,7 +110,7 @@ def test_options_that_cannot_be_are_refused_before_anything_lands(
     assert not (tmp_path / "w").exists()
 
 
-def test_ctrl_c_keeps_the_landings_and_resume_takes_them_up(command: Callable, tmp_path):
+def test_ctrl_c_keeps_the_landings_and_resume_continues_with_them(command: Callable, tmp_path):
     program = [sys.executable, "-c", "from rlv_landing.cli import main; main()"]
     # an interrupt is ignored in a process that was started in the background
     reset = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "

@@ -12,7 +12,8 @@ from pytest import approx
 from rlv_landing import Landing, LandingError, load_preset
 from rlv_landing.history import History
 from rlv_landing.quantities import LEGS
-from rlv_landing.studies.outcome import LIMITS, SEVERITY, outcome
+from rlv_landing.studies.limits import LIMITS
+from rlv_landing.studies.outcome import SEVERITY, outcome
 
 FIGURES = "yue2022-figures"
 HARD = {"drop.vertical_velocity": -3.5, "main_strut.stroke_max": 0.03}
@@ -85,8 +86,9 @@ def test_the_first_leg_that_meets_its_stop_is_named_with_its_time(landings):
 
 
 def test_on_a_slope_without_friction_the_feet_slide_as_far_as_gravity_takes_them(landings):
-    """The way along the slope is v sin(slope) t + g sin(slope) t^2/2 from the sinking speed v, the
-    footpads' spreading apart.
+    """The distance along the slope is v sin(slope) t + g sin(slope) t^2/2.
+
+    v is the sinking speed; the footpads' spreading is apart.
     """
     h, found = landings["slid"], outcome(landings["slid"])
     assert found.margins["slid"] == approx(
@@ -121,8 +123,9 @@ def test_margins_are_the_smallest_and_the_last_of_the_status(landings):
 
 @pytest.mark.parametrize("mode", ["2-2", "1-2-1"])
 def test_joint_clearance_is_that_of_the_lowest_auxiliary_joint(mode):
-    """In free flight, where the body's position is known: radius and depth of the joints turned by
-    the pitch, above a slope.
+    """In free flight the body's position is known.
+
+    Radius and depth of the joints are turned by the pitch, above a slope.
     """
     h = landed(0.02, mode, ground__slope=0.1, drop__contact_time=0.03)
     p = h.parameters.auxiliary_strut
@@ -228,7 +231,7 @@ def test_an_outcome_can_be_sent_to_another_process(landings):
         ({"slide": -0.1}, r"slide = -0\.1 m must be 0 m or more"),
     ],
 )
-def test_what_cannot_be_asked_is_told(landings, arguments, message):
+def test_arguments_that_cannot_be_are_refused(landings, arguments, message):
     with pytest.raises(LandingError, match=message):
         outcome(landings["moving"], **arguments)
 

@@ -1,4 +1,4 @@
-"""Sensitivity: the indices of a closed form, and of landings whose physics says what they must be."""
+"""Sensitivity: the indices of a closed form, and of landings whose physics determines them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ samples = {samples}
 seed = 2
 until = 0.25
 every = 1e-3
-responses = ["outcome", "legs.main_strut.force.min", "margin.stability_min", "margin.stroke_left", "leg[*].main_strut.efficiency"]
+responses = [
+    "outcome", "legs.main_strut.force.min", "margin.stability_min", "margin.stroke_left",
+    "leg[*].main_strut.efficiency",
+]
 [set]
 drop.contact_time = 0.0
 drop.pitch_rate = 0.0
@@ -66,7 +69,7 @@ def points(study: Study) -> np.ndarray:
 
 
 def test_ishigamis_function_has_its_closed_indices_within_their_intervals(unit_study):
-    """sin x1 + a sin^2 x2 + b x3^4 sin x1, Ishigami and Homma (1990)."""
+    """The function is sin x1 + a sin^2 x2 + b x3^4 sin x1, Ishigami and Homma (1990)."""
     a, b = 7.0, 0.1
     x1, x2, x3 = points(unit_study)
     values = np.sin(x1) + a * np.sin(x2) ** 2 + b * x3**4 * np.sin(x1)
@@ -92,26 +95,31 @@ def test_the_pages_of_the_design_are_two_samples_and_their_exchanges(unit_study)
 def test_a_stop_that_is_never_met_has_indices_of_zero_and_adds_to_the_margin_what_it_varies_by(
     tmp_path, command
 ):
-    """Where the dampers' stop is makes no difference to a landing that never meets it, but moves
-    the stroke left one for one.
+    """The position of the dampers' stop changes no landing that never meets it.
+
+    It changes the stroke left one for one.
     """
     study = write(tmp_path)
     done = command("sensitivity", study, "--results", str(tmp_path / "r"), "--json")
     assert done.code == 0, done.err
-    told = {
+    printed = {
         r["response"]: {f["factor"]: f for f in r["indices"]}
         for r in json.loads(done.out)["responses"]
     }
-    assert set(told) == {"legs.main_strut.force.min", "margin.stability_min", "margin.stroke_left"}
+    assert set(printed) == {
+        "legs.main_strut.force.min",
+        "margin.stability_min",
+        "margin.stroke_left",
+    }
     for response in ("legs.main_strut.force.min", "margin.stability_min"):
-        stop = told[response]["main_strut.stroke_max"]
+        stop = printed[response]["main_strut.stroke_max"]
         assert stop["first"] == stop["total"] == {"index": 0.0, "low": 0.0, "high": 0.0}
-    assert told["legs.main_strut.force.min"]["drop.vertical_velocity"]["total"]["index"] > 0.3
+    assert printed["legs.main_strut.force.min"]["drop.vertical_velocity"]["total"]["index"] > 0.3
     found = rows(tmp_path / "r" / "results.parquet")
     variance = np.var([row["margin.stroke_left"] for row in found[:128]])
     exact = 0.04**2 / 12.0 / variance
     for order in ("first", "total"):
-        share = told["margin.stroke_left"]["main_strut.stroke_max"][order]
+        share = printed["margin.stroke_left"]["main_strut.stroke_max"][order]
         assert share["low"] <= exact <= share["high"]
     assert (tmp_path / "r" / "sensitivity.png").read_bytes().startswith(b"\x89PNG")
     again = command(
@@ -181,8 +189,8 @@ def test_what_has_no_indices_is_refused_before_anything_runs(
 
 
 def test_a_dry_run_counts_the_landings_of_all_pages(tmp_path, command):
-    told = json.loads(command("sensitivity", write(tmp_path), "--dry-run", "--json").out)
-    assert (told["samples"], told["landings"]) == (64 * 5, 64 * 5)
+    printed = json.loads(command("sensitivity", write(tmp_path), "--dry-run", "--json").out)
+    assert (printed["samples"], printed["landings"]) == (64 * 5, 64 * 5)
 
 
 def test_help_of_both_commands_teaches():

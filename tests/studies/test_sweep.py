@@ -107,12 +107,12 @@ def test_the_files_metadata_repeats_the_study_and_columns_have_units(swept):
 
 
 def test_the_summary_counts_what_the_rows_hold(swept):
-    told = json.loads((swept / "summary.json").read_text())
+    printed = json.loads((swept / "summary.json").read_text())
     found = rows(swept / "r" / "results.parquet")
-    assert (told["landings"], told["failed"]) == (40, 0)
-    assert sum(told["outcomes"].values()) == 40
+    assert (printed["landings"], printed["failed"]) == (40, 0)
+    assert sum(printed["outcomes"].values()) == 40
     force = [row["legs.main_strut.force.min"] for row in found]
-    assert told["responses"]["legs.main_strut.force.min"]["median"] == pytest.approx(
+    assert printed["responses"]["legs.main_strut.force.min"]["median"] == pytest.approx(
         np.median(force)
     )
 
@@ -120,10 +120,10 @@ def test_the_summary_counts_what_the_rows_hold(swept):
 def test_damper_work_of_a_row_is_that_of_measures(drop_test):
     values = dict(zip(names := expand(None), Measure(names)(drop_test, 1)))
     work = leg_work(drop_test)
-    for leg, told in work.items():
+    for leg, expected in work.items():
         for what in ("absorbed", "dissipated", "efficiency"):
             assert values[f"leg[{leg}].main_strut.{what}"] == pytest.approx(
-                getattr(told, what), rel=1e-12
+                getattr(expected, what), rel=1e-12
             )
     assert values["legs.main_strut.absorbed"] == pytest.approx(
         sum(w.absorbed for w in work.values())
@@ -219,7 +219,8 @@ def test_a_table_of_touchdown_states_is_landed_row_by_row_in_its_units(tmp_path,
             pa.table([[v] * 3 for v in (*STATES.values(), "a")], schema=pa.schema(fields)), table
         )
     (tmp_path / "s.toml").write_text(
-        f'[study]\ntable = "states.{ending}"\nignore = ["case"]\nuntil = 0.1\n[set]\ndrop.contact_time = 0.0\n'
+        f'[study]\ntable = "states.{ending}"\nignore = ["case"]\nuntil = 0.1\n'
+        "[set]\ndrop.contact_time = 0.0\n"
     )
     done = command("sweep", str(tmp_path / "s.toml"), "--results", str(tmp_path / "r"))
     assert done.code == 0, done.err
@@ -274,9 +275,11 @@ def test_rows_that_cannot_be_landed_say_why_and_the_others_are_landed(tmp_path, 
 
 def test_a_dry_run_tells_number_first_rows_and_time_and_makes_nothing(tmp_path, command):
     study = str(write_study(tmp_path))
-    told = json.loads(command("sweep", study, "--dry-run", "--json").out)
-    assert (told["landings"], told["samples"], len(told["first"])) == (40, 20, 5)
-    assert told["seconds_estimated"] == pytest.approx(told["seconds_one"] * 40 / told["workers"])
+    printed = json.loads(command("sweep", study, "--dry-run", "--json").out)
+    assert (printed["landings"], printed["samples"], len(printed["first"])) == (40, 20, 5)
+    assert printed["seconds_estimated"] == pytest.approx(
+        printed["seconds_one"] * 40 / printed["workers"]
+    )
     text = command("sweep", study, "--dry-run").out
     assert "40 landings" in text
     assert "drop.vertical_velocity [m/s]" in text
@@ -286,9 +289,11 @@ def test_a_dry_run_tells_number_first_rows_and_time_and_makes_nothing(tmp_path, 
 @pytest.mark.parametrize("study", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
 def test_the_examples_are_studies_whose_first_landing_works(command, study):
     name = "sensitivity" if study.stem == "sensitivity" else "sweep"
-    told = json.loads(command(name, str(study), "--dry-run", "--json").out)
-    assert told["error"] is None
-    assert told["landings"] == {"dispersion": 1000, "states": 24, "sensitivity": 1024}[study.stem]
+    printed = json.loads(command(name, str(study), "--dry-run", "--json").out)
+    assert printed["error"] is None
+    assert (
+        printed["landings"] == {"dispersion": 1000, "states": 24, "sensitivity": 1024}[study.stem]
+    )
 
 
 def test_the_study_that_the_documentation_shows_is_one(tmp_path):

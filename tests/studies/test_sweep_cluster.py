@@ -127,7 +127,7 @@ def test_a_scheduler_that_dies_in_mid_run_ends_the_sweep_and_threads_go_on_with_
     cluster.processes[0].kill()
     _, err = process.communicate(timeout=200)
     assert process.returncode == 1, err
-    assert "--resume goes on" in err
+    assert "--resume continues" in err
     assert len(err.strip().splitlines()) == 1
     done = command("sweep", str(study), "--results", str(tmp_path / "r"), "--resume")
     assert done.code == 0, done.err

@@ -1,6 +1,4 @@
-"""The results of a sweep outlive whatever ends it: Ctrl-C, SIGTERM, kill -9, a full disk; and go on
-where they stopped.
-"""
+"""The results of a sweep survive Ctrl-C, SIGTERM, kill -9 and a full disk, and can be continued."""
 
 from __future__ import annotations
 
@@ -15,8 +13,8 @@ from pyarrow import parquet
 from study_tools import rows, start, wait_for, write_study
 
 from rlv_landing.studies.sweep.result_files import Results
-from rlv_landing.studies.sweep.row import Task
 from rlv_landing.studies.sweep.study import read_study
+from rlv_landing.studies.sweep.sweep_row import Task
 
 
 def parts(folder: Path) -> list[Path]:
@@ -35,19 +33,19 @@ def test_an_ended_sweep_keeps_its_rows_and_resume_makes_the_rest(tmp_path, numbe
         assert process.returncode == -number
     else:
         assert process.returncode == 130, err
-        assert "of 40000 landings are kept in r, --resume goes on" in err
+        assert "of 40000 landings are kept in r, --resume continues" in err
         assert "Traceback" not in err
     kept = [row["index"] for part in parts(folder) for row in rows(part)]
     assert kept == list(range(len(kept)))
-    task, results = taken_up(study, folder)
+    task, results = resumed(study, folder)
     with results:
         assert results.missing() == [(len(kept), len(task))]
 
 
-def taken_up(study: Path, folder: Path) -> tuple[Task, Results]:
+def resumed(study: Path, folder: Path) -> tuple[Task, Results]:
     read = read_study(study)
     task = Task(read, read.design)
-    return task, Results(folder, task.about(), read.text, task.quantities(), len(task), resume=True)
+    return task, Results(folder, task, resume=True)
 
 
 def test_resume_fills_holes_and_gives_the_file_of_an_undisturbed_run(tmp_path, command):
@@ -55,7 +53,7 @@ def test_resume_fills_holes_and_gives_the_file_of_an_undisturbed_run(tmp_path, c
     assert command("sweep", str(study), "--results", str(tmp_path / "whole")).code == 0
     whole = tmp_path / "whole" / "results.parquet"
     made = rows(whole)
-    _, results = taken_up(study, tmp_path / "r")
+    _, results = resumed(study, tmp_path / "r")
     with results:
         for first, last in ((0, 7), (20, 31), (50, 51)):
             results.add([list(row.values()) for row in made[first:last]])
@@ -83,15 +81,15 @@ def files_up_to(size: int) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
-def test_a_full_disk_keeps_what_is_done_and_resume_goes_on_when_there_is_room(tmp_path, command):
+def test_a_full_disk_keeps_what_is_done_and_resume_continues_when_there_is_room(tmp_path, command):
     study = write_study(tmp_path, samples=60)
     folder = tmp_path / "r"
     with files_up_to(30_000):
         done = command("sweep", str(study), "--results", str(folder))
     assert done.code == 1, done.err
     assert (
-        f"cannot be written: File too large; make room; 0 of 120 landings are kept in {folder}, --resume goes on"
-        in done.err
+        "cannot be written: File too large; make room; "
+        f"0 of 120 landings are kept in {folder}, --resume continues" in done.err
     )
     assert len(done.err.strip().splitlines()) == 1
     assert not list(folder.rglob("*.part"))
@@ -104,7 +102,7 @@ def test_a_disk_too_full_for_the_joined_file_keeps_its_parts(tmp_path, command):
     study = write_study(tmp_path, samples=120)
     assert command("sweep", str(study), "--results", str(tmp_path / "whole")).code == 0
     made = rows(tmp_path / "whole" / "results.parquet")
-    _, results = taken_up(study, tmp_path / "r")
+    _, results = resumed(study, tmp_path / "r")
     with results:
         for first in range(0, 240, 60):
             results.add([list(row.values()) for row in made[first : first + 60]])
@@ -134,7 +132,7 @@ def test_the_joined_file_does_not_depend_on_its_parts(tmp_path, monkeypatch):
         for i in range(60)
     ]
     for name, size in (("a", 60), ("b", 7)):
-        _, results = taken_up(study, tmp_path / name)
+        _, results = resumed(study, tmp_path / name)
         with results:
             for first in range(0, 60, size):
                 results.add(made[first : first + size])
@@ -153,7 +151,7 @@ def test_a_changed_study_is_not_resumed_and_the_change_is_named(tmp_path, comman
     before = (tmp_path / "r" / "results.parquet").read_bytes()
     refused = command("sweep", str(study), "--results", folder)
     assert refused.code == 2
-    assert "--resume goes on with it, --results names another folder" in refused.err
+    assert "--resume continues with it, --results names another folder" in refused.err
     study.write_text(
         study.read_text()
         .replace("until = 0.1", "until = 0.2")
@@ -174,7 +172,7 @@ def test_a_comment_in_the_study_changes_nothing(tmp_path, command):
 
 def test_a_folder_in_use_and_a_damaged_part_and_foreign_files_are_refused(tmp_path, command):
     study = write_study(tmp_path, samples=10)
-    _, results = taken_up(study, tmp_path / "r")
+    _, results = resumed(study, tmp_path / "r")
     with results:
         refused = command("sweep", str(study), "--results", str(tmp_path / "r"), "--resume")
         assert refused.code == 2

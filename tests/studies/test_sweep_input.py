@@ -1,5 +1,6 @@
-"""What a study cannot be is refused before anything runs, in one line with the nearest name or the
-remedy.
+"""Studies that cannot be are refused before anything runs.
+
+The error is one line with the nearest name or the remedy.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ import pytest
 from pytest import approx
 
 from rlv_landing import Landing, Parameters, load_preset
-from rlv_landing.studies.envelope.landed import land
+from rlv_landing.studies.envelope.judged_landing import judged_landing
 from rlv_landing.studies.envelope.search import envelope
 from rlv_landing.studies.envelope.study import Axis, EnvelopeStudy
 from rlv_landing.studies.envelope.tip_over import LOCKED, RigidBlock
@@ -40,11 +40,14 @@ def higher(by: float) -> dict[str, float]:
 def side(parameters: Parameters, vx: float) -> str:
     """The side to which the model's vehicle topples; empty where it does not."""
     axes = Axis(V, -50.0, 50.0, 1.0), Axis("drop.tilt", -1.5, 1.5, 0.1)
-    return land(EnvelopeStudy(parameters, *axes, until=4.5), {V: vx}).towards
+    return judged_landing(EnvelopeStudy(parameters, *axes, until=4.5), {V: vx}).towards
 
 
 def test_a_strike_keeps_the_angular_momentum_about_the_foot():
-    """In Cartesian components: r x M v + I w before, r x M (w x r) + I w after, clockwise positive."""
+    """Cartesian components: r x M v + I w before, r x M (w x r) + I w after.
+
+    Clockwise is positive.
+    """
     pitch, vx, vy, rate = 0.15, 2.0, -0.7, 0.3
     # body axes to inertial, clockwise: the foot is at (1, -1.96)
     rx, ry = -(1.0 * cos(pitch) - 1.96 * sin(pitch)), -(-1.0 * sin(pitch) - 1.96 * cos(pitch))

@@ -1,1 +1,1 @@
-"""The commands of `rlv-landing` that have a file of their own, and the options that commands share."""
+"""The commands of `rlv-landing`, a file each, and the options that they share."""

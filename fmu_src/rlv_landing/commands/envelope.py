@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-import json
-import os
 import signal
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..choices import parse_pairs, split_pair
 from ..errors import LandingError
-from .options import check_writable, parameter_options
+from .options import HELP_NAMES, check_writable, parameter_options
+from .printing import print_json
+
+if TYPE_CHECKING:
+    from ..studies.envelope.search import Envelope
+    from ..studies.envelope.store import Store
+    from ..studies.envelope.study import EnvelopeStudy
 
 NO_BOUNDARY, INTERRUPTED = 1, 130
 STUDY = click.Path(path_type=Path)
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.command(context_settings=HELP_NAMES)
 @click.argument("study", metavar="[STUDY.toml]", required=False, type=STUDY)
 @parameter_options
 @click.option(
@@ -33,7 +38,7 @@ STUDY = click.Path(path_type=Path)
     "tolerances",
     metavar="NAME=VALUE",
     multiple=True,
-    help="How well to know an axis [default: 1/128 of it]. Repeat.",
+    help="Resolution of the boundary along an axis [default: 1/128 of it]. Repeat.",
 )
 @click.option(
     "--family",
@@ -72,7 +77,7 @@ STUDY = click.Path(path_type=Path)
     "--until",
     type=float,
     metavar="S",
-    help="When a landing is given up that neither rests nor topples [default: 6].",
+    help="End of a landing that neither rests nor topples [default: 6].",
 )
 @click.option(
     "--work",
@@ -81,7 +86,7 @@ STUDY = click.Path(path_type=Path)
     show_default=True,
     help="Folder for landings and results.",
 )
-@click.option("--resume", is_flag=True, help="Go on with the landings in --work.")
+@click.option("--resume", is_flag=True, help="Continue with the landings in --work.")
 @click.option("--workers", type=click.IntRange(1), help="Threads [default: all cores].")
 @click.option(
     "--plot",
@@ -92,75 +97,146 @@ STUDY = click.Path(path_type=Path)
 @click.option("--json", "as_json", is_flag=True, help="Print the whole result as JSON.")
 @click.option("--force", is_flag=True, help="Overwrite a picture that exists.")
 def envelope(
-    study: Path | None, preset: str | None, file: str | None, mode: str | None, pairs: tuple[str, ...], inputs: tuple[str, ...],
-    work: Path, resume: bool, workers: int | None, plot: Path | None, as_json: bool, force: bool, **options: Any,
-) -> None:  # fmt: skip
-    """Find where landings turn from stable to lost, in two quantities, for every family, with what
-    is critical along that boundary.
+    study: Path | None,
+    work: Path,
+    plot: Path | None,
+    *,
+    resume: bool,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Find where landings turn from stable to lost, in two quantities, for every family.
 
-    Coarse cells are halved where their corners differ, then the edges that the boundary crosses, to
-    the tolerance of each axis; an island that lies within one coarse cell is not seen (--cells).
-    Writes boundary.csv, boundary.json and landings.jsonl to the folder --work, which also lets
-    --resume go on after Ctrl-C. Axes are parameters or inputs; a landing starts at its first
-    contact. Options win over the study's file.
+    It also finds the critical condition along that boundary. Coarse cells are halved where their
+    corners differ. Then the edges that the boundary crosses are halved, to the tolerance of each
+    axis. An island that lies within one coarse cell is not found (--cells). Results are
+    boundary.csv, boundary.json and landings.jsonl in the folder --work. After Ctrl-C, --resume
+    continues there. Axes are parameters or inputs; a landing starts at its first contact. Options
+    win over the study's file.
 
     \b
     rlv-landing envelope examples/envelope.toml --plot envelope.png
-    rlv-landing envelope --x drop.horizontal_velocity=-6..6 --y "drop.tilt=-15 deg..15 deg" --family ground.friction=0.3,0.6
+    rlv-landing envelope --x drop.horizontal_velocity=-6..6 --y "drop.tilt=-15 deg..15 deg" \\
+        --family ground.friction=0.3,0.6
 
     Exit codes: 0 done, 1 no family has a boundary in the range (all stable or all lost), 2 bad
-        input, 130 interrupted.
+    input, 130 interrupted.
     """
-    from tqdm import tqdm
-
-    from ..figures.envelope_figure import save_envelope
-    from ..studies import toml_keys
-    from ..studies.envelope.results import record, write_csv, write_json
-    from ..studies.envelope.search import envelope as run
-    from ..studies.envelope.store import Store
-    from ..studies.envelope.study import study_from
+    from ..studies.envelope.results import record
     from ..tables.envelope_tables import envelope_tables
+    from ..workers import default_workers
 
-    check_writable(plot, ".svg" if plot is not None and plot.suffix == ".svg" else ".png", force)
-    document = toml_keys.read(study)[0] if study is not None else {}
-    top = {
-        "preset": preset,
-        "parameters": None if file is None else str(Path(file).resolve()),
-        "mode": mode,
-    }
-    top |= {key: options[key] for key in ("criterion", "cells", "levels", "until")}
-    _override(
-        document,
-        top,
-        (*pairs, *inputs),
-        **{key: options[key] for key in ("x_axis", "y_axis", "tolerances", "families", "limits")},
-    )
-    asked = study_from(document, study.parent if study is not None else Path())
+    ending = ".svg" if plot is not None and plot.suffix == ".svg" else ".png"
+    check_writable(plot, ending, force=options["force"])
+    asked = _study(study, options)
+    store = _open_store(asked, work, resume=resume)
     try:
-        work.mkdir(parents=True, exist_ok=True)
-        store = Store(asked, work / "landings.jsonl", resume)
-    except OSError as e:
-        raise LandingError(f"{e.filename or work} cannot be written: {e.strerror or e}") from None
-    # SIGTERM ends as Ctrl-C does: with everything written
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    try:
-        with tqdm(initial=len(store.found), unit="landing", disable=not sys.stderr.isatty()) as bar:
-
-            def tell(family: int, count: int) -> None:
-                bar.set_description_str(
-                    f"family {family + 1} of {len(asked.families)}", refresh=False
-                )
-                bar.update(count - bar.n)
-
-            found = run(asked, workers or os.cpu_count() or 1, store, tell)
+        found = _search(asked, store, options["workers"] or default_workers())
     except KeyboardInterrupt:
         click.echo(
-            f"interrupted; {len(store.found)} landings are kept in {work}, --resume goes on",
+            f"interrupted; {len(store.found)} landings are kept in {work}, --resume continues",
             err=True,
         )
         sys.exit(INTERRUPTED)
     finally:
         store.close()
+    _write(found, work, plot)
+    if as_json:
+        print_json(record(found))
+    else:
+        click.echo(envelope_tables(found), nl=False)
+    if not any(f.lines for f in found.families):
+        click.echo("error: no family has a boundary in this range; widen the axes", err=True)
+        sys.exit(NO_BOUNDARY)
+
+
+def _study(path: Path | None, options: dict[str, Any]) -> EnvelopeStudy:
+    """The study of the file, changed by the options."""
+    from ..studies import toml_keys
+    from ..studies.envelope.study import study_from
+
+    document = toml_keys.read(path)[0] if path is not None else {}
+    _override(document, options)
+    return study_from(document, path.parent if path is not None else Path())
+
+
+def _override(document: dict[str, Any], options: dict[str, Any]) -> None:
+    """Let the options replace what the study's document gives."""
+    from ..studies.limits import LIMITS
+    from ..studies.sweep.factors import VARIABLES
+
+    keys = document.setdefault("envelope", {})
+    file = options["file"]
+    if options["preset"] is not None or file is not None:
+        keys.pop("preset", None)
+        keys.pop("parameters", None)
+    top = {
+        "parameters": None if file is None else str(Path(file).resolve()),
+        **{
+            key: options[key] for key in ("preset", "mode", "criterion", "cells", "levels", "until")
+        },
+    }
+    keys.update({key: value for key, value in top.items() if value is not None})
+    fixed = parse_pairs((*options["pairs"], *options["inputs"]), VARIABLES, "quantity")
+    document.setdefault("set", {}).update(fixed)
+    document.setdefault("limits", {}).update(parse_pairs(options["limits"], LIMITS, "limit"))
+    if options["families"]:
+        pairs = [split_pair(pair, "--family") for pair in options["families"]]
+        document["families"] = {
+            name: [value.strip() for value in values.split(",")] for name, values in pairs
+        }
+    for key in ("x", "y"):
+        if options[f"{key}_axis"] is not None:
+            document[key] = _axis(key, options[f"{key}_axis"])
+    for pair in options["tolerances"]:
+        name, value = split_pair(pair, "--tolerance")
+        axes = [document[key] for key in ("x", "y") if document.get(key, {}).get("name") == name]
+        if not axes:
+            raise LandingError(f"--tolerance {name}={value}: {name} is not an axis")
+        axes[0]["tolerance"] = value
+
+
+def _axis(key: str, text: str) -> dict[str, str]:
+    name, values = split_pair(text, f"--{key}")
+    low, dots, high = values.partition("..")
+    if not dots:
+        raise LandingError(
+            f'--{key} {text}: write NAME=LOW..HIGH, for example drop.tilt="-10 deg..10 deg"'
+        )
+    return {"name": name, "low": low.strip(), "high": high.strip()}
+
+
+def _open_store(asked: EnvelopeStudy, work: Path, *, resume: bool) -> Store:
+    from ..studies.envelope.store import Store
+
+    try:
+        work.mkdir(parents=True, exist_ok=True)
+        return Store(asked, work / "landings.jsonl", resume=resume)
+    except OSError as e:
+        raise LandingError(f"{e.filename or work} cannot be written: {e.strerror or e}") from None
+
+
+def _search(asked: EnvelopeStudy, store: Store, workers: int) -> Envelope:
+    """Search with progress on a terminal."""
+    from tqdm import tqdm
+
+    from ..studies.envelope.search import envelope as run
+
+    # SIGTERM ends as Ctrl-C does: with everything written
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    with tqdm(initial=len(store.found), unit="landing", disable=not sys.stderr.isatty()) as bar:
+
+        def show_progress(family: int, count: int) -> None:
+            bar.set_description_str(f"family {family + 1} of {len(asked.families)}", refresh=False)
+            bar.update(count - bar.n)
+
+        return run(asked, workers, store, show_progress)
+
+
+def _write(found: Envelope, work: Path, plot: Path | None) -> None:
+    from ..figures.envelope_figure import save_envelope
+    from ..studies.envelope.results import write_csv, write_json
+
     try:
         write_csv(found, work / "boundary.csv")
         write_json(found, work / "boundary.json")
@@ -168,49 +244,3 @@ def envelope(
             save_envelope(found, plot)
     except OSError as e:
         raise LandingError(f"{e.filename or plot} cannot be written: {e.strerror or e}") from None
-    click.echo(
-        json.dumps(record(found), indent=1, allow_nan=False) if as_json else envelope_tables(found),
-        nl=as_json,
-    )
-    if not any(f.lines for f in found.families):
-        click.echo("error: no family has a boundary in this range; widen the axes", err=True)
-        sys.exit(NO_BOUNDARY)
-
-
-def _override(
-    document: dict[str, Any], top: dict[str, Any], pairs: tuple[str, ...], **options: Any
-) -> None:
-    """Put what the options say in the place of what the study's document says."""
-    told = document.setdefault("envelope", {})
-    if top["preset"] is not None or top["parameters"] is not None:
-        told.pop("preset", None)
-        told.pop("parameters", None)
-    told.update({key: value for key, value in top.items() if value is not None})
-    document.setdefault("set", {}).update(map(_pair, pairs))
-    document.setdefault("limits", {}).update(map(_pair, options["limits"]))
-    if options["families"]:
-        document["families"] = {
-            name: [v.strip() for v in values.split(",")]
-            for name, values in map(_pair, options["families"])
-        }
-    for key in ("x", "y"):
-        if options[f"{key}_axis"] is not None:
-            name, values = _pair(options[f"{key}_axis"])
-            low, dots, high = values.partition("..")
-            if not dots:
-                raise LandingError(
-                    f'--{key} {options[f"{key}_axis"]}: write NAME=LOW..HIGH, for example drop.tilt="-10 deg..10 deg"'
-                )
-            document[key] = {"name": name, "low": low.strip(), "high": high.strip()}
-    for name, value in map(_pair, options["tolerances"]):
-        axes = [document[key] for key in ("x", "y") if document.get(key, {}).get("name") == name]
-        if not axes:
-            raise LandingError(f"--tolerance {name}={value}: {name} is not an axis")
-        axes[0]["tolerance"] = value
-
-
-def _pair(text: str) -> tuple[str, str]:
-    name, equals, value = text.partition("=")
-    if not equals:
-        raise LandingError(f"{text!r} has no '='; write NAME=VALUE")
-    return name.strip(), value.strip()

@@ -5,19 +5,27 @@ from __future__ import annotations
 import signal
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..choices import split_pair
 from ..errors import LandingError
-from .options import choose, parameter_options
+from .options import HELP_NAMES, choose, parameter_options
+
+if TYPE_CHECKING:
+    from ..identification.identify import Search
+    from ..identification.objective import Objective
+
+NOTHING_BETTER, INTERRUPTED = 1, 130
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.command(context_settings=HELP_NAMES)
 @parameter_options
 @click.option(
     "--free",
     metavar="NAME[,NAME...]",
-    help="What to identify [default: all that have a prior, see --priors].",
+    help="Parameters to identify [default: all that have a prior, see --priors].",
 )
 @click.option(
     "--bound",
@@ -41,7 +49,7 @@ from .options import choose, parameter_options
 @click.option(
     "--conditions/--no-conditions",
     default=None,
-    help="Hold landings to sense, by the prototype's limits [default: with the paper's scalars].",
+    help="Penalise landings beyond the prototype's limits [default: with the paper's scalars].",
 )
 @click.option(
     "--work",
@@ -63,7 +71,7 @@ from .options import choose, parameter_options
     default=2000,
     show_default=True,
     type=click.IntRange(0),
-    help="Landings for the least squares after it.",
+    help="Landings for the least squares after the search.",
 )
 @click.option(
     "--sigma",
@@ -83,39 +91,77 @@ from .options import choose, parameter_options
     "--seed", default=1, show_default=True, type=click.IntRange(1), help="Seed of the search."
 )
 @click.option("--workers", type=click.IntRange(1), help="Processes [default: all cores].")
-@click.option("--resume", is_flag=True, help="Go on with the search in --work.")
+@click.option("--resume", is_flag=True, help="Continue with the search in --work.")
 @click.option(
     "--priors",
     "list_priors",
     is_flag=True,
-    help="Print what can be identified, between which bounds and why, and stop.",
+    help="Print the parameters that can be identified, their bounds and the reasons, and stop.",
 )
-def identify(
-    preset: str | None, file: str | None, mode: str | None, pairs: tuple[str, ...], free: str | None, bounds: tuple[str, ...],
-    targets: Path | None, series: tuple[str, ...], work: Path, evaluations: int, polish: int, sigma: float, population: int, seed: int,
-    workers: int | None, resume: bool, list_priors: bool, conditions: bool | None,
-) -> None:  # fmt: skip
-    """Estimate what the paper does not print, or your own vehicle's parameters, from peaks, times
-    and curves of landings.
+def identify(work: Path, *, list_priors: bool, **options: Any) -> None:
+    """Estimate parameters from peaks, times and curves of landings.
 
-    A global search (CMA-ES) on all cores, then least squares; both modes at once. Writes
-    identified.toml (take it by --parameters) and report.md (fit, numbers at bounds, how well each
-    is determined) to the folder --work, which also keeps the best point all along: Ctrl-C loses
-    nothing, --resume goes on. What is not free stays as preset, file and --set say; --mode takes
-    one drop test's numbers only.
+    They are those that the paper does not print, or your own vehicle's. A global search (CMA-ES)
+    on all cores is followed by least squares; both modes at once. The folder --work gets
+    identified.toml (for --parameters) and report.md (fit, numbers at bounds, how well each is
+    determined). It also keeps the best point all along: after Ctrl-C, --resume continues. A
+    parameter that is not free keeps the value of preset, file and --set. --mode takes one drop
+    test's numbers only.
 
     \b
     rlv-landing identify --work identification --seed 3
     rlv-landing identify --resume --work identification --evaluations 40000
-    rlv-landing identify --parameters mine.toml --targets measured.csv --free main_strut.orifice_area_compression,ground.friction
+    rlv-landing identify --parameters mine.toml --targets measured.csv \\
+        --free main_strut.orifice_area_compression,ground.friction
 
-    Exit codes: 0 done, 1 nothing better than the start was found, 2 bad input, 130 interrupted (the
-        best so far is written).
+    Exit codes: 0 done, 1 nothing better than the start was found, 2 bad input, 130 interrupted
+    (the best so far is written).
     """
-    from tqdm import tqdm
-
     from ..identification.identify import Search
     from ..identification.identify_report import write_report
+    from ..presets import to_toml
+
+    if list_priors:
+        _print_priors()
+        return
+    objective = _objective(options)
+    # SIGTERM ends as Ctrl-C does: with everything written
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    with Search(objective, work, options["seed"], options["workers"], options["resume"]) as search:
+        finished = _search(search, options)
+        search.save()
+        best = objective.free.parameters(search.best.z)
+        (work / "identified.toml").write_text(to_toml(best), encoding="utf-8")
+        if finished:
+            (work / "report.md").write_text(write_report(search, best), encoding="utf-8")
+    click.echo(
+        f"loss {search.start_loss:.3f} at the start, {search.best.loss:.3f} at the best of "
+        f"{search.best.evaluations} evaluations"
+    )
+    click.echo(f"parameters: {work / 'identified.toml'}")
+    if not finished:
+        click.echo("interrupted; --resume goes on", err=True)
+        sys.exit(INTERRUPTED)
+    click.echo(f"report: {work / 'report.md'}")
+    if not search.best.loss < search.start_loss:
+        click.echo(
+            "error: nothing better than the start was found; free more, widen --bound, "
+            "or try another --seed or --sigma",
+            err=True,
+        )
+        sys.exit(NOTHING_BETTER)
+
+
+def _print_priors() -> None:
+    from ..identification.priors import PRIORS
+
+    for p in PRIORS:
+        scope = "each mode; " if p.by_mode else ""
+        click.echo(f"{p.name:42s} {p.lo:10.4g} ... {p.hi:<10.4g} {scope}{p.reason}")
+
+
+def _objective(options: dict[str, Any]) -> Objective:
+    """The free parameters, targets, curves and conditions that the options choose."""
     from ..identification.objective import (
         CONDITIONS,
         Objective,
@@ -123,91 +169,66 @@ def identify(
         paper_targets,
         read_targets,
     )
-    from ..identification.priors import PRIORS, FreeNumbers
-    from ..presets import to_toml
+    from ..identification.priors import FreeNumbers
     from ..validation.curves import read_curves
 
-    if list_priors:
-        for p in PRIORS:
-            click.echo(
-                f"{p.name:42s} {p.lo:10.4g} ... {p.hi:<10.4g} {'each mode; ' if p.by_mode else ''}{p.reason}"
+    parameters, modes, _ = choose(
+        options["preset"], options["file"], options["mode"], options["pairs"]
+    )
+    names = options["free"].split(",") if options["free"] else None
+    numbers = FreeNumbers(parameters, names, dict(map(_bound, options["bounds"])))
+    pairs = [split_pair(pair, "--series") for pair in options["series"]]
+    curves = [Series(mode, read_curves(path)) for mode, path in pairs]
+    targets, conditions = options["targets"], options["conditions"]
+    if targets:
+        wanted = read_targets(targets)
+    elif curves:
+        wanted = []
+    else:
+        wanted = [t for t in paper_targets() if t.mode in modes]
+    if conditions is None:
+        conditions = not (targets or curves)
+    return Objective(numbers, wanted, curves, CONDITIONS if conditions else ())
+
+
+def _search(search: Search, options: dict[str, Any]) -> bool:
+    """Search with progress on a terminal; False where it was interrupted."""
+    from tqdm import tqdm
+
+    bar_format = "{desc} {percentage:3.0f}%|{bar}| {n}/{total} [{elapsed}<{remaining}] {postfix}"
+    with tqdm(
+        total=options["evaluations"],
+        initial=search.best.evaluations,
+        disable=not sys.stderr.isatty(),
+        bar_format=bar_format,
+    ) as bar:
+
+        def show_progress(done: int, loss: float) -> None:
+            bar.total = max(bar.total or 0, done)
+            bar.update(done - bar.n)
+            bar.set_postfix_str(f"loss {loss:.2f}")
+
+        try:
+            bar.set_description_str("global search")
+            search.explore(
+                options["evaluations"], show_progress, options["sigma"], options["population"]
             )
-        return
-    parameters, modes, _ = choose(preset, file, mode, pairs)
-    numbers = FreeNumbers(parameters, free.split(",") if free else None, dict(map(_bound, bounds)))
-    curves = [Series(which, read_curves(path)) for which, path in map(_pair, series)]
-    wanted = (
-        read_targets(targets)
-        if targets
-        else []
-        if curves
-        else [t for t in paper_targets() if t.mode in modes]
-    )
-    interrupted = False
-    # SIGTERM ends as Ctrl-C does: with everything written
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    held = CONDITIONS if (conditions if conditions is not None else not (targets or curves)) else ()
-    with Search(Objective(numbers, wanted, curves, held), work, seed, workers, resume) as search:
-        bar_format = (
-            "{desc} {percentage:3.0f}%|{bar}| {n}/{total} [{elapsed}<{remaining}] {postfix}"
-        )
-        with tqdm(
-            total=evaluations,
-            initial=search.best.evaluations,
-            disable=not sys.stderr.isatty(),
-            bar_format=bar_format,
-        ) as bar:
-
-            def tell(done: int, loss: float) -> None:
-                bar.total = max(bar.total or 0, done)
-                bar.update(done - bar.n)
-                bar.set_postfix_str(f"loss {loss:.2f}")
-
-            try:
-                bar.set_description_str("global search")
-                search.explore(evaluations, tell, sigma, population)
-                if polish:
-                    bar.set_description_str("least squares")
-                    bar.total = search.best.evaluations + polish
-                    search.polish(polish, tell)
-            except KeyboardInterrupt:
-                interrupted = True
-        search.save()
-        best = numbers.parameters(search.best.z)
-        (work / "identified.toml").write_text(to_toml(best), encoding="utf-8")
-        if not interrupted:
-            (work / "report.md").write_text(write_report(search, best), encoding="utf-8")
-    click.echo(
-        f"loss {search.start_loss:.3f} at the start, {search.best.loss:.3f} at the best of {search.best.evaluations} evaluations"
-    )
-    click.echo(
-        f"parameters: {work / 'identified.toml'}"
-        + ("" if interrupted else f"\nreport: {work / 'report.md'}")
-    )
-    if interrupted:
-        click.echo("interrupted; --resume goes on", err=True)
-        sys.exit(130)
-    if not search.best.loss < search.start_loss:
-        click.echo(
-            "error: nothing better than the start was found; free more, widen --bound, or try another --seed or --sigma",
-            err=True,
-        )
-        sys.exit(1)
-
-
-def _pair(text: str) -> tuple[str, str]:
-    name, equals, value = text.partition("=")
-    if not equals:
-        raise LandingError(f"{text!r} has no '='; write NAME=VALUE")
-    return name.strip(), value.strip()
+            if options["polish"]:
+                bar.set_description_str("least squares")
+                bar.total = search.best.evaluations + options["polish"]
+                search.polish(options["polish"], show_progress)
+        except KeyboardInterrupt:
+            return False
+    return True
 
 
 def _bound(text: str) -> tuple[str, tuple[float, float]]:
-    name, value = _pair(text)
+    name, value = split_pair(text, "--bound")
     lo, dots, hi = value.partition("..")
     try:
         return name, (float(lo), float(hi if dots else "x"))
     except ValueError:
         raise LandingError(
-            f"--bound {text}: write NAME=LO..HI with two numbers in SI, for example ground.friction=0.1..0.5"
+            f"--bound {text}: write NAME=LO..HI with two numbers in SI, "
+            "for example ground.friction=0.1..0.5"
         ) from None

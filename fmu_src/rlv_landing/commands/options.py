@@ -1,4 +1,4 @@
-"""Options that several commands share, and what they come to."""
+"""Options that several commands share, and the parameters that they choose."""
 
 from __future__ import annotations
 
@@ -14,10 +14,12 @@ if TYPE_CHECKING:
     from ..parameters import Parameters
 
 F = TypeVar("F", bound=Callable[..., Any])
+# command groups and commands answer to both
+HELP_NAMES = {"help_option_names": ["-h", "--help"]}
 
 
 def parameter_options(command: F) -> F:
-    """Options that choose vehicle, ground and drop."""
+    """Add the options that choose vehicle, ground and drop: `preset, file, mode, pairs`."""
     options = (
         click.option(
             "--preset",
@@ -40,16 +42,38 @@ def parameter_options(command: F) -> F:
             help='One parameter, SI or with a unit: drop.tilt="-2 deg". Repeat.',
         ),
     )
+    return add_options(command, options)
+
+
+def add_options(command: F, options: tuple[Callable[[F], F], ...]) -> F:
+    """Add options to a command in the order in which its help lists them."""
     for option in reversed(options):
         command = option(command)
     return command
 
 
+def chosen_parameters(
+    preset: str | None, file: str | None, mode: str | None, pairs: tuple[str, ...]
+) -> Parameters:
+    """The parameters that the options of `parameter_options` choose, for one landing mode.
+
+    Raises:
+        LandingError: An option names what does not exist or cannot be.
+    """
+    from ..choices import choose_parameters, parse_pairs
+    from ..parameters import PARAMETER_QUANTITIES
+
+    values = parse_pairs(pairs, PARAMETER_QUANTITIES, "parameter")
+    return choose_parameters(preset, file, mode, values)
+
+
 def choose(
     preset: str | None, file: str | None, mode: str | None, pairs: tuple[str, ...]
 ) -> tuple[Parameters, tuple[str, ...], str]:
-    """For a command that runs both modes unless one is named: the parameters, the modes, and what
-    to call the parameters.
+    """The parameters, modes and label for a command that runs both modes unless one is named.
+
+    Raises:
+        LandingError: An option names what does not exist or cannot be.
     """
     from ..choices import choose_parameters, parse_pairs
     from ..parameters import PARAMETER_QUANTITIES
@@ -64,9 +88,12 @@ def choose(
     return parameters, (parameters.drop.mode,) if wanted else tuple(MODES), label
 
 
-def check_writable(path: Path | None, ending: str, force: bool) -> None:
-    """Raises LandingError unless a file `path` with this ending can be made; one that exists needs
-    `force`.
+def check_writable(path: Path | None, ending: str, *, force: bool) -> None:
+    """Check that a file can be made at `path`; None is not checked.
+
+    Raises:
+        LandingError: The ending is another, the folder is missing, or the file exists and `force`
+            is not given.
     """
     if path is None:
         return

@@ -2,59 +2,50 @@
 
 from __future__ import annotations
 
-import json
+from typing import Any
 
 import click
 
-from .options import parameter_options
+from .options import HELP_NAMES, chosen_parameters, parameter_options
+from .printing import print_json
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.command(context_settings=HELP_NAMES)
 @parameter_options
 @click.option("--toml", is_flag=True, help="As a TOML file that --parameters takes back.")
 @click.option("--json", "as_json", is_flag=True, help="As JSON.")
 @click.option("--inputs", "what", flag_value="inputs", help="List the inputs instead.")
 @click.option("--outputs", "what", flag_value="outputs", help="List the outputs instead.")
-def parameters(
-    preset: str | None,
-    file: str | None,
-    mode: str | None,
-    pairs: tuple[str, ...],
-    toml: bool,
-    as_json: bool,
-    what: str | None,
-) -> None:
-    """Print the table of parameters: value, unit, bounds, where it comes from (paper, derived,
-    closure, identified), meaning.
+def parameters(*, toml: bool, as_json: bool, what: str | None, **choice: Any) -> None:
+    """Print every parameter with its value, unit, bounds, source and meaning.
+
+    The source is paper, derived, closure or identified.
 
     \b
     rlv-landing parameters --preset yue2022-table2 --mode 1-2-1
     rlv-landing parameters --toml > mine.toml
     """
-    from ..choices import choose_parameters, parse_pairs
-    from ..parameters import PARAMETER_QUANTITIES
     from ..presets import to_toml
-    from ..quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES
-    from ..tables.landing import parameter_records, parameter_table, quantity_table
+    from ..tables.landing import parameter_records, parameter_table
 
     if what is not None:
-        quantities = INPUT_QUANTITIES if what == "inputs" else OUTPUT_QUANTITIES
-        if as_json:
-            click.echo(
-                json.dumps(
-                    [{"name": q.name, "unit": q.unit, "meaning": q.meaning} for q in quantities],
-                    indent=1,
-                )
-            )
-        else:
-            click.echo(quantity_table(what, quantities), nl=False)
+        _print_quantities(what, as_json=as_json)
         return
-    chosen = choose_parameters(
-        preset, file, mode, parse_pairs(pairs, PARAMETER_QUANTITIES, "parameter")
-    )
+    chosen = chosen_parameters(**choice)
     if toml:
         click.echo(to_toml(chosen), nl=False)
     elif as_json:
-        click.echo(json.dumps(parameter_records(chosen), indent=1))
+        print_json(parameter_records(chosen))
     else:
         click.echo(parameter_table(chosen), nl=False)
+
+
+def _print_quantities(what: str, *, as_json: bool) -> None:
+    from ..quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES
+    from ..tables.landing import quantity_table
+
+    quantities = INPUT_QUANTITIES if what == "inputs" else OUTPUT_QUANTITIES
+    if as_json:
+        print_json([{"name": q.name, "unit": q.unit, "meaning": q.meaning} for q in quantities])
+    else:
+        click.echo(quantity_table(what, quantities), nl=False)

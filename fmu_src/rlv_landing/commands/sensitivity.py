@@ -1,18 +1,19 @@
-"""`rlv-landing sensitivity`: which factors of a study the responses depend on."""
+"""`rlv-landing sensitivity`: Sobol indices of a study's responses."""
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
+from typing import Any
 
 import click
 
-from .options import check_writable
-from .study_run import Where, run_options, run_task
+from .options import HELP_NAMES, check_writable
+from .printing import print_json
+from .study_run import RunOptions, run_options, run_task
 from .sweep import show_plan
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.command(context_settings=HELP_NAMES)
 @click.argument("study", metavar="STUDY.toml", type=click.Path(path_type=Path))
 @click.argument("responses", metavar="[RESPONSE...]", nargs=-1)
 @run_options
@@ -37,53 +38,59 @@ from .sweep import show_plan
     help="Bootstrap resamples.",
 )
 def sensitivity(
-    study: Path, responses: tuple[str, ...], results: Path | None, resume: bool, workers: int | None, scheduler: str | None, timeout: float,
-    strict: bool, dry_run: bool, as_json: bool, plot: Path | None, level: float, resamples: int,
-) -> None:  # fmt: skip
-    """Sobol indices of a study's responses: how much of the variance each factor brings, alone
-    (first order) and with others (total).
+    study: Path,
+    responses: tuple[str, ...],
+    plot: Path | None,
+    level: float,
+    resamples: int,
+    **options: Any,
+) -> None:
+    """Compute Sobol indices of a study's responses: each factor's part of the variance.
 
-    The study is one of `rlv-landing sweep`, with two [[factor]] or more and samples = a power of 2;
-    it takes samples * (factors + 2) landings in each mode, on all cores or a Dask cluster, and
-    --resume goes on. RESPONSE is one of the study's; when none is named, all that are of the whole
-    vehicle rather than of one leg. Intervals are bootstrapped.
+    The first-order index counts the factor alone, the total index with all others. The study is
+    one of `rlv-landing sweep`, with two [[factor]] or more and samples = a power of 2. It takes
+    samples * (factors + 2) landings in each mode, on all cores or a Dask cluster, and --resume
+    continues. RESPONSE is one of the study's; without one, all that are of the whole vehicle
+    rather than of one leg are taken. Intervals are bootstrapped.
 
     \b
     rlv-landing sensitivity study.toml --dry-run
     rlv-landing sensitivity study.toml margin.stability_min legs.main_strut.force.min
     rlv-landing sensitivity study.toml --resume --level 0.9 --json
 
-    The folder (default: the study's name and -sensitivity) holds results.parquet and the bars. More
+    The folder (default: the study's name and -sensitivity) has results.parquet and the bars. More
     responses of a study that is done need no further landings: name them and --resume. Exit codes
-    as for sweep.
+    are those of sweep.
     """
     from ..figures.sensitivity_figure import save_bars
-    from ..studies.sweep.row import Task
     from ..studies.sweep.sensitivity import indices_of, numeric_responses, sobol_design
     from ..studies.sweep.study import read_study
+    from ..studies.sweep.sweep_row import Task
     from ..tables.sweep_tables import indices_table
 
+    run = RunOptions(**options)
     check_writable(plot, ".png", force=True)
     read = read_study(study)
     wanted = numeric_responses(read, responses)
     task = Task(read, sobol_design(read))
-    if dry_run:
-        show_plan(task, workers, as_json)
+    if run.dry_run:
+        show_plan(task, run)
         return
-    folder = results if results is not None else Path(f"{read.name}-sensitivity")
-    path = run_task(task, folder, Where(resume, workers, scheduler, timeout, strict))
+    folder = run.results or Path(f"{read.name}-sensitivity")
+    path = run_task(task, folder, run)
     found = indices_of(path, read, wanted, level, resamples)
-    picture = plot if plot is not None else folder / "sensitivity.png"
+    picture = plot or folder / "sensitivity.png"
     save_bars(found, picture, f"{read.name}: Sobol indices")
-    if as_json:
-        record = {
-            "study": read.name,
-            "results": str(path),
-            "plot": str(picture),
-            "level": level,
-            "responses": [f.record() for f in found],
-        }
-        click.echo(json.dumps(record, indent=1, allow_nan=False))
+    if run.as_json:
+        print_json(
+            {
+                "study": read.name,
+                "results": str(path),
+                "plot": str(picture),
+                "level": level,
+                "responses": [f.record() for f in found],
+            }
+        )
     else:
         click.echo(indices_table(found, level), nl=False)
         click.echo(f"results: {path}\nbars: {picture}")

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..errors import LandingError
 from ..landing import DEFAULT_RTOL, METHODS, Landing
-from .options import check_writable, parameter_options
+from .options import HELP_NAMES, check_writable, chosen_parameters, parameter_options
+from .printing import print_json
+
+if TYPE_CHECKING:
+    from ..history import History
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.command(context_settings=HELP_NAMES)
 @parameter_options
 @click.option(
     "--input",
@@ -51,10 +55,7 @@ from .options import check_writable, parameter_options
 @click.option("--compare", "comparison", is_flag=True, help="Print our numbers beside the paper's.")
 @click.option("--json", "as_json", is_flag=True, help="Print outcome and peaks as JSON.")
 @click.option("--force", is_flag=True, help="Overwrite files that exist.")
-def simulate(
-    preset: str | None, file: str | None, mode: str | None, pairs: tuple[str, ...], inputs: tuple[str, ...], until: float, every: float,
-    rtol: float, method: str, output: Path | None, plot: Path | None, comparison: bool, as_json: bool, force: bool,
-) -> None:  # fmt: skip
+def simulate(output: Path | None, plot: Path | None, *, force: bool, **options: Any) -> None:
     """Land in this process and print outcome and peaks.
 
     \b
@@ -62,19 +63,54 @@ def simulate(
     rlv-landing simulate --preset yue2022-table2 --plot landing.png
     rlv-landing simulate --set ground.friction=0.4 --set ground.slope="3 deg" --output landing.csv
     """
-    from tqdm import tqdm
+    for path, ending in ((output, ".csv"), (plot, ".png")):
+        check_writable(path, ending, force=force)
+    landing = _landing(options)
+    mode = landing.parameters.drop.mode
+    history = _run(landing, options["until"], options["every"])
+    if options["as_json"]:
+        from ..summary import summarise
 
-    from ..choices import choose_parameters, parse_pairs
-    from ..parameters import PARAMETER_QUANTITIES
+        print_json(summarise(history))
+    else:
+        from ..tables.landing import summary_table
+
+        click.echo(summary_table(history, f"{mode} landing"), nl=False)
+    if options["comparison"]:
+        from ..tables.landing import comparison_table
+
+        click.echo(comparison_table(history, mode), nl=False)
+    try:
+        if output is not None:
+            history.to_csv(output)
+        if plot is not None:
+            from ..figures.plots import save_overview
+
+            save_overview(history, plot, f"{mode} landing")
+    except OSError as e:
+        raise LandingError(
+            f"{e.filename or output or plot} cannot be written: {e.strerror or e}"
+        ) from None
+
+
+def _landing(options: dict[str, Any]) -> Landing:
+    """The landing that the options choose, at its start."""
+    from ..choices import parse_pairs
     from ..quantities import INPUT_QUANTITIES
 
-    for path, ending in ((output, ".csv"), (plot, ".png")):
-        check_writable(path, ending, force)
-    parameters = choose_parameters(
-        preset, file, mode, parse_pairs(pairs, PARAMETER_QUANTITIES, "parameter")
+    parameters = chosen_parameters(
+        options["preset"], options["file"], options["mode"], options["pairs"]
     )
-    landing = Landing(parameters, rtol=rtol, method=method)
-    landing.set_inputs(parse_pairs(inputs, {q.name: q for q in INPUT_QUANTITIES}, "input"))
+    landing = Landing(parameters, rtol=options["rtol"], method=options["method"])
+    inputs = {q.name: q for q in INPUT_QUANTITIES}
+    landing.set_inputs(parse_pairs(options["inputs"], inputs, "input"))
+    return landing
+
+
+def _run(landing: Landing, until: float, every: float) -> History:
+    """Run with progress on a terminal."""
+    from tqdm import tqdm
+
     with tqdm(
         total=until,
         unit="s",
@@ -82,28 +118,4 @@ def simulate(
         disable=not sys.stderr.isatty(),
         bar_format="{l_bar}{bar}| {n:.2f}/{total:.2f} s",
     ) as bar:
-        history = landing.run(until, every, lambda t: bar.update(t - bar.n))
-    title = f"{parameters.drop.mode} landing"
-    if as_json:
-        from ..summary import summarise
-
-        click.echo(json.dumps(summarise(history), indent=1))
-    else:
-        from ..tables.landing import summary_table
-
-        click.echo(summary_table(history, title), nl=False)
-    if comparison:
-        from ..tables.landing import comparison_table
-
-        click.echo(comparison_table(history, parameters.drop.mode), nl=False)
-    try:
-        if output is not None:
-            history.to_csv(output)
-        if plot is not None:
-            from ..figures.plots import save_overview
-
-            save_overview(history, plot, title)
-    except OSError as e:
-        raise LandingError(
-            f"{e.filename or output or plot} cannot be written: {e.strerror or e}"
-        ) from None
+        return landing.run(until, every, lambda t: bar.update(t - bar.n))

@@ -1,6 +1,4 @@
-"""What `sweep` and `sensitivity` share: options, and running a study to its end or to whatever ends
-it.
-"""
+"""The options of `sweep` and `sensitivity`, and the run of a study's landings."""
 
 from __future__ import annotations
 
@@ -15,28 +13,36 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from ..errors import LandingError
+from .options import add_options
 
 if TYPE_CHECKING:
-    from ..studies.sweep.row import Plan, Task
-    from ..studies.sweep.sweep import Engine, Failed
+    from ..studies.sweep.result_files import Results
+    from ..studies.sweep.sweep import Engine, Failures
+    from ..studies.sweep.sweep_row import Plan, Task
 
 F = TypeVar("F", bound=Callable[..., Any])
 FAILED, INTERRUPTED = 1, 130
 
 
 @dataclass(frozen=True)
-class Where:
-    """How and where landings run, as the options say."""
+class RunOptions:
+    """The options of `run_options`: results folder, workers or cluster, checks and printing.
 
+    `workers` and `scheduler` exclude each other; `timeout` [s] is for scheduler and workers.
+    """
+
+    results: Path | None
     resume: bool
     workers: int | None
     scheduler: str | None
     timeout: float
     strict: bool
+    dry_run: bool
+    as_json: bool
 
 
 def run_options(command: F) -> F:
-    """Options that say where results go and landings run."""
+    """Add the options of `RunOptions`."""
     options = (
         click.option(
             "--results",
@@ -47,7 +53,7 @@ def run_options(command: F) -> F:
         click.option(
             "--resume",
             is_flag=True,
-            help="Go on with the study in --results; refused if the study has changed.",
+            help="Continue with the study in --results; refused if the study has changed.",
         ),
         click.option("--workers", type=click.IntRange(1), help="Threads [default: all cores]."),
         click.option(
@@ -61,7 +67,7 @@ def run_options(command: F) -> F:
             show_default=True,
             type=click.FloatRange(0.1),
             metavar="S",
-            help="Wait so long for scheduler or workers [s].",
+            help="Longest wait for scheduler or workers [s].",
         ),
         click.option(
             "--strict",
@@ -71,86 +77,95 @@ def run_options(command: F) -> F:
         click.option(
             "--dry-run",
             is_flag=True,
-            help="Print the plan: how many landings, the first rows, the time it may take; run nothing.",
+            help="Print number of landings, first rows and estimated time; run nothing.",
         ),
         click.option("--json", "as_json", is_flag=True, help="Print as JSON."),
     )
-    for option in reversed(options):
-        command = option(command)
-    return command
+    return add_options(command, options)
 
 
 @contextmanager
-def engine_for(plan: Plan, where: Where) -> Iterator[Engine]:
-    """Threads, or the cluster that --scheduler names."""
-    if where.scheduler is None:
+def engine_for(plan: Plan, options: RunOptions) -> Iterator[Engine]:
+    """Threads of this process, or the cluster that --scheduler names.
+
+    Raises:
+        LandingError: Both --workers and --scheduler, or a cluster that cannot be used.
+    """
+    if options.scheduler is None:
         from ..studies.sweep.sweep import threads
 
-        with threads(plan, where.workers) as engine:
+        with threads(plan, options.workers) as engine:
             yield engine
     else:
         from ..studies.sweep.cluster import cluster
 
-        if where.workers is not None:
+        if options.workers is not None:
             raise LandingError(
-                "--workers counts threads here; a cluster has its own, so leave --workers or --scheduler out"
+                "--workers counts threads here; a cluster has its own, "
+                "so leave --workers or --scheduler out"
             )
-        with cluster(plan, where.scheduler, where.timeout) as engine:
+        with cluster(plan, options.scheduler, options.timeout) as engine:
             yield engine
 
 
-def run_task(task: Task, folder: Path, where: Where) -> Path:
-    """Run a study's landings, with progress on a terminal; the file that holds their rows.
+def run_task(task: Task, folder: Path, options: RunOptions) -> Path:
+    """Run a study's landings with progress on a terminal.
 
-    Ends the program where it cannot go on: 1, 130.
+    The program exits with 1 or 130 where the study cannot be completed.
 
-    Raises LandingError for what the user can set right: the results folder, the scheduler, a row
-        that --strict refuses.
+    Returns:
+        The file that holds all rows.
+
+    Raises:
+        LandingError: The results folder or the scheduler cannot be used, or --strict refuses a row.
     """
-    from tqdm import tqdm
-
     from ..studies.sweep.result_files import Results
-    from ..studies.sweep.sweep import LostError, Sweep, check_all
+    from ..studies.sweep.sweep import check_all
 
-    if where.strict:
+    if options.strict:
         check_all(task)
     # SIGTERM ends as Ctrl-C does: with everything written
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    with engine_for(task.plan, where) as engine:
-        results = Results(
-            folder, task.about(), task.study.text, task.quantities(), len(task), where.resume
-        )
-        failed = 0
-        with tqdm(
-            total=len(task),
-            initial=results.rows_done,
-            desc=task.study.name,
-            unit=" landings",
-            disable=not sys.stderr.isatty(),
-        ) as bar:
+    with engine_for(task.plan, options) as engine:
+        results = Results(folder, task, resume=options.resume)
+        return _run_or_exit(task, results, engine, strict=options.strict)
 
-            def tell(done: int, failures: Failed) -> None:
-                nonlocal failed
-                failed += len(failures)
-                if failures:
-                    bar.set_postfix_str(f"{failed} failed")
-                bar.update(done)
 
-            try:
-                with results:
-                    Sweep(task, results, tell, where.strict).run(engine)
-                    return results.finish()
-            except KeyboardInterrupt:
-                ended, status = "interrupted", INTERRUPTED
-            except OSError as e:
-                ended, status = (
-                    f"error: {folder} cannot be written: {e.strerror or e}; make room",
-                    FAILED,
-                )
-            except (LostError, LandingError) as e:
-                ended, status = f"error: {e}", FAILED
+def _run_or_exit(task: Task, results: Results, engine: Engine, *, strict: bool) -> Path:
+    from tqdm import tqdm
+
+    from ..studies.sweep.sweep import LostError, Sweep
+
+    failed = 0
+    with tqdm(
+        total=len(task),
+        initial=results.rows_done,
+        desc=task.study.name,
+        unit=" landings",
+        disable=not sys.stderr.isatty(),
+    ) as bar:
+
+        def show_progress(done: int, failures: Failures) -> None:
+            nonlocal failed
+            failed += len(failures)
+            if failures:
+                bar.set_postfix_str(f"{failed} failed")
+            bar.update(done)
+
+        try:
+            with results:
+                Sweep(task, results, show_progress, strict=strict).run(engine)
+                return results.finish()
+        except KeyboardInterrupt:
+            reason, status = "interrupted", INTERRUPTED
+        except OSError as e:
+            reason = f"error: {results.folder} cannot be written: {e.strerror or e}; make room"
+            status = FAILED
+        except (LostError, LandingError) as e:
+            reason, status = f"error: {e}", FAILED
     click.echo(
-        f"{ended}; {results.rows_done} of {len(task)} landings are kept in {folder}, --resume goes on",
+        f"{reason}; {results.rows_done} of {len(task)} landings are kept in {results.folder}, "
+        "--resume continues",
         err=True,
     )
     sys.exit(status)

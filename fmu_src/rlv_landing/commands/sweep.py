@@ -9,23 +9,22 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .study_run import Where, run_options, run_task
+from .options import HELP_NAMES
+from .printing import print_json
+from .study_run import RunOptions, run_options, run_task
 
 if TYPE_CHECKING:
-    from ..studies.sweep.row import Task
+    from ..studies.sweep.sweep_row import Task
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.command(context_settings=HELP_NAMES)
 @click.argument("study", metavar="STUDY.toml", type=click.Path(path_type=Path))
 @run_options
-def sweep(
-    study: Path, results: Path | None, resume: bool, workers: int | None, scheduler: str | None, timeout: float, strict: bool,
-    dry_run: bool, as_json: bool,
-) -> None:  # fmt: skip
-    """Land once for every point of a study and keep one row of responses a landing, as Parquet.
+def sweep(study: Path, **options: Any) -> None:
+    """Land once for every point of a study and keep a row of responses for each, as Parquet.
 
-    The study says what varies (any parameter, drop quantity or constant input), how points are
-    drawn, and what is taken off each landing:
+    The study names what varies (any parameter, drop quantity or constant input), how points are
+    drawn, and which responses are taken from each landing:
 
     \b
     [study]
@@ -47,71 +46,75 @@ def sweep(
     rlv-landing sweep study.toml --scheduler tcp://host:8786
 
     The same study gives the same rows, in the order of their index, on any number of threads or
-    workers. The folder holds results.parquet in the end, and parts of it until then: Ctrl-C, kill
-    -9 or a full disk lose seconds of work at most, --resume goes on. A landing that cannot be made
-    is a row with its reason in the column `error`. docs/studies.md has every key.
+    workers. The folder has results.parquet at the end, and parts of it until then. Ctrl-C, kill -9
+    or a full disk lose seconds of work at most, and --resume continues. A landing that cannot be
+    made is a row with its reason in the column `error`. docs/studies.md has every key.
 
     Exit codes: 0 done, 1 ended before its time (a full disk, a lost cluster, --strict), 2 bad
-        input, 130 interrupted.
+    input, 130 interrupted.
     """
-    from ..studies.sweep.row import Task
     from ..studies.sweep.study import read_study
-
-    read = read_study(study)
-    task = Task(read, read.design)
-    if dry_run:
-        show_plan(task, workers, as_json)
-        return
-    folder = results if results is not None else Path(read.name)
-    path = run_task(task, folder, Where(resume, workers, scheduler, timeout, strict))
     from ..studies.sweep.summary import summarise_results
+    from ..studies.sweep.sweep_row import Task
     from ..tables.sweep_tables import summary_table
 
+    run = RunOptions(**options)
+    read = read_study(study)
+    task = Task(read, read.design)
+    if run.dry_run:
+        show_plan(task, run)
+        return
+    path = run_task(task, run.results or Path(read.name), run)
     summary = summarise_results(path)
-    if as_json:
-        click.echo(
-            json.dumps(
-                {"study": read.name, "results": str(path), **summary.record()},
-                indent=1,
-                allow_nan=False,
-            )
-        )
+    if run.as_json:
+        print_json({"study": read.name, "results": str(path), **summary.record()})
     else:
         click.echo(summary_table(read.name, summary), nl=False)
         click.echo(f"results: {path}")
 
 
-def show_plan(task: Task, workers: int | None, as_json: bool, notes: tuple[str, ...] = ()) -> None:
-    """Print how many landings a study makes, its first rows, and how long it may take by one timed
-    landing.
-    """
-    from ..studies.sweep.sweep import default_workers
+def show_plan(task: Task, options: RunOptions) -> None:
+    """Print a study's number of landings, first rows and the time estimated from one landing."""
     from ..tables.sweep_tables import FIRST_ROWS, plan_table
+    from ..workers import default_workers
 
-    count = workers or default_workers()
-    notes = (*notes, *task.study.notes)
-    values = task.rows(0, 1)[0]
-    task.plan.row(values)
-    start = time.perf_counter()
-    row = task.plan.row(values)
-    seconds = time.perf_counter() - start
-    estimate = seconds * len(task) / count
-    if as_json:
-        first = task.rows(0, min(FIRST_ROWS, len(task)))
+    workers = options.workers or default_workers()
+    seconds, error = _timed_landing(task)
+    estimate = seconds * len(task) / workers
+    if options.as_json:
         record: dict[str, Any] = {
-            "study": task.study.name, "landings": len(task), "samples": len(task.design), "first": first,
-            "responses": list(task.plan.responses), "seconds_one": seconds, "workers": count, "seconds_estimated": estimate,
-            "error": row[1], "notes": list(notes),
-        }  # fmt: skip
+            "study": task.study.name,
+            "landings": len(task),
+            "samples": len(task.design),
+            "first": task.rows(0, min(FIRST_ROWS, len(task))),
+            "responses": list(task.plan.responses),
+            "seconds_one": seconds,
+            "workers": workers,
+            "seconds_estimated": estimate,
+            "error": error,
+            "notes": task.study.notes,
+        }
+        # a table of states may have gaps: NaN is printed, as its row is
         click.echo(json.dumps(record, indent=1))
         return
     click.echo(plan_table(task), nl=False)
     click.echo(f"{len(task)} landings, {len(task.plan.responses)} responses each")
     click.echo(
-        f"the first took {seconds * 1e3:.1f} ms: about {_duration(estimate)} on {count} threads, if they have a core each"
+        f"the first took {seconds * 1e3:.1f} ms: about {_duration(estimate)} on {workers} threads, "
+        "if they have a core each"
     )
-    for note in (*notes, *([f"the first landing fails: {row[1]}"] if row[1] is not None else [])):
+    failure = [f"the first landing fails: {error}"] if error is not None else []
+    for note in (*task.study.notes, *failure):
         click.echo(f"note: {note}")
+
+
+def _timed_landing(task: Task) -> tuple[float, str | None]:
+    """Wall time [s] of a study's first landing, made twice, and its error."""
+    values = task.rows(0, 1)[0]
+    task.plan.sweep_row(values)
+    start = time.perf_counter()
+    _, error, *_ = task.plan.sweep_row(values)
+    return time.perf_counter() - start, error
 
 
 def _duration(seconds: float) -> str:

@@ -1,28 +1,30 @@
-"""`rlv-landing validate`: the paper's section 5 anew."""
+"""`rlv-landing validate`: landings beside section 5 of the paper."""
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..errors import LandingError, unknown
 from .options import check_writable, choose, parameter_options
+from .printing import print_checked
 
 if TYPE_CHECKING:
     from ..history import History
-
-FAILED = 1
 
 
 @click.command()
 @parameter_options
 @click.option(
-    "--test-data", "tests", metavar="[MODE=]FILE.csv", multiple=True,
-    help="Measured curves: first column time [s], then columns named as our outputs, SI. Name the mode here or by --mode. Repeat.",
-)  # fmt: skip
+    "--test-data",
+    "tests",
+    metavar="[MODE=]FILE.csv",
+    multiple=True,
+    help="Measured curves: first column time [s], then columns named as our outputs, SI. "
+    "Name the mode here or by --mode. Repeat.",
+)
 @click.option(
     "--phase",
     type=click.Choice(["zero", "forward"]),
@@ -39,19 +41,20 @@ FAILED = 1
 @click.option(
     "--require",
     metavar="A/B/C",
-    help="Least counts within 5, 10, 20 % of the simulation, or none [default: yue2022-figures' own].",
+    help="Least counts within 5, 10, 20 % of the simulation, or none "
+    "[default: yue2022-figures' own].",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print as JSON.")
 @click.option("--force", is_flag=True, help="Overwrite the report if it exists.")
 def validate(
-    preset: str | None, file: str | None, mode: str | None, pairs: tuple[str, ...], tests: tuple[str, ...], phase: str, html: Path | None,
-    require: str | None, as_json: bool, force: bool,
-) -> int:  # fmt: skip
-    """Set landings beside the paper's section 5: every printed scalar, the summary measures, counts
-    within 5, 10 and 20 %.
+    tests: tuple[str, ...], html: Path | None, *, as_json: bool, force: bool, **options: Any
+) -> int:
+    """Set landings beside the paper's section 5.
 
-    Both drop tests unless --mode names one. Errors are on the scale of the paper's simulation,
-    near-zero scalars on that of their curve. Exit code 1 when the counts are below those required.
+    It prints every printed scalar, the summary measures, and the counts within 5, 10 and 20 %.
+    Both drop tests are run unless --mode names one. Errors are on the scale of the paper's
+    simulation, near-zero scalars on that of their curve. The exit code is 1 when the counts are
+    below those required.
 
     \b
     rlv-landing validate
@@ -61,8 +64,9 @@ def validate(
     from ..validation.validate import missed_bounds, parse_bounds, stated_bounds
     from ..validation.validate import validate as run
 
-    check_writable(html, ".html", force)
-    parameters, modes, label = choose(preset, file, mode, pairs)
+    phase, require = options.pop("phase"), options.pop("require")
+    check_writable(html, ".html", force=force)
+    parameters, modes, label = choose(**options)
     bounds = (
         None
         if require == "none"
@@ -70,38 +74,33 @@ def validate(
         if require is None
         else parse_bounds(require)
     )
-    measured = _measured(tests, modes)
-    found = run(parameters, modes, measured, "forward" if phase == "forward" else "zero")
+    found = run(parameters, modes, _measured(tests, modes), phase)
     missed = [] if bounds is None else missed_bounds(found.counts, bounds)
     if html is not None:
         from ..figures.report import write_report
 
         write_report(found, parameters, html, label, phase)
-    if as_json:
-        required = (
-            None if bounds is None else dict(zip(("within_5", "within_10", "within_20"), bounds))
-        )
-        record = {
-            **found.record(),
-            "parameters": label,
-            "modes": list(modes),
-            "required": required,
-            "missed": missed,
-        }
-        click.echo(json.dumps(record, indent=1, allow_nan=False))
-    else:
+
+    def tables() -> str:
         from ..tables.study_tables import validation_tables
 
-        click.echo(validation_tables(found), nl=False)
-    for line in missed:
-        click.echo(f"missed: {line}", err=True)
-    return FAILED if missed else 0
+        return validation_tables(found)
+
+    levels = ("within_5", "within_10", "within_20")
+    record = {
+        **found.record(),
+        "parameters": label,
+        "modes": list(modes),
+        "required": None if bounds is None else dict(zip(levels, bounds)),
+    }
+    return print_checked(record, tables, missed, as_json=as_json)
 
 
 def _measured(tests: tuple[str, ...], modes: tuple[str, ...]) -> dict[str, History]:
     """The measured curves by mode.
 
-    Raises LandingError where a mode is not named, not run, or named twice.
+    Raises:
+        LandingError: A mode is not named, not run, or named twice.
     """
     from ..quantities import MODES
     from ..validation.curves import read_curves
@@ -112,7 +111,8 @@ def _measured(tests: tuple[str, ...], modes: tuple[str, ...]) -> dict[str, Histo
         if not equals:
             if len(modes) > 1:
                 raise LandingError(
-                    f"--test-data {text}: of which drop test? Write --test-data 2-2={text}, or name one with --mode"
+                    f"--test-data {text}: of which drop test? Write --test-data 2-2={text}, "
+                    "or name one with --mode"
                 )
             mode, path = modes[0], text
         if mode not in MODES:
@@ -123,7 +123,8 @@ def _measured(tests: tuple[str, ...], modes: tuple[str, ...]) -> dict[str, Histo
             )
         if mode in found:
             raise LandingError(
-                f"--test-data {text}: there is a file for mode {mode} already; put all curves of a drop test into one"
+                f"--test-data {text}: there is a file for mode {mode} already; "
+                "put all curves of a drop test into one"
             )
         found[mode] = read_curves(path)
     return found

@@ -1,5 +1,6 @@
-"""A landing as a moving picture: the vehicle beside its force and stroke curves, as the paper's
-Figs. 12 and 18 in motion.
+"""A landing as a moving picture: the vehicle beside its force and stroke curves.
+
+It is the moving form of the paper's Figs. 12 and 18.
 """
 
 from __future__ import annotations
@@ -27,17 +28,22 @@ ENDINGS = (".gif", ".mp4")
 MOST_FRAMES = 3000
 # matplotlib cuts a frame's milliseconds to a whole number, so 30 must not come out as 29.999
 BELOW = 1.0 - 1e-12
-# A GIF counts a frame's time in hundredths of a second; most viewers show one of less than two for
-# ten.
+# a GIF counts a frame's time in hundredths of a second; most viewers show a frame of less than two
+# for ten
 GIF_TICKS, GIF_LEAST = 100.0, 2
 
 
 @dataclass(frozen=True)
 class Film:
-    """How a landing is shown: `fps` frames a second, `slow_motion` times slower than it was, from
-    `start` to `end` [s] (None: all of it).
+    """The settings of an animation.
 
-    `view` is `side`, the symmetric plane, or `3d`; `width` the picture's [pixels].
+    Attributes:
+        fps: Frames a second.
+        slow_motion: Factor by which the animation is slower than the landing.
+        start: First time shown [s]; None for the landing's first.
+        end: Last time shown [s]; None for the landing's last.
+        view: `side`, the symmetric plane, or `3d`.
+        width: Width of the picture [pixels].
     """
 
     fps: float = 25.0
@@ -50,8 +56,9 @@ class Film:
 
 @dataclass(frozen=True)
 class Filmed:
-    """What was written: how many frames, and how many a second; a GIF's are rounded to what the
-    format can say.
+    """The number of frames written, and the frames a second.
+
+    A GIF's frame rate is rounded to a value that the format has.
     """
 
     frames: int
@@ -64,17 +71,23 @@ def save_animation(
     path: str | Path,
     title: str,
     film: Film = Film(),
-    tell: Callable[[int, int], None] | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Filmed:
-    """Write `history` of a vehicle with `parameters` to `path`, `.gif` or `.mp4` by its ending,
-    whole or not at all.
+    """Write the animation of `history` to `path`, whole or not at all.
 
-    `tell` is called with the frames done and all frames. Every frame shows the sample nearest to
-    its time; none is made up between.
+    Every frame shows the sample nearest to its time; no sample is interpolated.
+
+    Args:
+        history: The landing's columns over time.
+        parameters: The vehicle and its ground.
+        path: The file; its ending, `.gif` or `.mp4`, is the format.
+        title: The figure's title.
+        film: The settings.
+        progress: Called with the frames done and the number of all frames.
 
     Raises:
-        LandingError: another ending, a number that cannot be, nothing lies between start and end,
-            no ffmpeg, the disk refuses.
+        LandingError: Another ending, a setting out of bounds, no samples between start and end, no
+            ffmpeg, or the disk refuses.
     """
     path = Path(path)
     if path.suffix not in ENDINGS:
@@ -84,21 +97,22 @@ def save_animation(
     figure = MovingFigure(history, parameters, rows, title, film.view)
     unfinished = path.with_name(f".{path.stem}.part{path.suffix}")
     try:
-        with _ffmpeg(path.suffix) as writer_class:
-            _write(writer_class(fps=fps * BELOW), figure, unfinished, film.width / WIDTH, tell)
+        with _writer_class(path.suffix) as writer_class:
+            _write(writer_class(fps=fps * BELOW), figure, unfinished, film.width / WIDTH, progress)
         unfinished.replace(path)
     except OSError as e:
         raise LandingError(
             f"{path} cannot be written: {e.strerror or e}; make room, or name another file"
         ) from None
     except CalledProcessError as e:
-        said = (
+        message = (
             (e.stderr or b"").decode("utf-8", "replace").strip()
             if isinstance(e.stderr, bytes)
             else str(e.stderr or "")
         )
         raise LandingError(
-            f"{path} cannot be written: ffmpeg ended with {e.returncode} {said[-300:]}; try a .gif"
+            f"{path} cannot be written: ffmpeg ended with {e.returncode} {message[-300:]}; "
+            "try a .gif"
         ) from None
     finally:
         with suppress(OSError):
@@ -109,19 +123,22 @@ def save_animation(
 def frame_rows(history: History, film: Film, fps: float) -> NDArray[np.intp]:
     """The row of `history` that each frame shows.
 
-    Raises LandingError: nothing lies there, or too many frames.
+    Raises:
+        LandingError: No samples are there, or the frames are too many.
     """
     time = history.time
     start = float(time[0]) if film.start is None else film.start
     end = float(time[-1]) if film.end is None else film.end
     if not time[0] <= start < end <= time[-1]:
         raise LandingError(
-            f"start = {start:g} s and end = {end:g} s must lie in {time[0]:g} to {time[-1]:g} s, which the landing has, start before end"
+            f"start = {start:g} s and end = {end:g} s must lie in {time[0]:g} to {time[-1]:g} s, "
+            "which the landing has, start before end"
         )
     count = int(np.floor((end - start) * film.slow_motion * fps + 1e-9)) + 1
     if not 2 <= count <= MOST_FRAMES:
         raise LandingError(
-            f"that makes {count} frames; 2 to {MOST_FRAMES} can be: change fps, slow motion, start or end"
+            f"that makes {count} frames; 2 to {MOST_FRAMES} can be: "
+            "change fps, slow motion, start or end"
         )
     wanted = start + np.arange(count) / (fps * film.slow_motion)
     right = np.clip(np.searchsorted(time, wanted), 1, len(time) - 1)
@@ -136,7 +153,8 @@ def _frames_per_second(film: Film, ending: str) -> float:
     ):
         if not low <= value <= high:
             raise LandingError(
-                f"{name} = {value:g} is outside [{low:g}, {high:g}]{' pixels' if name == 'width' else ''}"
+                f"{name} = {value:g} is outside [{low:g}, {high:g}]"
+                f"{' pixels' if name == 'width' else ''}"
             )
     if ending != ".gif":
         return film.fps
@@ -144,9 +162,10 @@ def _frames_per_second(film: Film, ending: str) -> float:
 
 
 @contextmanager
-def _ffmpeg(ending: str) -> Iterator[Any]:
-    """matplotlib's writer for `ending`; for a film, ffmpeg of the wheel imageio-ffmpeg, else that
-    on the path.
+def _writer_class(ending: str) -> Iterator[Any]:
+    """Matplotlib's writer for the format `ending`.
+
+    For a film it is ffmpeg of the wheel imageio-ffmpeg, else the ffmpeg on the path.
     """
     import matplotlib as mpl
     from matplotlib.animation import FFMpegWriter, PillowWriter
@@ -170,9 +189,10 @@ def _ffmpeg(ending: str) -> Iterator[Any]:
 
 
 @contextmanager
-def _signals_held() -> Iterator[None]:
-    """Signals that end the program wait meanwhile, and never reach the programs that are started
-    here: ffmpeg ends with its input.
+def _signals_blocked() -> Iterator[None]:
+    """Block the signals that end the program.
+
+    Programs that are started here never get them: ffmpeg ends with its input.
     """
     if not hasattr(signal, "pthread_sigmask"):
         yield
@@ -189,23 +209,23 @@ def _write(
     figure: MovingFigure,
     path: Path,
     dpi: float,
-    tell: Callable[[int, int], None] | None,
+    progress: Callable[[int, int], None] | None,
 ) -> None:
     stopped: BaseException | None = None
     try:
         with ExitStack() as saving:
-            with _signals_held():
+            with _signals_blocked():
                 saving.enter_context(writer.saving(figure.figure, str(path), dpi))
             try:
                 for i in range(figure.frames):
                     figure.show(i)
                     writer.grab_frame()
-                    if tell is not None:
-                        tell(i + 1, figure.frames)
+                    if progress is not None:
+                        progress(i + 1, figure.frames)
             except BaseException as e:
                 stopped = e
     except Exception:
-        # A GIF without a frame cannot be ended.
+        # the writer cannot finish a GIF without a frame
         if stopped is None:
             raise
     if stopped is not None:

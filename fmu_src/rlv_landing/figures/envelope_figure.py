@@ -1,6 +1,4 @@
-"""The picture of an envelope: boundaries by family, every landing, and the critical condition along
-each boundary.
-"""
+"""The figure of an envelope: boundaries by family, all landings, and critical conditions."""
 
 from __future__ import annotations
 
@@ -8,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..quantities import Quantity, shown
-from ..studies.envelope.results import runs
+from ..studies.envelope.results import stretches
 from ..studies.envelope.search import Envelope, Family
 from ..studies.sweep.factors import value_text
 from .plots import COLOURS
@@ -23,11 +21,9 @@ MARKERS = "osD^v<>Ph*X"
 def save_envelope(envelope: Envelope, path: str | Path) -> None:
     """Write a PNG or SVG.
 
-    A panel for each combination of the families' values but the first quantity's, which has the
-    colours.
-
-    Lines are boundaries, dots landings (filled: lost). Markers on a line say what is critical
-    there, where it changes and halfway between.
+    There is a panel for each combination of the families' values except the first quantity's, which
+    is shown by colour. Lines are boundaries, dots are landings (filled: lost). Markers on a line
+    give the critical condition, where it changes and halfway between.
     """
     import matplotlib as mpl
     from matplotlib.figure import Figure
@@ -39,7 +35,7 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
     figure = Figure(figsize=(1.5 + 4.6 * columns, 1.6 + 4.2 * rows), layout="constrained")
     conditions = list(
         dict.fromkeys(
-            r.condition for f in envelope.families for line in f.lines for r in runs(line)
+            r.condition for f in envelope.families for line in f.lines for r in stretches(line)
         )
     )
     markers = {condition: MARKERS[k % len(MARKERS)] for k, condition in enumerate(conditions)}
@@ -51,7 +47,7 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
             named[_name(family)] = Line2D([], [], color=colour, linewidth=1.6)
             _draw(ax, envelope, family, colour, markers)
         ax.set_title(title, loc="left", fontsize="medium")
-        ax.grid(True, linewidth=0.3)
+        ax.grid(visible=True, linewidth=0.3)
     for ax in axes[len(panels) :]:
         ax.set_visible(False)
     for ax in axes[max(0, len(panels) - columns) : len(panels)]:
@@ -68,8 +64,11 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
         fontsize="small",
         ncols=2,
     )
-    told = f"lost: {envelope.study.criterion}; {envelope.landings} landings (a uniform grid: {envelope.uniform})"
-    figure.suptitle(told, fontsize="medium", x=0.01, ha="left")
+    title = (
+        f"lost: {envelope.study.criterion}; {envelope.landings} landings "
+        f"(a uniform grid: {envelope.uniform})"
+    )
+    figure.suptitle(title, fontsize="medium", x=0.01, ha="left")
     with mpl.rc_context({"svg.hashsalt": "envelope", "svg.fonttype": "none"}):
         figure.savefig(
             path, dpi=110, metadata={"Date": None} if Path(path).suffix == ".svg" else None
@@ -92,7 +91,7 @@ def _label(q: Quantity) -> str:
 
 
 def _name(family: Family) -> str:
-    """What the legend calls a family: its first quantity's value."""
+    """The family's name in the legend: its first quantity's value."""
     return next(
         (f"{name} = {value_text(name, value)}" for name, value in family.values.items()), "boundary"
     )
@@ -105,8 +104,8 @@ def _draw(
     for lost in (False, True):
         points = [
             (x / sx, y / sy)
-            for x, y, landed in family.landings
-            if landed.lost(envelope.study.criterion) == lost
+            for x, y, landing in family.landings
+            if landing.lost(envelope.study.criterion) == lost
         ]
         if points:
             xs, ys = map(list, zip(*points))
@@ -121,13 +120,13 @@ def _draw(
             )
     for line in family.lines:
         ax.plot([c.x / sx for c in line], [c.y / sy for c in line], color=colour, linewidth=1.6)
-        for run in runs(line):
-            marked = (run.points[0], run.points[len(run.points) // 2])
+        for stretch in stretches(line):
+            marked = (stretch.points[0], stretch.points[len(stretch.points) // 2])
             xs, ys = [c.x / sx for c in marked], [c.y / sy for c in marked]
             ax.plot(
                 xs,
                 ys,
-                markers[run.condition],
+                markers[stretch.condition],
                 color=colour,
                 markeredgecolor="white",
                 markersize=7,

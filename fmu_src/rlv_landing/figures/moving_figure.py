@@ -1,5 +1,6 @@
-"""A figure that shows one instant of a landing after another: the vehicle, and its curves with a
-mark that moves.
+"""A figure that shows one instant of a landing after another.
+
+It has the vehicle, and its curves with a mark that moves.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ WIDTHS = {"hull": 0.6, "outline": 1.4, "main": 2.2, "auxiliary": 1.2}
 
 
 class MovingFigure:
-    """The figure of a landing, WIDTH inches wide, that `show(i)` sets to the i-th of `rows`.
+    """The figure of a landing, WIDTH inches wide; `show(i)` sets it to the i-th of `rows`.
 
     `view` is `side` or `3d`.
     """
@@ -58,19 +59,19 @@ class MovingFigure:
             part: [self._line(part, i) for i in range(self._lines[part].shape[1])]
             for part in self._lines
         }
-        self._dress_vehicle(parameters, title)
+        self._set_up_vehicle(parameters, title)
         first = [min(leg for leg, _ in g.legs) for g in groups]
         axes = [self.figure.add_subplot(grid[i, 1]) for i in range(len(CURVES))]
         self._curves = [self._curve(ax, first, *curve) for ax, curve in zip(axes, CURVES)]
         axes[0].legend(loc="lower right", frameon=False, fontsize=8)
         axes[-1].set_xlabel("time [s]")
         self.show(0)
-        # The first layout holds: one made anew for each frame would shake.
+        # the first layout is kept: one that is made for each frame would shake
         self.figure.draw_without_rendering()
         self.figure.set_layout_engine("none")
 
     def show(self, i: int) -> None:
-        """Move vehicle, marks and the time that is told to the i-th frame."""
+        """Set vehicle, marks and the printed time to the i-th frame."""
         for part, lines in self._drawn.items():
             for line, points in zip(lines, self._lines[part][i]):
                 if self._solid:
@@ -84,7 +85,7 @@ class MovingFigure:
             for dot, values in dots:
                 dot.set_data((now,), (values[row],))
         pitch = np.degrees(self._history["body.pitch"][row])
-        self._said.set_text(f"t = {now:.3f} s   pitch {pitch:+.2f}°")
+        self._time_text.set_text(f"t = {now:.3f} s   pitch {pitch:+.2f}°")
 
     def _line(self, part: str, i: int) -> Any:
         style: dict[str, Any]
@@ -102,8 +103,8 @@ class MovingFigure:
         (line,) = self._vehicle.plot(*([(), (), ()] if self._solid else [(), ()]), **style)
         return line
 
-    def _dress_vehicle(self, parameters: Parameters, title: str) -> None:
-        """Limits that hold all frames, the ground, and the text that tells the time."""
+    def _set_up_vehicle(self, parameters: Parameters, title: str) -> None:
+        """Set limits that fit all frames; draw the ground and the text for the time."""
         ax = self._vehicle
         every = np.concatenate([lines.reshape(-1, 3) for lines in self._lines.values()])
         low, high = every.min(axis=0) - 0.15, every.max(axis=0) + 0.15
@@ -141,14 +142,16 @@ class MovingFigure:
             ax.set(xlim=ends, ylim=(low[1] - 0.1, high[1]), xlabel="x [m]", ylabel="y [m]")
             ax.set_aspect("equal")
             ax.spines[["top", "right"]].set_visible(False)
-        self._said = ax.set_title("t", loc="left", fontsize=10, family="monospace")
+        self._time_text = ax.set_title("t", loc="left", fontsize=10, family="monospace")
         self.figure.suptitle(title, fontsize=11)
 
     def _curve(
         self, ax: Any, legs: list[int], name: str, factor: float, label: str
     ) -> tuple[Any, list[tuple[Any, Any]]]:
-        """Draw a quantity of a leg of each touchdown; the bar and the dots that move, the dots with
-        the values they ride on.
+        """Draw a quantity of one leg of each touchdown.
+
+        Returns:
+            The bar and the dots that move, each dot with the values of its curve.
         """
         span = slice(self._rows[0], self._rows[-1] + 1)
         dots = []
@@ -167,7 +170,7 @@ class MovingFigure:
         bar = ax.axvline(self._history.time[span.start], color=INK, linewidth=1.0, zorder=4)
         ax.axhline(0.0, color=FAINT, linewidth=0.6)
         ax.set_ylabel(label)
-        ax.grid(True, linewidth=0.3)
+        ax.grid(visible=True, linewidth=0.3)
         ax.margins(x=0.0)
         ax.spines[["top", "right"]].set_visible(False)
         return bar, dots

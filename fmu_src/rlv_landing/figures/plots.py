@@ -1,4 +1,4 @@
-"""Pictures of a landing, and pictures for a page."""
+"""The overview of a landing, and figures as SVG in a page."""
 
 from __future__ import annotations
 
@@ -20,8 +20,7 @@ COLOURS = ("#0b6e99", "#c8553d", "#5b8c3e")
 
 
 def save_overview(history: History, path: str | Path, title: str) -> None:
-    """Write a PNG of main strut forces, strokes, auxiliary strut forces and the top's acceleration
-    over time.
+    """Write a PNG of main strut forces, strokes, auxiliary strut forces and top acceleration.
 
     Legs that are mirror images share a curve. Dotted lines mark each leg's first contact.
     """
@@ -61,7 +60,7 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
     for ax, label in zip(axes, labels):
         ax.set_ylabel(label)
         ax.axhline(0.0, color="#999999", linewidth=0.6)
-        ax.grid(True, linewidth=0.3)
+        ax.grid(visible=True, linewidth=0.3)
         ax.margins(x=0.0)
     axes[0].legend(loc="lower right", frameon=False, ncols=len(groups))
     axes[0].set_title(title, loc="left")
@@ -71,9 +70,16 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
     figure.savefig(path, dpi=120)
 
 
-def inline_svg(figure: Figure, prefix: str, label: str, said: dict[str, str] | None = None) -> str:
-    """A figure as SVG to stand in a page: no links, ids of its own by `prefix`, text as text, and
-    what each mark says as its tooltip.
+def inline_svg(
+    figure: Figure, prefix: str, label: str, tooltips: dict[str, str] | None = None
+) -> str:
+    """A figure as SVG to stand in a page: without links, text as text.
+
+    Args:
+        figure: The figure.
+        prefix: Put before all ids, so that figures of one page have different ones.
+        label: The picture's text for readers who cannot see it.
+        tooltips: The tooltip of each mark by the mark's name.
     """
     import matplotlib as mpl
 
@@ -91,7 +97,7 @@ def inline_svg(figure: Figure, prefix: str, label: str, said: dict[str, str] | N
     svg = re.sub(r'\bid="', f'id="{prefix}-', svg)
     svg = re.sub(r'href="#', f'href="#{prefix}-', svg)
     svg = svg.replace("url(#", f"url(#{prefix}-")
-    for name, text in (said or {}).items():
+    for name, text in (tooltips or {}).items():
         opening = f'<g id="{prefix}-mark-{name}">'
         svg = svg.replace(opening, f"{opening}<title>{escape(text)}</title>", 1)
     return svg.replace("<svg ", f'<svg role="img" aria-label="{escape(label)}" ', 1)

@@ -1,6 +1,6 @@
-"""The validation as one self-contained HTML page: tables, and the counterparts of the paper's Figs.
+"""The validation as one self-contained HTML page.
 
-7-19 as inline SVG.
+It has tables, and the counterparts of the paper's Figs. 7 to 19 as inline SVG.
 """
 
 from __future__ import annotations
@@ -15,19 +15,18 @@ from .. import __version__
 from ..errors import LandingError
 from ..parameters import Parameters
 from ..tables.landing import counts_line, near_zero_note, number, parameter_records, percent
+from ..validation.paper import Scalar
 from ..validation.validate import Validation
 from .plots import inline_svg
-from .report_figures import (  # fmt: skip
-    AUXILIARY,
-    FORCE,
+from .report_figures import (
     NUMBERS,
-    STROKE,
     acceleration_figure,
     curve_figure,
     error_figure,
     loop_figure,
     measures_figure,
 )
+from .report_marks import AUXILIARY, FORCE, STROKE
 from .report_movement import movement_figure
 
 TEMPLATE = Path(__file__).with_name("report.html.j2")
@@ -36,15 +35,26 @@ TEMPLATE = Path(__file__).with_name("report.html.j2")
 def write_report(
     found: Validation, parameters: Parameters, path: Path, label: str, phase: str = "zero"
 ) -> None:
-    """Write the page to `path`. Raises LandingError where it cannot be written."""
+    """Write the page to `path`.
+
+    Args:
+        found: The validation.
+        parameters: The parameters of its landings.
+        path: The file.
+        label: The name of the parameters.
+        phase: Phase of the sensors' low-pass.
+
+    Raises:
+        LandingError: The file cannot be written.
+    """
     write_whole(render_report(found, parameters, label, phase), path)
 
 
 def write_whole(text: str, path: Path) -> None:
-    """Write `text` to `path` by a temporary name beside it, so that the file is there whole or as
-    it was.
+    """Write `text` to `path` by a temporary name: the file is then new, or as it was.
 
-    Raises LandingError where it cannot be written.
+    Raises:
+        LandingError: The file cannot be written.
     """
     try:
         handle, name = tempfile.mkstemp(
@@ -120,9 +130,9 @@ def _mode_figures(found: Validation, mode: str) -> list[dict[str, str]]:
             "title": title,
             "note": note,
             "number": str(n),
-            "svg": inline_svg(figure, f"fig{n}", f"{title}, {mode}", said),
+            "svg": inline_svg(figure, f"fig{n}", f"{title}, {mode}", tooltips),
         }
-        for n, (title, note, (figure, said)) in zip(numbers, drawn)
+        for n, (title, note, (figure, tooltips)) in zip(numbers, drawn)
     ]
 
 
@@ -135,7 +145,7 @@ def _scalar_rows(found: Validation) -> list[dict[str, Any]]:
             {
                 "id": s.id,
                 "mode": s.mode,
-                "what": f"{s.quantity.replace('_', ' ')}{f', leg {s.leg}' if s.leg else ''}: {s.event}",
+                "what": _what(s),
                 "unit": s.unit,
                 "simulation": number(s.simulation, s.unit),
                 "tests": " / ".join(number(v, s.unit) for v in (s.test_a, s.test_b) if v == v)
@@ -149,6 +159,11 @@ def _scalar_rows(found: Validation) -> list[dict[str, Any]]:
             }
         )
     return rows
+
+
+def _what(s: Scalar) -> str:
+    leg = f", leg {s.leg}" if s.leg else ""
+    return f"{s.quantity.replace('_', ' ')}{leg}: {s.event}"
 
 
 def _grade(error: float) -> str:

@@ -1,12 +1,11 @@
-"""The counterparts of the paper's Figs.
+"""The counterparts of the paper's Figs. 7 to 19, drawn from a validation.
 
-7-19, drawn from a validation; printed scalars are marked on the curves.
+The printed scalars are marked on the curves.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,59 +13,19 @@ from numpy.typing import NDArray
 
 from ..history import History
 from ..quantities import MODES
-from ..validation.paper import Comparison
 from .plots import COLOURS
+from .report_marks import ACCELERATION, PAPER, TEST, Curve, draw_marks, marks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..validation.validate import Validation
 
-PAPER, TEST, MEASURED = "#111111", "#b5379a", "#777777"
+MEASURED = "#777777"
 ORDINALS = ("first", "second", "third")
-# each mode's figure numbers in the paper: force, stroke, loop, auxiliary force, acceleration,
-# movement
+# each mode's figure numbers in the paper, in this order: force, stroke, loop, auxiliary force,
+# acceleration, movement
 NUMBERS = {"2-2": (7, 8, 9, 10, 11, 12), "1-2-1": (13, 14, 15, 16, 17, 18)}
-
-
-@dataclass(frozen=True)
-class Curve:
-    """A quantity over time: the paper's name of it, our column (with the leg's number to be put
-    in), label, factor from SI.
-    """
-
-    quantity: str
-    column: str
-    label: str
-    factor: float
-
-
-FORCE = Curve("main_strut_force", "leg[{}].main_strut.force", "main strut force [kN]", 1e-3)
-STROKE = Curve("main_strut_stroke", "leg[{}].main_strut.stroke", "main strut stroke [mm]", 1e3)
-AUXILIARY = Curve(
-    "aux_strut_force", "leg[{}].auxiliary_strut.force", "auxiliary strut force [kN]", 1e-3
-)
-ACCELERATION = Curve(
-    "axial_acceleration_top",
-    "body.top_axial_acceleration",
-    "axial acceleration\nat the top [m/s²]",
-    1.0,
-)
-PITCH = Curve("pose", "body.pitch", "pitch [deg]", 57.29577951308232)
-
-
-@dataclass(frozen=True)
-class Mark:
-    """A printed number on a curve: the paper's id, what it says, where its simulation and tests lie
-    (time [s], value in the scalar's unit), and the marker: a circle for a value (at the printed
-    time, else at ours), a bar for a time alone (on our curve).
-    """
-
-    id: str
-    text: str
-    simulation: tuple[float, float]
-    tests: tuple[tuple[float, float], ...]
-    marker: str
 
 
 def groups(mode: str) -> list[tuple[int, ...]]:
@@ -74,77 +33,13 @@ def groups(mode: str) -> list[tuple[int, ...]]:
     return [tuple(sorted(leg for leg, _ in g.legs)) for g in MODES[mode]]
 
 
-def marks(
-    curve: Curve, legs: Sequence[int], history: History, comparisons: Sequence[Comparison]
-) -> Iterator[Mark]:
-    """The printed scalars of a curve of `legs` (0 for the body's)."""
-    own = {
-        c.scalar.id: c
-        for c in comparisons
-        if c.scalar.quantity == curve.quantity and (c.scalar.leg in legs or c.scalar.leg == 0)
-    }
-    column = history[curve.column.format(legs[0])] * curve.factor
-    for name, c in own.items():
-        s = c.scalar
-        text = (
-            f"{name}: {s.event}: simulation {s.simulation:g} {s.unit}, ours {c.ours:.4g} {s.unit}"
-        )
-        if s.unit == "s":
-            if name.removesuffix("-t") != name and name.removesuffix("-t") in own:
-                continue
-            at = float(
-                np.interp(c.ours if np.isfinite(c.ours) else s.simulation, history.time, column)
-            )
-            yield Mark(
-                name,
-                text,
-                (s.simulation, at),
-                tuple((v, at) for v in (s.test_a, s.test_b) if v == v),
-                "|",
-            )
-            continue
-        factor = {"N": 1e-3}.get(s.unit, 1.0)
-        timed = own.get(f"{name}-t")
-        ours = (
-            float(history.time[np.argmin(np.abs(column - c.ours * factor))])
-            if np.isfinite(c.ours)
-            else 0.0
-        )
-        if "settled" in s.event:
-            ours = float(history.time[-1]) - 0.1
-        when = timed.scalar.simulation if timed else ours
-        test_time = timed.scalar.test if timed and timed.scalar.test == timed.scalar.test else when
-        tests = tuple((test_time, v * factor) for v in (s.test_a, s.test_b) if v == v)
-        yield Mark(name, text, (when, s.simulation * factor), tests, "o")
-        if timed:
-            t = timed.scalar
-            text = f"{t.id}: {t.event}: simulation {t.simulation:g} s, ours {timed.ours:.4g} s"
-            yield Mark(t.id, text, (when, s.simulation * factor), (), "|")
-
-
-def draw_marks(ax: Any, found: Iterator[Mark]) -> dict[str, str]:
-    """Draw them, each findable by the id `mark-ID`; return what each says."""
-    said = {}
-    for m in found:
-        ax.plot(
-            *m.simulation,
-            m.marker,
-            color=PAPER,
-            markerfacecolor="none",
-            markersize=7 if m.marker == "o" else 11,
-            zorder=5,
-            gid=f"mark-{m.id}",
-        )
-        for x, y in m.tests:
-            ax.plot(x, y, "x", color=TEST, markersize=6, markeredgewidth=1.4, zorder=4)
-        said[m.id] = m.text
-    return said
-
-
 def curve_figure(found: Validation, mode: str, curve: Curve) -> tuple[Figure, dict[str, str]]:
-    """A quantity of the struts over time, a panel a touchdown, as Figs. 7, 8, 10, 13, 14, 16."""
+    """A quantity of the struts over time, a panel for each touchdown.
+
+    It is the counterpart of Figs. 7, 8, 10, 13, 14 and 16.
+    """
     figure, axes = _panels(len(groups(mode)))
-    history, measured, said = found.histories[mode], found.measured.get(mode), {}
+    history, measured, tooltips = found.histories[mode], found.measured.get(mode), {}
     for i, (ax, legs) in enumerate(zip(axes, groups(mode))):
         ax.plot(
             history.time,
@@ -154,16 +49,16 @@ def curve_figure(found: Validation, mode: str, curve: Curve) -> tuple[Figure, di
             label="this landing",
         )
         _draw_measured(ax, measured, [curve.column.format(leg) for leg in legs], curve.factor)
-        said.update(draw_marks(ax, marks(curve, legs, history, found.comparisons[mode])))
-        _dress(ax, _title(i, legs), "time [s]", curve.label if i == 0 else "")
-    _legend(figure, axes[0], measured is not None)
-    return figure, said
+        tooltips.update(draw_marks(ax, marks(curve, legs, history, found.comparisons[mode])))
+        _set_up(ax, _title(i, legs), "time [s]", curve.label if i == 0 else "")
+    _legend(figure, axes[0], measured=measured is not None)
+    return figure, tooltips
 
 
 def loop_figure(found: Validation, mode: str) -> tuple[Figure, dict[str, str]]:
-    """Damper force over damper stroke, as Figs.
+    """Damper force over damper stroke, as Figs. 9 and 15; compression positive.
 
-    9 and 15; compression positive, the shaded area is what the first compression absorbed.
+    The shaded area is the energy absorbed in the first compression.
     """
     figure, axes = _panels(len(groups(mode)))
     history, measured = found.sensed[mode], found.measured.get(mode)
@@ -207,7 +102,7 @@ def loop_figure(found: Validation, mode: str) -> tuple[Figure, dict[str, str]]:
                     linewidth=0.9,
                     linestyle="--",
                 )
-        _dress(ax, _title(i, legs), "stroke [mm]", "compressive force [kN]" if i == 0 else "")
+        _set_up(ax, _title(i, legs), "stroke [mm]", "compressive force [kN]" if i == 0 else "")
     return figure, {}
 
 
@@ -230,10 +125,10 @@ def acceleration_figure(found: Validation, mode: str) -> tuple[Figure, dict[str,
         label="through the sensor chain (100 Hz)",
     )
     _draw_measured(ax, measured, [ACCELERATION.column], 1.0)
-    said = draw_marks(ax, marks(ACCELERATION, (0,), raw, found.comparisons[mode]))
-    _dress(ax, "", "time [s]", ACCELERATION.label)
-    _legend(figure, ax, measured is not None)
-    return figure, said
+    tooltips = draw_marks(ax, marks(ACCELERATION, (0,), raw, found.comparisons[mode]))
+    _set_up(ax, "", "time [s]", ACCELERATION.label)
+    _legend(figure, ax, measured=measured is not None)
+    return figure, tooltips
 
 
 def measures_figure(found: Validation) -> Figure:
@@ -261,12 +156,12 @@ def measures_figure(found: Validation) -> Figure:
         color=COLOURS[1],
         label="dissipated by the end of the rebound",
     )
-    _dress_bars(ax, x, labels, "energy [J]")
+    _set_up_bars(ax, x, labels, "energy [J]")
     ax.legend(frameon=False, fontsize=9)
     ax.margins(y=0.25)
     ax = figure.add_subplot(grid[0, 1])
     ax.bar(x, [w.efficiency for w in work], 0.6, color=COLOURS[2])
-    _dress_bars(ax, x, labels, "buffering efficiency")
+    _set_up_bars(ax, x, labels, "buffering efficiency")
     ax.set_ylim(0.0, 1.0)
     if found.curves:
         ax = figure.add_subplot(grid[1, :])
@@ -281,7 +176,7 @@ def measures_figure(found: Validation) -> Figure:
             color=COLOURS[1],
             label="through the sensor chain",
         )
-        _dress_bars(
+        _set_up_bars(
             ax,
             x,
             [f"{c.mode}\n{c.column}".replace("_strut.", "\n") for c in found.curves],
@@ -292,8 +187,9 @@ def measures_figure(found: Validation) -> Figure:
 
 
 def error_figure(found: Validation) -> Figure:
-    """Every scalar's error: ours against simulation, ours and the paper's own against test, on one
-    scale.
+    """Every scalar's error, on one scale.
+
+    The errors are ours against simulation and test, and the paper's simulation against test.
     """
     from matplotlib.figure import Figure
 
@@ -334,9 +230,10 @@ def error_figure(found: Validation) -> Figure:
     ax.set_ylim(y[-1] - 0.8, 0.8)
     ax.set_xlim(-105.0, 105.0)
     ax.set_xlabel(
-        "error on the printed simulation's scale [%]; shaded: within 5, 10, 20 %; what is beyond 100 % is at the edge"
+        "error on the printed simulation's scale [%]; shaded: within 5, 10, 20 %; "
+        "an error beyond 100 % is at the edge"
     )
-    ax.grid(True, linewidth=0.3)
+    ax.grid(visible=True, linewidth=0.3)
     ax.spines[["top", "right"]].set_visible(False)
     ax.legend(frameon=True, framealpha=0.9, edgecolor="none", fontsize=9, loc="upper right")
     return figure
@@ -354,22 +251,23 @@ def _panels(count: int) -> tuple[Figure, list[Any]]:
 
 
 def _title(i: int, legs: Sequence[int]) -> str:
-    return f"({'abc'[i]}) {ORDINALS[i]} touchdown, leg{'s' if len(legs) > 1 else ''} {'/'.join(map(str, legs))}"
+    names = "/".join(map(str, legs))
+    return f"({'abc'[i]}) {ORDINALS[i]} touchdown, leg{'s' if len(legs) > 1 else ''} {names}"
 
 
-def _dress(ax: Any, title: str, x: str, y: str) -> None:
+def _set_up(ax: Any, title: str, x: str, y: str) -> None:
     ax.set_title(title, loc="left", fontsize=10)
     ax.set_xlabel(x)
     ax.set_ylabel(y)
     ax.axhline(0.0, color="#999999", linewidth=0.6)
-    ax.grid(True, linewidth=0.3)
+    ax.grid(visible=True, linewidth=0.3)
     ax.spines[["top", "right"]].set_visible(False)
 
 
-def _dress_bars(ax: Any, x: NDArray[Any], labels: list[str], y: str) -> None:
+def _set_up_bars(ax: Any, x: NDArray[Any], labels: list[str], y: str) -> None:
     ax.set_xticks(x, labels, fontsize=8)
     ax.set_ylabel(y)
-    ax.grid(True, axis="y", linewidth=0.3)
+    ax.grid(visible=True, axis="y", linewidth=0.3)
     ax.set_axisbelow(True)
     ax.spines[["top", "right"]].set_visible(False)
 
@@ -387,8 +285,8 @@ def _draw_measured(ax: Any, measured: History | None, names: Sequence[str], fact
             )
 
 
-def _legend(figure: Figure, ax: Any, measured: bool) -> None:
-    """One line below the panels: what the lines and the marks are."""
+def _legend(figure: Figure, ax: Any, *, measured: bool) -> None:
+    """Draw the legend of lines and marks in one line below the panels."""
     from matplotlib.lines import Line2D
 
     handles = list(ax.get_legend_handles_labels()[0])

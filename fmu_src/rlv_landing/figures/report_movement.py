@@ -1,5 +1,6 @@
-"""The movement of the vehicle as a sequence of wireframes, light to dark in time, as the paper's
-Figs. 12 and 18.
+"""The movement of the vehicle as a sequence of wireframes, light to dark in time.
+
+It is the counterpart of the paper's Figs. 12 and 18.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import numpy as np
 
 from ..parameters import Parameters
 from .plots import COLOURS
-from .report_figures import PITCH, draw_marks, marks
+from .report_marks import PITCH, draw_marks, marks
 from .wireframe import Lines, ground_height, wireframe
 
 if TYPE_CHECKING:
@@ -22,8 +23,9 @@ FRAMES = 13
 
 
 def movement_figure(found: Validation, mode: str) -> tuple[Figure, dict[str, str]]:
-    """The sequence over the ground, and the pitch over time with the time at which the paper has
-    the vehicle at rest.
+    """The sequence over the ground, and the pitch over time.
+
+    The paper's time of rest is marked on the pitch.
     """
     from matplotlib import colormaps
     from matplotlib.figure import Figure
@@ -52,14 +54,14 @@ def movement_figure(found: Validation, mode: str) -> tuple[Figure, dict[str, str
         fontsize=10,
     )
     below.plot(history.time, history["body.pitch"] * PITCH.factor, color=COLOURS[0], linewidth=1.5)
-    said = draw_marks(below, marks(PITCH, (0,), history, found.comparisons[mode]))
+    tooltips = draw_marks(below, marks(PITCH, (0,), history, found.comparisons[mode]))
     below.set_xlabel("time [s]; bars: the instants drawn on the left")
     below.set_ylabel("pitch [deg], clockwise positive")
     below.set_title("| printed: at rest in the paper", loc="left", fontsize=10)
     for each in (ax, below):
-        each.grid(True, linewidth=0.3)
+        each.grid(visible=True, linewidth=0.3)
         each.spines[["top", "right"]].set_visible(False)
-    return figure, said
+    return figure, tooltips
 
 
 def _draw(ax: Any, lines: dict[str, Lines], shade: Any) -> None:

@@ -1,5 +1,6 @@
-"""Sobol indices as bars: first order and total of every factor, with their intervals, a panel a
-response.
+"""Sobol indices as bars, a panel for each response.
+
+Each factor has a first-order and a total index, with their intervals.
 """
 
 from __future__ import annotations
@@ -16,7 +17,11 @@ WIDTH, HEIGHT = 4.6, 0.42
 
 
 def save_bars(found: Sequence[Indices], path: Path, title: str) -> None:
-    """Draw the responses that vary to `path` (.png). Raises OSError where it cannot be written."""
+    """Draw the responses that vary to `path` (.png).
+
+    Raises:
+        OSError: The file cannot be written.
+    """
     from matplotlib.figure import Figure
 
     shown = [f for f in found if not np.isnan(f.total).any()]

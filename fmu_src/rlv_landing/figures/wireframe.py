@@ -1,6 +1,4 @@
-"""The vehicle as lines in space at every sample of a landing: what pictures, animations and viewers
-draw.
-"""
+"""The vehicle as lines in space at the samples of a landing, for figures and viewers."""
 
 from __future__ import annotations
 
@@ -21,13 +19,20 @@ RING = 24
 def wireframe(
     history: History, parameters: Parameters, rows: Sequence[int] | NDArray[np.intp]
 ) -> dict[str, Lines]:
-    """The vehicle at `rows` of `history`, in the paper's inertial axes (x forward, y up, z right)
-    [m].
+    """The vehicle at `rows` of `history`, in the paper's inertial axes.
 
-    Part -> array (rows, lines, points, 3): `outline`, the body's rectangle in the symmetric plane;
-    `hull`, its rings and the rectangle across; `main` and `auxiliary`, the struts from joint to
-    footpad by leg; `feet`, the footpads. Footpads are where struts of the logged strokes meet, so
-    that logs, which have no column for them, do as well.
+    The axes are x forward, y up, z right. Footpads are where struts of the logged strokes meet, so
+    that logs, which have no column for them, can be drawn as well.
+
+    Args:
+        history: The landing's columns over time.
+        parameters: The vehicle.
+        rows: The samples' indices.
+
+    Returns:
+        Arrays (rows, lines, points, 3) [m] by part: `outline`, the body's rectangle in the
+        symmetric plane; `hull`, its rings and the rectangle across; `main` and `auxiliary`, the
+        struts from joint to footpad by leg; `feet`, the footpads.
     """
     m, a = parameters.main_strut, parameters.auxiliary_strut
     half, bottom, top = (
@@ -71,18 +76,27 @@ def wireframe(
         "auxiliary": auxiliary,
     }
     parts["feet"] = main[:, :, 1:]
-    return {name: _place(history, rows, points) for name, points in parts.items()}
+    return {name: _in_inertial_axes(history, rows, points) for name, points in parts.items()}
 
 
 def ground_height(parameters: Parameters, x: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Height [m] at `x` [m] of the ground at rest, which a positive slope lets fall along x."""
+    """Height [m] at `x` [m] of the ground at rest.
+
+    A positive slope falls along x.
+    """
     height: NDArray[np.float64] = -np.tan(parameters.ground.slope) * x
     return height
 
 
-def _place(history: History, rows: Sequence[int] | NDArray[np.intp], points: Lines) -> Lines:
-    """Points in body axes from the CG, (1 or rows, lines, points, 3), turned by the pitch
-    (clockwise positive) and moved to the CG.
+def _in_inertial_axes(
+    history: History, rows: Sequence[int] | NDArray[np.intp], points: Lines
+) -> Lines:
+    """Points of the body in inertial axes.
+
+    Args:
+        history: The landing's columns over time.
+        rows: The samples' indices.
+        points: Points in body axes from the CG, (1 or rows, lines, points, 3).
     """
     x, y, pitch = (history[f"body.{name}"][rows][:, None, None] for name in ("x", "y", "pitch"))
     sine, cosine = np.sin(pitch), np.cos(pitch)

@@ -5,7 +5,6 @@ and never losing its best.
 from __future__ import annotations
 
 import json
-import os
 import pickle
 import signal
 from collections.abc import Callable, Sequence
@@ -20,6 +19,7 @@ from numpy.typing import NDArray
 
 from ..durable import write_durably
 from ..errors import LandingError
+from ..workers import default_workers
 from .objective import Objective
 
 STEP = 1e-3
@@ -67,7 +67,7 @@ class Search:
         self.objective = objective
         self.folder = folder
         self.seed = seed
-        self.workers = workers or os.cpu_count() or 1
+        self.workers = workers or default_workers()
         self.labels = objective.free.labels
         start = objective.free.start()
         self.best = Best(start, float("inf"), 0, "start", seed)

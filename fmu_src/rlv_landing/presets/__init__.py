@@ -1,4 +1,4 @@
-"""Presets, and TOML in and out."""
+"""The presets, and parameters read from and written to TOML."""
 
 from __future__ import annotations
 
@@ -21,14 +21,15 @@ DEFAULT_PRESET = "yue2022-figures"
 
 
 def preset_names() -> list[str]:
-    """The presets that come with the package."""
+    """The names of the presets that come with the package."""
     return sorted(p.stem for p in FOLDER.glob("*.toml"))
 
 
 def load_preset(name: str, mode: str | None = None) -> Parameters:
     """The parameters of a preset, for the landing `mode` (default: the preset's own).
 
-    Raises LandingError for an unknown name.
+    Raises:
+        LandingError: The name is unknown.
     """
     if name not in preset_names():
         raise unknown("preset", name, preset_names())
@@ -37,12 +38,16 @@ def load_preset(name: str, mode: str | None = None) -> Parameters:
 
 
 def read_toml(path: str | Path) -> Parameters:
-    """Parameters from a TOML file: tables `vehicle`, `main_strut`, `auxiliary_strut`, `ground`,
-    `drop`; `mode.X.drop` for one mode only.
+    """Parameters from a TOML file.
 
-    A value is a number in SI units, a text with a unit ("-2 deg"), or `{ value = ..., source =
-    "..." }`. What is not given comes from `preset = "..."` (default yue2022-figures). Raises
-    LandingError: no such file, TOML syntax (with line), unknown names, bad values.
+    Its tables are `vehicle`, `main_strut`, `auxiliary_strut`, `ground` and `drop`, and
+    `mode.X.drop` for one mode only. A value is a number in SI units, a text with a unit ("-2 deg"),
+    or `{ value = ..., source = "..." }`. Other values come from `preset = "..."` (default
+    yue2022-figures).
+
+    Raises:
+        LandingError: The file is missing, its TOML syntax is wrong (with line), or names or values
+            are.
     """
     path = Path(path)
     try:
@@ -57,7 +62,7 @@ def read_toml(path: str | Path) -> Parameters:
 
 
 def parse_toml(text: str, name: str) -> Parameters:
-    """As `read_toml`, from a text that errors call `name`."""
+    """Parameters from a TOML text, as `read_toml`; errors name it `name`."""
     try:
         return _from_document(tomllib.loads(text))
     except tomllib.TOMLDecodeError as e:
@@ -117,10 +122,12 @@ def _flat(tables: Mapping[str, Any]) -> tuple[dict[str, float | str], dict[str, 
 
 
 def parse_value(q: Quantity, value: Any) -> float | str:
-    """`value` of the quantity `q` in SI: a number, or a text with a unit such as "-2 deg" or "36
-    mm".
+    """The value of the quantity `q` in SI, from a number or a text with a unit.
 
-    Raises LandingError: not a number, unknown unit, a unit of another dimension, out of bounds.
+    Texts are such as "-2 deg" or "36 mm".
+
+    Raises:
+        LandingError: No number, an unknown unit, a unit of another dimension, or out of bounds.
     """
     if isinstance(value, str) and not q.choices:
         try:
@@ -131,9 +138,12 @@ def parse_value(q: Quantity, value: Any) -> float | str:
 
 
 def unit_scale(q: Quantity, unit: str) -> float:
-    """How much of the unit of `q` one `unit` is: value_SI = scale * value.
+    """The size of `unit` in the unit of `q`: value_SI = scale * value.
 
-    No unit is SI. Raises LandingError: unknown unit, or one of another dimension.
+    An empty unit is SI.
+
+    Raises:
+        LandingError: The unit is unknown or of another dimension.
     """
     if unit in ("", q.unit):
         return 1.0
@@ -151,7 +161,8 @@ def _with_unit(q: Quantity, text: str) -> float:
     except pint.DimensionalityError:
         example = q.display_unit or q.unit or "a plain number"
         raise LandingError(
-            f"{q.name} = {text!r} has the wrong unit; give it in {q.unit or 'plain numbers'}, or as text in {example}"
+            f"{q.name} = {text!r} has the wrong unit; "
+            f"give it in {q.unit or 'plain numbers'}, or as text in {example}"
         ) from None
     except Exception:
         raise LandingError(
@@ -181,11 +192,14 @@ def _example(q: Quantity) -> str:
     return f'"{value:g} {unit}"' if unit else f"{value:g}"
 
 
-def to_toml(parameters: Parameters, comments: bool = True) -> str:
-    """The parameters as a TOML text that `read_toml` takes back to the same digits, with unit,
-    meaning, bounds and source a line.
+def to_toml(parameters: Parameters, *, comments: bool = True) -> str:
+    """The parameters as a TOML text that `read_toml` reads back to the same digits.
 
     Values that belong to one landing mode (of the drop) follow in tables of their own.
+
+    Args:
+        parameters: The parameters.
+        comments: Whether each line has meaning, bounds and unit as a comment.
     """
     lines: list[str] = []
     group = ""
@@ -204,7 +218,6 @@ def to_toml(parameters: Parameters, comments: bool = True) -> str:
     for mode, own in parameters.by_mode.items():
         lines += ["", f"[mode.{mode}.drop]"] if own else []
         for name, value in own.items():
-            lines.append(
-                f'{name.split(".")[1]} = {{ value = {value!r}, source = "{parameters.source(name)}" }}'
-            )
+            source = parameters.source(name)
+            lines.append(f'{name.split(".")[1]} = {{ value = {value!r}, source = "{source}" }}')
     return "\n".join(lines) + "\n"

@@ -1,3 +1,1 @@
-"""Studies of the model: what it is worth beside the paper (`validate`), and what it conserves
-(`audit`).
-"""
+"""Studies of many landings: sweeps, their Sobol indices, and stability envelopes."""

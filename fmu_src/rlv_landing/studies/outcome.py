@@ -1,10 +1,8 @@
-"""What a landing came to, as studies count it: one name, when and where, how much was left, and
-which limit was passed first.
-"""
+"""The outcome of a landing: a name, its time, the margins, and the first limit passed."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from math import cos, sin
@@ -14,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import Phase
-from ..errors import LandingError, unknown
+from ..errors import LandingError
 from ..history import History
-from ..parameters import azimuth, check_value
-from ..quantities import MODES, Quantity
+from ..parameters import azimuth
+from ..quantities import MODES
+from .limits import PassedLimit, first_limit_passed
 
 Array = NDArray[np.float64]
 Name = Literal["toppled", "bottomed out", "slid", "moving", "settled"]
@@ -28,123 +27,54 @@ SETTLED, TOPPLED = float(Phase.SETTLED), float(Phase.TOPPLED)
 # centimetres
 DEFAULT_SLIDE = 0.3
 
-# what may be limited, by output name: the largest value is compared; of a load its magnitude
-LIMITS: dict[str, Quantity] = {
-    q.name: q
-    for q in (
-        Quantity(
-            "N",
-            "main strut's axial force, either sign",
-            0.0,
-            1e12,
-            name="main_strut.force",
-            display_unit="kN",
-        ),
-        Quantity(
-            "N",
-            "auxiliary strut's axial force, either sign",
-            0.0,
-            1e12,
-            name="auxiliary_strut.force",
-            display_unit="kN",
-        ),
-        Quantity(
-            "m",
-            "damper's stroke in compression",
-            0.0,
-            100.0,
-            name="main_strut.stroke",
-            display_unit="mm",
-        ),
-        Quantity(
-            "Pa",
-            "absolute pressure in the upper chamber",
-            0.0,
-            1e12,
-            name="main_strut.pressure_upper",
-            display_unit="MPa",
-        ),
-        Quantity(
-            "Pa",
-            "absolute pressure in the lower chamber",
-            0.0,
-            1e12,
-            name="main_strut.pressure_lower",
-            display_unit="MPa",
-        ),
-        Quantity(
-            "N",
-            "force between ground and footpad, all directions together",
-            0.0,
-            1e12,
-            name="contact.force",
-            display_unit="kN",
-        ),
-        Quantity(
-            "m/s2",
-            "axial acceleration of the top, upward",
-            0.0,
-            1e6,
-            name="body.top_axial_acceleration",
-        ),
-    )
-}
-
-
-@dataclass(frozen=True)
-class Passed:
-    """A limit that a landing passed: its name in LIMITS, the `leg` (None for the body), the time
-    [s] of the first sample beyond it, and the limit itself [SI].
-    """
-
-    name: str
-    leg: int | None
-    time: float
-    limit: float
-
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a landing came to.
+    """The outcome of a landing.
 
     `name` is the severest that holds, in this order:
 
     - toppled: at the end the vehicle's CG is beyond the outermost footpad or the body has turned
       over (`status.phase` 3). A vehicle that was beyond its feet for a moment and came back has not
-      toppled. `time` is when it went for good;
+      toppled. `time` is the start of the last such period;
     - bottomed out: a damper's stroke has passed `main_strut.stroke_max`, where it meets its stop.
-      `time` when the first did;
-    - slid: a footpad is further than the threshold from where it first touched. `time` when it
-      first was;
+      `time` is that of the first damper;
+    - slid: a footpad is further than the threshold from where it first touched. `time` is the first
+      such sample;
     - moving: neither at rest nor lost at the end, which is `time`: run it longer;
     - settled: at rest since `time`.
 
-    `leg` is the first that bottomed out, whatever the name, else None; of legs that are mirror
-    images the lower number stands for both. What comes after toppling is meaningless and counts in
+    `leg` is the first that bottomed out, whatever the name, else None. Of legs that are mirror
+    images the lower number stands for both. The motion after toppling is meaningless and counts in
     the stability margins only.
 
     `margins` [m]: `stability_min` and `stability_end`, the smallest and the last
     `status.stability_margin`; `stroke_left` to the stop; `slid`, the farthest that a footpad lies
     at the end from where it first touched (inertial axes; the legs' spreading is in it);
     `joint_clearance`, the least height above the ground at rest of the body's lowest leg joints,
-    the lowest of the body that the model knows. Peaks between samples are not seen.
+    the lowest of the body that the model knows. Peaks between samples are not included.
     """
 
     name: Name
     time: float
     leg: int | None
     margins: Mapping[str, float]
-    first_limit: Passed | None
+    first_limit: PassedLimit | None
 
 
 def outcome(
     history: History, limits: Mapping[str, float] | None = None, slide: float = DEFAULT_SLIDE
 ) -> Outcome:
-    """What the landing `history` came to; `limits` by name in LIMITS [SI]; `slide` [m] is what a
-    footpad may move and has not slid.
+    """The outcome of the landing `history`.
 
-    Raises LandingError where the history does not know its parameters, for an unknown limit, and
-    for a limit or a `slide` that is negative or NaN.
+    Args:
+        history: A landing's columns over time, with its parameters.
+        limits: Limits by name in LIMITS [SI].
+        slide: Largest distance that a footpad may move without having slid [m].
+
+    Raises:
+        LandingError: The history has no parameters, a limit is unknown, or a limit or `slide` is
+            negative or NaN.
     """
     if history.parameters is None:
         raise LandingError(
@@ -157,45 +87,42 @@ def outcome(
     phase, margin = history["status.phase"], history["status.stability_margin"]
     toppled = bool(phase[-1] == TOPPLED)
     if toppled:
-        over = _lasting(phase, TOPPLED) + 1
+        over = _first_of_last_period(phase, TOPPLED) + 1
         history = History(history.time[:over], history.names, history.data[:over], p)
-    time = history.time
-    strokes = [history[f"leg[{leg}].main_strut.stroke"] for leg in legs]
-    deepest = [float(s.max()) for s in strokes]
     stop = p.main_strut.stroke_max
+    strokes = {leg: history[f"leg[{leg}].main_strut.stroke"] for leg in legs}
     slips = [_slip(history, leg) for leg in legs]
+    bottomed = sorted(
+        (int(np.argmax(s > stop)), leg) for leg, s in strokes.items() if s.max() > stop
+    )
     margins = {
         "stability_min": float(margin.min()),
         "stability_end": float(margin[-1]),
-        "stroke_left": stop - max(deepest),
+        "stroke_left": stop - max(float(s.max()) for s in strokes.values()),
         "slid": max((float(s[-1]) for s in slips if len(s)), default=0.0),
         "joint_clearance": _joint_clearance(history, joints),
     }
     name: Name
-    met = [
-        (int(np.argmax(s > stop)), leg)
-        for s, leg, most in zip(strokes, legs, deepest)
-        if most > stop
-    ]
     if toppled:
-        name, when = "toppled", float(time[-1])
-    elif met:
-        name, when = "bottomed out", float(time[min(met)[0]])
+        name, i = "toppled", len(history) - 1
+    elif bottomed:
+        name, i = "bottomed out", bottomed[0][0]
     elif any(len(s) and s.max() > slide for s in slips):
-        name = "slid"
-        when = min(
-            float(time[len(time) - len(s) + int(np.argmax(s > slide))])
-            for s in slips
-            if len(s) and s.max() > slide
-        )
+        name, i = "slid", min(_first_beyond(s, slide, len(history)) for s in slips)
     elif phase[-1] == SETTLED:
-        name, when = "settled", float(time[_lasting(phase, SETTLED)])
+        name, i = "settled", _first_of_last_period(phase, SETTLED)
     else:
-        name, when = "moving", float(time[-1])
-    leg = min(met)[1] if met else None
-    return Outcome(
-        name, when, leg, margins, _first_limit(history, legs, limits) if limits else None
-    )
+        name, i = "moving", len(history) - 1
+    leg = bottomed[0][1] if bottomed else None
+    first_limit = first_limit_passed(history, legs, limits) if limits else None
+    return Outcome(name, float(history.time[i]), leg, margins, first_limit)
+
+
+def _first_beyond(slip: Array, slide: float, samples: int) -> int:
+    """The index of the sample at which a footpad first slid; `samples` where it did not."""
+    if not len(slip) or not slip.max() > slide:
+        return samples
+    return samples - len(slip) + int(np.argmax(slip > slide))
 
 
 @lru_cache
@@ -206,8 +133,9 @@ def _legs(mode: str) -> tuple[tuple[int, ...], tuple[float, ...]]:
 
 
 def _slip(history: History, leg: int) -> Array:
-    """Distance [m] of the footpad from where it first touched, from then to the end; empty for one
-    that never touches.
+    """Distance [m] of the footpad from its first contact, from then to the end.
+
+    It is empty for a footpad that never touches.
     """
     touching = history[f"leg[{leg}].contact.active"]
     start = int(np.argmax(touching > 0.0))
@@ -219,8 +147,9 @@ def _slip(history: History, leg: int) -> Array:
 
 
 def _joint_clearance(history: History, cosines: tuple[float, ...]) -> float:
-    """Least height [m] above the ground at rest, along its normal, of the auxiliary struts' body
-    joints.
+    """Least height [m] of the auxiliary struts' body joints above the ground at rest.
+
+    It is measured along the ground's normal.
     """
     p = history.parameters
     assert p is not None
@@ -237,62 +166,7 @@ def _joint_clearance(history: History, cosines: tuple[float, ...]) -> float:
     return min(float((height - radius * c * sine).min()) for c in cosines)
 
 
-def _lasting(phase: Array, which: float) -> int:
-    """The sample from which on the phase is `which` until the end."""
+def _first_of_last_period(phase: Array, which: float) -> int:
+    """The index of the sample from which on the phase is `which` until the end."""
     other = np.flatnonzero(phase != which)
     return int(other[-1]) + 1 if len(other) else 0
-
-
-def _resultant(history: History, leg: int) -> Array:
-    x, y, z = (history[f"leg[{leg}].contact.force_{axis}"] for axis in "xyz")
-    force: Array = np.sqrt(x * x + y * y + z * z)
-    return force
-
-
-def _magnitude(name: str) -> Callable[[History, int], Array]:
-    return lambda history, leg: np.abs(history[f"leg[{leg}].{name}"])
-
-
-def _plain(name: str) -> Callable[[History, int], Array]:
-    return lambda history, leg: history[f"leg[{leg}].{name}"]
-
-
-READERS: dict[str, Callable[[History, int], Array]] = {
-    "main_strut.force": _magnitude("main_strut.force"),
-    "auxiliary_strut.force": _magnitude("auxiliary_strut.force"),
-    "main_strut.stroke": _plain("main_strut.stroke"),
-    "main_strut.pressure_upper": _plain("main_strut.pressure_upper"),
-    "main_strut.pressure_lower": _plain("main_strut.pressure_lower"),
-    "contact.force": _resultant,
-}
-
-
-def check_limits(limits: Mapping[str, float]) -> dict[str, float]:
-    """`limits` by name [SI].
-
-    Raises LandingError for a name that is not in LIMITS, and a value that is negative, NaN or no
-    number.
-    """
-    for name in limits:
-        if name not in LIMITS:
-            raise unknown("limit", name, LIMITS)
-    return {name: float(check_value(LIMITS[name], value)) for name, value in limits.items()}
-
-
-def _first_limit(
-    history: History, legs: tuple[int, ...], limits: Mapping[str, float]
-) -> Passed | None:
-    """The limit that is passed at the earliest sample; of several there, the one that is passed by
-    the largest part of itself.
-    """
-    found: list[tuple[int, float, Passed]] = []
-    for name, limit in check_limits(limits).items():
-        whose = legs if name in READERS else (None,)
-        for leg in whose:
-            values = READERS[name](history, leg) if leg is not None else history[name]
-            if not values.max() > limit:
-                continue
-            i = int(np.argmax(values > limit))
-            excess = float(values[i]) / limit if limit > 0.0 else np.inf
-            found.append((i, -excess, Passed(name, leg, float(history.time[i]), limit)))
-    return min(found, key=lambda f: f[:2])[2] if found else None

@@ -1,5 +1,6 @@
-"""Keys of a study's TOML file, each checked as it is read: LandingError names key, value, unit,
-limit and remedy.
+"""Keys of a study's TOML file, each checked as it is read.
+
+Every function raises LandingError, which names key, value, unit, limit and remedy.
 """
 
 from __future__ import annotations
@@ -21,7 +22,11 @@ else:
 
 
 def read(path: Path) -> tuple[dict[str, Any], str]:
-    """A study's document, and its text. Raises LandingError: missing file, TOML syntax."""
+    """A study's document, and its text.
+
+    Raises:
+        LandingError: The file is missing or cannot be read, or its TOML syntax is wrong.
+    """
     try:
         text = path.read_text(encoding="utf-8")
         return tomllib.loads(text), text
@@ -49,20 +54,20 @@ def tables(document: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
     return value
 
 
-def only(told: Iterable[str], known: Iterable[str], what: str) -> None:
-    """Refuse a key that is not known, with the nearest."""
+def refuse_unknown(given: Iterable[str], known: Iterable[str], what: str) -> None:
+    """Refuse a key that is not known; the error names the nearest."""
     known = list(known)
-    for key in told:
+    for key in given:
         if key not in known:
             raise unknown(what, key, known)
 
 
-def flat(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Dotted names of a table: `drop.tilt = 1` and `[drop] tilt = 1` are the same."""
+def by_dotted_name(nested: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Values by dotted name: `drop.tilt = 1` and `[drop] tilt = 1` are the same."""
     found: dict[str, Any] = {}
     for key, value in nested.items():
         if isinstance(value, dict):
-            found.update(flat(value, f"{prefix}{key}."))
+            found.update(by_dotted_name(value, f"{prefix}{key}."))
         else:
             found[f"{prefix}{key}"] = value
     return found
@@ -72,22 +77,22 @@ def values(
     nested: Mapping[str, Any], known: Mapping[str, Quantity], what: str
 ) -> dict[str, float | str]:
     """Values in SI by name, each a number in SI or a text with a unit."""
-    told = flat(nested)
-    only(told, known, what)
-    return {name: parse_value(known[name], value) for name, value in told.items()}
+    given = by_dotted_name(nested)
+    refuse_unknown(given, known, what)
+    return {name: parse_value(known[name], value) for name, value in given.items()}
 
 
-def text(told: Mapping[str, Any], key: str, default: str) -> str:
+def text(keys: Mapping[str, Any], key: str, default: str) -> str:
     """A text, not empty."""
-    value = told.get(key, default)
+    value = keys.get(key, default)
     if not isinstance(value, str) or not value:
         raise LandingError(f"{key} = {value!r} must be a text")
     return value
 
 
-def texts(told: Mapping[str, Any], key: str) -> list[str] | None:
-    """A list of texts, not empty, none of them twice; None where it is missing."""
-    value = told.get(key)
+def texts(keys: Mapping[str, Any], key: str) -> list[str] | None:
+    """A list of texts, not empty and without repetition; None where it is missing."""
+    value = keys.get(key)
     if value is None:
         return None
     if not isinstance(value, list) or not value or not all(isinstance(v, str) for v in value):
@@ -97,14 +102,17 @@ def texts(told: Mapping[str, Any], key: str) -> list[str] | None:
     return value
 
 
-def whole(told: Mapping[str, Any], key: str, default: int, lowest: int, highest: int) -> int:
-    """A whole number within bounds."""
-    value = told.get(key, default)
+def integer(keys: Mapping[str, Any], key: str, default: int, lowest: int, highest: int) -> int:
+    """A whole number within bounds, both included."""
+    value = keys.get(key, default)
     if isinstance(value, bool) or not isinstance(value, int) or not lowest <= value <= highest:
         raise LandingError(f"{key} = {value!r} must be a whole number from {lowest} to {highest}")
     return value
 
 
-def number(told: Mapping[str, Any], q: Quantity) -> float:
-    """The number of the quantity `q`, in SI or a text with a unit; its default where it is missing."""
-    return float(parse_value(q, told[q.name]) if q.name in told else check_value(q, q.default))
+def number(keys: Mapping[str, Any], q: Quantity) -> float:
+    """The number of the quantity `q`, in SI or a text with a unit.
+
+    Its default is returned where it is missing.
+    """
+    return float(parse_value(q, keys[q.name]) if q.name in keys else check_value(q, q.default))

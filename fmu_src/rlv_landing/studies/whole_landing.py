@@ -1,4 +1,4 @@
-"""A landing until it is decided: at rest, toppled, or out of time."""
+"""A landing until its outcome is decided: at rest, toppled, or out of time."""
 
 from __future__ import annotations
 
@@ -8,23 +8,30 @@ from ..history import History
 from ..landing import Landing
 from .outcome import SETTLED, TOPPLED
 
-SLICE = 0.25
+CHECK_EVERY = 0.25
 
 
 def whole_landing(landing: Landing, until: float, every: float = 1e-3) -> History:
-    """Land from now until the vehicle is at rest, has toppled, or `until` [s]; outputs every
-    `every` [s].
+    """Land from now until the vehicle is at rest, has toppled, or `until` [s].
 
-    It is looked at every 0.25 s: at rest where `status.phase` is settled then; toppled where it was
-    toppled at every sample of the last 0.25 s, for one that is beyond its feet for a moment may
-    still come back. Raises LandingError as `Landing.run`.
+    The state is checked every 0.25 s. The vehicle is at rest where `status.phase` is settled then.
+    It has toppled where it was toppled at every sample of the last 0.25 s: one that is beyond its
+    feet for a moment may still come back.
+
+    Args:
+        landing: The landing; its state moves on.
+        until: The latest end [s].
+        every: Time between samples [s].
+
+    Raises:
+        LandingError: As `Landing.run`.
     """
-    per_slice = max(1, round(SLICE / every))
-    start, slices = landing.time, 0
+    samples = max(1, round(CHECK_EVERY / every))
+    start, checks = landing.time, 0
     parts: list[History] = []
     while not parts or landing.time + 0.5 * every < until:
-        slices += 1
-        part = landing.run(min(start + slices * per_slice * every, until), every)
+        checks += 1
+        part = landing.run(min(start + checks * samples * every, until), every)
         parts.append(part)
         phase = part["status.phase"]
         if phase[-1] == SETTLED or np.all(phase == TOPPLED):

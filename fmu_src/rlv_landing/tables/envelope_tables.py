@@ -1,18 +1,16 @@
-"""What an envelope found, as people read it in a terminal."""
+"""The tables of an envelope."""
 
 from __future__ import annotations
 
 from ..quantities import shown
-from ..studies.envelope.results import NAMES, runs, verdict
+from ..studies.envelope.results import NAMES, stretches, verdict
 from ..studies.envelope.search import Envelope, Family
 from ..studies.sweep.factors import value_text
 from .landing import new_table, render
 
 
 def envelope_tables(found: Envelope) -> str:
-    """Every family with its landings' outcomes, the critical conditions along the boundaries, and
-    what it took.
-    """
+    """Outcomes by family, critical conditions along the boundaries, and the number of landings."""
     study = found.study
     table = new_table(
         f"lost: {study.criterion}; {study.x.name} and {study.y.name}",
@@ -35,11 +33,12 @@ def envelope_tables(found: Envelope) -> str:
     )
     for f in found.families:
         for line in f.lines:
-            for run in runs(line):
+            for stretch in stretches(line):
                 ends = [
-                    f"({c.x / sx:.4g}, {c.y / sy:.4g})" for c in (run.points[0], run.points[-1])
+                    f"({c.x / sx:.4g}, {c.y / sy:.4g})"
+                    for c in (stretch.points[0], stretch.points[-1])
                 ]
-                critical.add_row(_family(f), *ends, run.condition, str(len(run.points)))
+                critical.add_row(_family(f), *ends, stretch.condition, str(len(stretch.points)))
     open_ended = sum(f.count("moving") for f in found.families)
     parts = [
         render(table, 170),
@@ -47,12 +46,14 @@ def envelope_tables(found: Envelope) -> str:
     ]
     if open_ended:
         parts.append(
-            f"{open_ended} landings were neither at rest nor toppled at {study.until:g} s and count as not toppled\n"
+            f"{open_ended} landings were neither at rest nor toppled at {study.until:g} s "
+            "and count as not toppled\n"
         )
     parts.append(
         f"{found.landings} landings; a uniform grid of the same resolution takes {found.uniform}, "
         f"{found.uniform / found.landings:.0f} times as many\n"
-        f"an island that lies within one of the {study.cells} x {study.cells} coarse cells and touches no corner is not seen; --cells\n"
+        f"an island that lies within one of the {study.cells} x {study.cells} coarse cells "
+        "and touches no corner is not found; --cells\n"
     )
     return "".join(parts)
 

@@ -1,4 +1,4 @@
-"""Tables as people read them in a terminal."""
+"""The tables of a landing and of parameters, and what all tables share."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def render(table: Table, width: int = 140) -> str:
 def new_table(
     title: str, left: Iterable[str], right: Iterable[str], more: Iterable[str] = ()
 ) -> Table:
-    """An empty table: columns set left, set right (numbers), and left again."""
+    """An empty table: columns aligned left, right (numbers), and left again."""
     table = Table(title=escape(title), title_justify="left", title_style="bold")
     for name in left:
         table.add_column(escape(name))
@@ -40,8 +40,9 @@ def new_table(
 
 
 def number(value: float | None, unit: str) -> str:
-    """A number as it is read in its unit: N without decimals, s with three, else two; a dash for
-    none.
+    """A number in its unit: N without decimals, s with three, others with two.
+
+    None and NaN are a dash.
     """
     if value is None or math.isnan(value):
         return "-"
@@ -49,8 +50,9 @@ def number(value: float | None, unit: str) -> str:
 
 
 def comparison_table(history: History, mode: str) -> str:
-    """Our numbers beside the paper's simulation and tests, a line a printed scalar, and the counts
-    within 5, 10 and 20 %.
+    """Our numbers beside the paper's simulation and tests, and the counts of `mode`.
+
+    There is a line for each printed scalar; the counts are those within 5, 10 and 20 %.
     """
     comparisons: list[Comparison] = compare(history, mode)
     table = new_table(
@@ -91,20 +93,21 @@ def counts_line(n: dict[str, int]) -> str:
 
 
 def near_zero_note(comparisons: Iterable[Comparison]) -> str:
-    """What the asterisk behind an error means, with the scales; nothing where no scalar is near
-    zero.
-    """
+    """The note on the asterisk behind an error, with the scales; empty without such errors."""
     marked = [c.scalar for c in comparisons if c.scalar.near_zero]
     if not marked:
         return ""
     scales = ", ".join(
         f"{number(s.simulation, s.unit)} on {number(s.scale, s.unit)} {s.unit}" for s in marked
     )
-    return f"* near zero, so judged on the scale of its curve, the largest that the paper prints of it: {scales}\n"
+    return (
+        "* near zero, so judged on the scale of its curve, "
+        f"the largest that the paper prints of it: {scales}\n"
+    )
 
 
 def summary_table(history: History, title: str) -> str:
-    """Peaks of every leg, and the outcome below."""
+    """The peaks of every leg, with the outcome below."""
     s = summarise(history)
     table = new_table(
         title,
@@ -126,18 +129,23 @@ def summary_table(history: History, title: str) -> str:
             f"{leg['main_strut_force_min_time']:.3f}",
             f"{leg['main_strut_stroke_max'] * 1e3:.2f}",
             f"{leg['main_strut_stroke_max_time']:.3f}",
-            f"{leg['auxiliary_strut_force_min'] / 1e3:.2f} ... {leg['auxiliary_strut_force_max'] / 1e3:+.2f}",
+            f"{leg['auxiliary_strut_force_min'] / 1e3:.2f} ... "
+            f"{leg['auxiliary_strut_force_max'] / 1e3:+.2f}",
         )
-    lines = [
-        f"after {s['end_time']:.3f} s: {s.get('outcome', 'recorded')}; top acceleration up to {s['top_axial_acceleration_max']:.2f} m/s2"
-    ]
+    outcome = (
+        f"after {s['end_time']:.3f} s: {s.get('outcome', 'recorded')}; "
+        f"top acceleration up to {s['top_axial_acceleration_max']:.2f} m/s2"
+    )
+    lines = [outcome]
     if "stability_margin_min" in s:
         lines.append(
-            f"stability margin at least {s['stability_margin_min']:.3f} m; energy balance within {s['energy_balance_worst']:.1e} J"
+            f"stability margin at least {s['stability_margin_min']:.3f} m; "
+            f"energy balance within {s['energy_balance_worst']:.1e} J"
         )
     if s.get("bottomed_out"):
         lines.append(
-            f"BOTTOMED OUT: the damper of leg {', '.join(map(str, s['bottomed_out']))} met its compression stop"
+            f"BOTTOMED OUT: the damper of leg {', '.join(map(str, s['bottomed_out']))} "
+            "met its compression stop"
         )
     return render(table) + "\n".join(lines) + "\n"
 
@@ -170,13 +178,21 @@ def quantity_table(title: str, quantities: Iterable[Quantity]) -> str:
 
 
 def parameter_records(parameters: Parameters) -> list[dict[str, Any]]:
-    """The same as records for JSON; a bound that is not there is null."""
+    """Every parameter as a record for JSON; an infinite bound is null."""
     records = []
     for name, value in parameters.items():
         q = PARAMETER_QUANTITIES[name]
         lo, hi = (b if math.isfinite(b) else None for b in (q.lo, q.hi))
         records.append(
-            {"name": name, "value": value, "unit": q.unit, "min": lo, "max": hi, "choices": list(q.choices),
-             "source": parameters.source(name), "meaning": q.meaning}
-        )  # fmt: skip
+            {
+                "name": name,
+                "value": value,
+                "unit": q.unit,
+                "min": lo,
+                "max": hi,
+                "choices": list(q.choices),
+                "source": parameters.source(name),
+                "meaning": q.meaning,
+            }
+        )
     return records

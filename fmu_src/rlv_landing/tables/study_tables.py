@@ -1,4 +1,4 @@
-"""What the studies found, as people read it in a terminal."""
+"""The tables of a validation and of an audit."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .landing import counts_line, near_zero_note, new_table, number, percent, re
 
 
 def validation_tables(found: Validation) -> str:
-    """Every printed scalar, the dampers' measures, RRMS where the user gave curves, and the counts."""
+    """Every printed scalar, the dampers' measures, RRMS of measured curves, and the counts."""
     parts = [
         _scalar_table(found.all_comparisons),
         near_zero_note(found.all_comparisons),
@@ -23,15 +23,18 @@ def validation_tables(found: Validation) -> str:
         parts.append(_curve_table(found))
     parts.append(
         f"within 5 / 10 / 20 % of the paper's simulation: {counts_line(found.counts)}\n"
-        f"within 5 / 10 / 20 % of the paper's tests:      {counts_line(found.counts_against_test)}\n"
-        f"the paper's own simulation of its tests:        {counts_line(found.paper_counts_against_test)}\n"
+        "within 5 / 10 / 20 % of the paper's tests:      "
+        f"{counts_line(found.counts_against_test)}\n"
+        "the paper's own simulation of its tests:        "
+        f"{counts_line(found.paper_counts_against_test)}\n"
     )
     return "".join(parts)
 
 
 def _scalar_table(comparisons: Iterable[Comparison]) -> str:
     table = new_table(
-        "every scalar that Yue, Lin, Zheng, Du (2022) print in section 5; errors on the printed simulation's scale",
+        "every scalar that Yue, Lin, Zheng, Du (2022) print in section 5; "
+        "errors on the printed simulation's scale",
         ("id", "event"),
         (
             "simulation",
@@ -61,7 +64,10 @@ def _scalar_table(comparisons: Iterable[Comparison]) -> str:
 
 
 def measure_table(found: Validation) -> str:
-    """Each damper's work in its first compression and rebound; discrepancies beside measured work."""
+    """Each damper's work in its first compression and rebound.
+
+    Discrepancies are given where the user measured the work.
+    """
     table = new_table(
         "first compression and rebound of every damper",
         ("mode", "leg"),
@@ -142,7 +148,8 @@ def _energy_table(found: Audit) -> str:
 def _convergence_table(found: Audit) -> str:
     c = found.convergence
     table = new_table(
-        f"{found.mode}: error against a run at rtol {c.reference:g}, of the largest strut force and stroke",
+        f"{found.mode}: error against a run at rtol {c.reference:g}, "
+        "of the largest strut force and stroke",
         (),
         ("rtol", "steps on the arc", "force", "stroke", "steps of the landing", "force", "stroke"),
     )
@@ -153,9 +160,10 @@ def _convergence_table(found: Audit) -> str:
     for smooth, whole in zip(c.smooth, c.contacts):
         table.add_row(f"{smooth.rtol:.0e}", *cells(smooth), *cells(whole))
     return render(table) + (
-        f"smooth arc: {c.start:.4f} to {c.end:.4f} s, from one and the same state; the error falls by {c.smooth_slope:.2f} decades a "
-        f"decade of tolerance.\nAcross the landing's contacts: {c.contacts_slope:.2f}; there the instant of a contact carries the error, "
-        "so the force is off most.\n\n"
+        f"smooth arc: {c.start:.4f} to {c.end:.4f} s, from one and the same state; "
+        f"the error falls by {c.smooth_slope:.2f} decades a decade of tolerance.\n"
+        f"Across the landing's contacts: {c.contacts_slope:.2f}; there the instant of a contact "
+        "carries the error, so the force is off most.\n\n"
     )
 
 
@@ -176,7 +184,7 @@ def _check_table(found: Audit) -> str:
 
 
 def _verdict(check: Check) -> str:
-    return "not held to it" if not check.applies else "ok" if check.passed else "MISSED"
+    return "does not apply" if not check.applies else "ok" if check.passed else "MISSED"
 
 
 def _rest_line(found: Audit) -> str:
@@ -188,7 +196,8 @@ def _rest_line(found: Audit) -> str:
     )
     strokes = ", ".join(f"{1e3 * r[f'stroke_{leg}']:.2f}" for leg in (1, 2, 3, 4))
     return (
-        f"{found.mode} at rest: {settled}; pitch {r['pitch'] * 57.29577951308232:+.3f} deg, strokes {strokes} mm, "
+        f"{found.mode} at rest: {settled}; pitch {r['pitch'] * 57.29577951308232:+.3f} deg, "
+        f"strokes {strokes} mm, "
         f"stability margin {r['stability_margin']:.3f} m\n\n"
     )
 

@@ -1,4 +1,4 @@
-"""Plans and results of sweeps, as people read them in a terminal."""
+"""The tables of a sweep: its plan, its results and its Sobol indices."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from ..studies.sweep.row import Task
 from ..studies.sweep.sensitivity import Indices
 from ..studies.sweep.summary import Summary
+from ..studies.sweep.sweep_row import Task
 from .landing import new_table, render
 
 FIRST_ROWS = 5
@@ -44,7 +44,8 @@ def summary_table(name: str, summary: Summary) -> str:
     )
     if len(shown) < len(summary.spreads):
         lines.append(
-            f"{len(summary.spreads) - len(shown)} more, of single legs, are in the results and in --json"
+            f"{len(summary.spreads) - len(shown)} more, of single legs, "
+            "are in the results and in --json"
         )
     if summary.failed:
         lines.append(f"{summary.failed} failed; column `error` says why, the first:")
@@ -68,9 +69,7 @@ def indices_table(found: Sequence[Indices], level: float) -> str:
             )
             continue
         if f.used < f.samples:
-            lines.append(
-                f"{f.response}, {f.mode}: {_incomplete(f)}; others took the place of the rest"
-            )
+            lines.append(f"{f.response}, {f.mode}: {_incomplete(f)}; others replace the rest")
         for factor, first, total in zip(f.factors, f.first, f.total):
             table.add_row(
                 f.response.replace("[", r"\["),

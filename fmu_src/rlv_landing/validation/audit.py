@@ -1,5 +1,6 @@
-"""What a landing must conserve, where it must end, and how exact it is: each measured, and held
-against a bound with its reason.
+"""The audit of a landing: conservation laws, rest state and convergence.
+
+Each is measured and compared with a bound that has its reason.
 """
 
 from __future__ import annotations
@@ -33,8 +34,9 @@ SUPPLIED = ("work_external", "work_ground", "work_transverse")
 
 @dataclass(frozen=True)
 class Check:
-    """One value held against its bound; `applies` is False where the bound does not hold for these
-    parameters.
+    """One value and its bound, by the bound's `id`.
+
+    `applies` is False where the bound is not valid for these parameters.
     """
 
     id: str
@@ -43,6 +45,7 @@ class Check:
 
     @property
     def passed(self) -> bool:
+        """Whether the value is on the right side of its bound, or the bound does not apply."""
         bound = BOUNDS[self.id]
         return not self.applies or (
             self.value <= bound.limit if bound.side == "at most" else self.value >= bound.limit
@@ -51,8 +54,14 @@ class Check:
 
 @dataclass(frozen=True)
 class Audit:
-    """The audit of one mode: every check, energies [J] at start and end by term, convergence, and
-    the rest state.
+    """The audit of one landing mode.
+
+    Attributes:
+        mode: The landing mode.
+        checks: Every check.
+        energy: Energies [J] at start and end by term.
+        convergence: The integrator's error by its tolerance.
+        rest: The rest state by name [SI].
     """
 
     mode: str
@@ -67,7 +76,7 @@ class Audit:
         return [c for c in self.checks if not c.passed]
 
     def record(self) -> dict[str, Any]:
-        """The same for JSON."""
+        """The audit for JSON."""
         c = self.convergence
         return {
             "mode": self.mode,
@@ -98,9 +107,10 @@ class Audit:
 
 
 def audit(parameters: Parameters, modes: Iterable[str] = tuple(MODES)) -> list[Audit]:
-    """Audit the landing of `parameters` in every mode.
+    """Audit the landing of `parameters` in every mode of `modes`.
 
-    Raises LandingError for a landing that cannot be run.
+    Raises:
+        LandingError: A landing cannot be run.
     """
     return [_audit(parameters.for_mode(mode)) for mode in modes]
 
@@ -124,7 +134,7 @@ def _audit(parameters: Parameters) -> Audit:
 def _energy(
     parameters: Parameters, until: float
 ) -> tuple[dict[str, tuple[float, float]], list[Check]]:
-    """The balance summed here term by term, and the dampers' liquid mass."""
+    """The energy balance, summed here term by term, and the dampers' liquid mass."""
 
     def balance(rtol: float) -> tuple[History, float]:
         history = Landing(parameters, rtol=rtol).run(until)
@@ -154,8 +164,9 @@ def _energy(
 
 
 def _flight(parameters: Parameters) -> list[Check]:
-    """0.3 s of turning free flight that ends in this landing's touchdown, faster by what the weight
-    gives in that time.
+    """Momentum in 0.3 s of turning free flight.
+
+    The flight's state at touchdown is the landing's, but faster downward by gravity times 0.3 s.
     """
     drop, g = parameters.drop, parameters.ground.gravity
     rate = drop.pitch_rate if abs(drop.pitch_rate) > 0.1 else 0.2
@@ -180,7 +191,7 @@ def _flight(parameters: Parameters) -> list[Check]:
 
 
 def _contact(parameters: Parameters, until: float) -> list[Check]:
-    """Change of momentum against the integral of contact forces and weight."""
+    """The change of momentum against the integral of contact forces and weight."""
     landing = Landing(parameters, rtol=TIGHT_RTOL)
     coarse = np.arange(int(until / SAMPLE_STEP) + 1) * SAMPLE_STEP
     history = _sample(landing, coarse)
@@ -219,8 +230,9 @@ def _sample(landing: Landing, times: Any) -> History:
 
 
 def _rest(parameters: Parameters) -> tuple[dict[str, float], list[Check]]:
-    """The state 10 s after first contact, and since when the vehicle has been settled (NaN: it is
-    not, or has toppled).
+    """The state 10 s after first contact, and the time from which the vehicle has been settled.
+
+    That time is NaN where it is not settled or has toppled.
     """
     history = Landing(parameters, rtol=TIGHT_RTOL).run(
         parameters.drop.contact_time + REST_AFTER, 5e-3

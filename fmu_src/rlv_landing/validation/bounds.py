@@ -1,4 +1,4 @@
-"""The bounds that an audit holds a landing to, each with its reason."""
+"""The bounds of an audit, each with its reason."""
 
 from __future__ import annotations
 
@@ -6,8 +6,14 @@ from typing import Literal, NamedTuple
 
 
 class Bound(NamedTuple):
-    """What a measured value is, its unit, its limit, on which side of it the value must be, and why
-    the limit is what it is.
+    """A bound of a measured value.
+
+    Attributes:
+        what: The value.
+        unit: The value's unit.
+        limit: The limit.
+        side: Whether the value must be at most or at least the limit.
+        reason: The reason for the limit.
     """
 
     what: str
@@ -73,7 +79,7 @@ BOUNDS: dict[str, Bound] = {
         "",
         1e-4,
         "at most",
-        "as above; transverse_load_at = joint drops a moment and is not held to it",
+        "as above; transverse_load_at = joint drops a moment: the bound does not apply",
     ),
     "rest_weight": Bound(
         "vertical contact force at rest beyond the weight, of the weight",
@@ -101,14 +107,15 @@ BOUNDS: dict[str, Bound] = {
         "",
         1e-4,
         "at most",
-        "a hundred times the tolerance, which holds a step",
+        "a hundred times the tolerance, which is for one step",
     ),
     "smooth_slope": Bound(
         "decades of that error a decade of tolerance on a smooth arc",
         "",
         0.5,
         "at least",
-        "1 for an error in proportion to the tolerance; a footpad that turns from sticking to slipping on the way costs part of it",
+        "1 for an error in proportion to the tolerance; "
+        "a footpad that turns from sticking to slipping on the way costs part of it",
     ),
     "contacts_error": Bound(
         "stroke error across contacts at the default rtol, of the largest stroke",

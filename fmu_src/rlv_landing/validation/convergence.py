@@ -1,5 +1,6 @@
-"""How the integrator's error follows its tolerance: on a smooth arc of a landing, and across all of
-its contacts.
+"""The integrator's error as a function of its tolerance.
+
+It is measured on a smooth arc of a landing, and across all of its contacts.
 """
 
 from __future__ import annotations
@@ -24,8 +25,13 @@ AFTER_EVENT, BEFORE_EVENT = 2e-3, 1e-3
 
 @dataclass(frozen=True)
 class Errors:
-    """Largest errors of a run at `rtol` against one at 1e-12, as parts of the landing's largest
-    main strut force and stroke; its steps.
+    """The largest errors of a run against the reference run.
+
+    Attributes:
+        rtol: The run's relative tolerance.
+        steps: The run's steps.
+        force: Error of the main struts' forces, as a part of the landing's largest.
+        stroke: Error of the main struts' strokes, as a part of the landing's largest.
     """
 
     rtol: float
@@ -35,15 +41,23 @@ class Errors:
 
     @property
     def worst(self) -> float:
-        """The larger of both."""
+        """The larger of both errors."""
         return max(self.force, self.stroke)
 
 
 @dataclass(frozen=True)
 class Convergence:
-    """Errors against a run at `reference`: on the arc from `start` to `end` [s], begun from one and
-    the same state, and over the whole landing; `*_slope` is how many decades the worst error falls
-    with a decade of tolerance (1: in proportion).
+    """Errors by tolerance.
+
+    Attributes:
+        reference: The reference run's relative tolerance.
+        start: Start of the smooth arc [s].
+        end: End of the smooth arc [s].
+        smooth: Errors on the arc; all runs start there from one and the same state.
+        contacts: Errors over the whole landing.
+        smooth_slope: Decades of the worst error on the arc per decade of tolerance (1: in
+            proportion).
+        contacts_slope: The same over the whole landing.
     """
 
     reference: float
@@ -56,11 +70,13 @@ class Convergence:
 
 
 def convergence(parameters: Parameters, until: float) -> Convergence:
-    """Measure both, for the landing of `parameters` in their own mode until `until` [s].
+    """Measure the errors for the landing of `parameters` in their own mode, to `until` [s].
 
     The reference runs by the other method, Dormand-Prince, at rtol 1e-12, or at 1e-11 or 1e-10
-    where round-off at a corner of the friction stops it. Raises LandingError where none of them
-    gets through.
+    where round-off at a corner of the friction stops it.
+
+    Raises:
+        LandingError: No reference run succeeds.
     """
     rtol_used, reference, whole = _reference(parameters, until)
     reference.reset()
@@ -91,12 +107,12 @@ def _reference(parameters: Parameters, until: float) -> tuple[float, Landing, Hi
 
 
 def smooth_arc(history: History) -> tuple[float, float]:
-    """Start and end [s] of the longest time in contact without an event, with 2 ms after and 1 ms
-    before one left out.
+    """Start and end [s] of the longest period in contact without an event.
 
-    An event is where the equations have a corner: a footpad touches or leaves, its friction turns,
-    a chamber's pressure passes the other's (the orifice changes area), a strut meets or leaves its
-    stop at full extension.
+    The period ends 1 ms before the next event and starts 2 ms after the last. At an event the
+    equations have a corner: a footpad touches or leaves, its friction turns, a chamber's pressure
+    passes the other's (the orifice changes area), or a strut meets or leaves its stop at full
+    extension.
     """
     signs = []
     for leg in LEGS:

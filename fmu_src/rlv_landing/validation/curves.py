@@ -1,5 +1,6 @@
-"""Measured curves from a CSV file: first column `time` [s], then columns named as our outputs, in
-SI units.
+"""Measured curves from a CSV file.
+
+Its first column is `time` [s]; the others are named as our outputs, in SI units.
 """
 
 from __future__ import annotations
@@ -18,9 +19,10 @@ from ..quantities import OUTPUT_NAMES
 def read_curves(path: str | Path) -> History:
     """The curves of a CSV file as a history.
 
-    Raises LandingError, with line and column: no such file, no `time` in front, a name that is no
-    output or comes twice, a value that is not a finite number, rows of another length, times that
-    do not rise, fewer than two rows.
+    Raises:
+        LandingError: The file is missing, `time` is not its first column, a name is no output or
+            comes twice, a value is not a finite number, a row has another length, times do not
+            rise, or there are fewer than two rows. The message names line and column.
     """
     path = Path(path)
     try:
@@ -33,14 +35,16 @@ def read_curves(path: str | Path) -> History:
     names = _names(path, rows[0] if rows else [])
     if len(rows) < 3:
         raise LandingError(
-            f"{path} has {max(len(rows) - 1, 0)} rows of numbers below its names; measured curves need at least two"
+            f"{path} has {max(len(rows) - 1, 0)} rows of numbers below its names; "
+            "measured curves need at least two"
         )
     values = np.array([_numbers(path, row, names, line) for line, row in enumerate(rows[1:], 2)])
     back = np.flatnonzero(np.diff(values[:, 0]) <= 0.0)
     if len(back):
         line = int(back[0]) + 3
         raise LandingError(
-            f"{path}, row {line}: time = {values[line - 2, 0]:g} s does not come after {values[line - 3, 0]:g} s; sort the rows by time"
+            f"{path}, row {line}: time = {values[line - 2, 0]:g} s does not come after "
+            f"{values[line - 3, 0]:g} s; sort the rows by time"
         )
     return History(values[:, 0].copy(), names[1:], values[:, 1:].copy())
 
@@ -49,16 +53,19 @@ def _names(path: Path, header: list[str]) -> list[str]:
     names = [name.strip() for name in header]
     if not names or names[0] not in ("time", "time [s]"):
         raise LandingError(
-            f"{path} starts with column {names[0] if names else ''!r}; its first column must be time, in seconds"
+            f"{path} starts with column {names[0] if names else ''!r}; "
+            "its first column must be time, in seconds"
         )
     if len(names) < 2:
         raise LandingError(
-            f"{path} has no column beside time; name one as an output, for example leg[1].main_strut.force"
+            f"{path} has no column beside time; name one as an output, "
+            "for example leg[1].main_strut.force"
         )
     for name in names[1:]:
         if name not in OUTPUT_NAMES:
             raise LandingError(
-                f"{path}: {unknown('column', name, OUTPUT_NAMES)}; `rlv-landing parameters --outputs` lists the names"
+                f"{path}: {unknown('column', name, OUTPUT_NAMES)}; "
+                "`rlv-landing parameters --outputs` lists the names"
             )
         if names.count(name) > 1:
             raise LandingError(
@@ -70,7 +77,8 @@ def _names(path: Path, header: list[str]) -> list[str]:
 def _numbers(path: Path, row: list[str], names: list[str], line: int) -> list[float]:
     if len(row) != len(names):
         raise LandingError(
-            f"{path}, row {line}: {len(row)} values for {len(names)} columns; give every column a value in every row"
+            f"{path}, row {line}: {len(row)} values for {len(names)} columns; "
+            "give every column a value in every row"
         )
     numbers = []
     for name, text in zip(names, row):
@@ -80,7 +88,8 @@ def _numbers(path: Path, row: list[str], names: list[str], line: int) -> list[fl
             value = float("nan")
         if not isfinite(value):
             raise LandingError(
-                f"{path}, row {line}: {name} = {text!r} is not a finite number; leave rows with gaps out"
+                f"{path}, row {line}: {name} = {text!r} is not a finite number; "
+                "leave rows with gaps out"
             )
         numbers.append(value)
     return numbers

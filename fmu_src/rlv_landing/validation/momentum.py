@@ -1,5 +1,6 @@
-"""Linear and angular momentum of the whole vehicle, from a history's outputs alone: an account that
-shares no kernel with the core.
+"""Linear and angular momentum of the whole vehicle, from a history's outputs alone.
+
+No kernel of the core is used, so that the result is an independent check.
 """
 
 from __future__ import annotations
@@ -19,8 +20,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Momentum:
-    """Momentum of body and footpads: `x`, `y` [N s] inertial; `about_origin`, `about_cg` [N m s] of
-    the inertial origin and the whole vehicle's CG, clockwise positive as the pitch.
+    """Momentum of body and footpads at every sample, arrays (n,).
+
+    Attributes:
+        x: Along inertial x [N s].
+        y: Along inertial y [N s].
+        about_origin: About the inertial origin, clockwise positive as the pitch [N m s].
+        about_cg: About the whole vehicle's CG, clockwise positive [N m s].
     """
 
     x: Array
@@ -32,8 +38,9 @@ class Momentum:
 def _mass_points(
     history: History, parameters: Parameters
 ) -> list[tuple[float, Array, Array, Array, Array]]:
-    """(mass, x, y, vx, vy) of the body and every footpad; footpads' velocities are solved from both
-    struts' stroke rates.
+    """(mass, x, y, vx, vy) of the body and every footpad, inertial axes.
+
+    Footpads' velocities are solved from both struts' stroke rates.
     """
     v, m, a = parameters.vehicle, parameters.main_strut, parameters.auxiliary_strut
     x, y, pitch, vx, vy, rate = (
@@ -68,8 +75,9 @@ def _mass_points(
 
 
 def momentum(history: History, parameters: Parameters) -> Momentum:
-    """The momentum at every sample; the history needs the landing's own columns, stroke rates
-    included.
+    """The momentum at every sample.
+
+    The history needs the landing's own columns, stroke rates included.
     """
     points = _mass_points(history, parameters)
     total = sum(p[0] for p in points)
@@ -83,8 +91,9 @@ def momentum(history: History, parameters: Parameters) -> Momentum:
 
 
 def impulse(history: History, parameters: Parameters) -> Momentum:
-    """What contact forces and weight have given since the first sample, by Simpson's rule over the
-    samples; `about_cg` is left 0.
+    """The impulse of contact forces and weight since the first sample.
+
+    It is integrated by Simpson's rule over the samples; `about_cg` is left 0.
     """
     g, v = parameters.ground.gravity, parameters.vehicle
     t = history.time

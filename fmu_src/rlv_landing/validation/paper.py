@@ -1,9 +1,8 @@
-"""The numbers that Yue, Lin, Zheng and Du (2022) print in their section 5, and how each is read off
-a landing and judged.
+"""The numbers that Yue, Lin, Zheng and Du (2022) print in section 5, beside those of a landing.
 
-What a printed scalar is taken to mean is written once, in `reading.py`, and the scale on which a
-difference from it is judged here: the printed simulation value itself, or its curve's largest where
-the value is near zero. Times are from the start of the landing, as the paper's axes.
+`reading.py` defines how each is read from a landing. Here is the scale on which a difference is
+judged: the printed simulation value itself, or its curve's largest where the value is near zero.
+Times are from the start of the landing, as the paper's axes.
 """
 
 from __future__ import annotations
@@ -40,8 +39,9 @@ NAN = float("nan")
 
 @dataclass(frozen=True)
 class Scalar:
-    """One printed number: `simulation` and up to two tests, in `unit` (s, N, mm, m/s2); NaN where
-    none is printed.
+    """One printed number.
+
+    `simulation` and up to two tests are in `unit` (s, N, mm, m/s2); NaN where none is printed.
     """
 
     id: str
@@ -56,21 +56,23 @@ class Scalar:
 
     @property
     def test(self) -> float:
-        """Mean of the tests that are printed; NaN where there is none."""
+        """The mean of the printed tests; NaN where there is none."""
         tests = [v for v in (self.test_a, self.test_b) if not np.isnan(v)]
         return sum(tests) / len(tests) if tests else NAN
 
     @property
     def near_zero(self) -> bool:
-        """Whether the printed simulation is below 10 % of the largest printed of the same quantity,
-        unit and mode.
+        """Whether the printed simulation is near zero.
+
+        That is below 10 % of the largest printed of the same quantity, unit and mode.
         """
         return abs(self.simulation) < NEAR_ZERO * _curve_scale(self.quantity, self.unit, self.mode)
 
     @property
     def scale(self) -> float:
-        """What a difference from this scalar is divided by: |simulation|, or its curve's largest
-        printed value where it is near zero.
+        """The scale of differences from this scalar.
+
+        It is |simulation|, or its curve's largest printed value where the scalar is near zero.
         """
         return (
             _curve_scale(self.quantity, self.unit, self.mode)
@@ -88,7 +90,7 @@ class Scalar:
 class Comparison:
     """One printed number beside ours.
 
-    Errors are fractions on the scalar's `scale`, one scale for simulation and test alike.
+    Errors are fractions of the scalar's `scale`, one scale for simulation and test alike.
     """
 
     scalar: Scalar
@@ -130,8 +132,7 @@ def _curve_scale(quantity: str, unit: str, mode: str) -> float:
     )
 
 
-# what each printed scalar is: the id's end, and the leg whose contact it follows where the paper's
-# row names none
+# the reading of each printed scalar by its id, and the leg that is read
 MEANINGS: dict[str, tuple[Callable[[Reading, int], float], int]] = {
     "22-fm1-td": (Reading.contact_force, 1),
     "22-fm1-max": (Reading.maximum_stroke_force, 1),
@@ -187,7 +188,8 @@ MEANINGS: dict[str, tuple[Callable[[Reading, int], float], int]] = {
 def compare(history: History, mode: str) -> list[Comparison]:
     """Every scalar that the paper prints for `mode`, beside ours.
 
-    Raises LandingError where the history is too short.
+    Raises:
+        LandingError: The history is too short.
     """
     reading = Reading(history)
     found = []
@@ -201,11 +203,14 @@ def compare(history: History, mode: str) -> list[Comparison]:
 def counts(
     comparisons: Iterable[Comparison], against: Literal["simulation", "test"] = "simulation"
 ) -> dict[str, int]:
-    """How many scalars are within 5, 10 and 20 % of the paper's simulation or of its test, and of
-    how many.
+    """The numbers of scalars within 5, 10 and 20 % of the paper, and of all that count.
 
-    Scalars that the landing does not have (NaN) count as missed; those without a printed test are
-    left out against tests.
+    Scalars that the landing does not have (NaN) count as missed. Against tests, scalars without a
+    printed test do not count.
+
+    Args:
+        comparisons: Printed numbers beside ours.
+        against: The paper's simulation or its test.
     """
     if against == "test":
         return _counts(c.error_test for c in comparisons if not np.isnan(c.scalar.test))
@@ -213,8 +218,10 @@ def counts(
 
 
 def paper_counts_against_test(mode: str | None = None) -> dict[str, int]:
-    """The paper's own simulation against its tests, counted by the same rule; of one mode, or of
-    both.
+    """The counts of the paper's own simulation against its tests.
+
+    Args:
+        mode: The landing mode; None for both.
     """
     return _counts(
         s.paper_error_test

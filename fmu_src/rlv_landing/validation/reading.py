@@ -1,5 +1,6 @@
-"""How the scalars that the paper prints are read off a landing's history: each method says what the
-paper's words are taken to mean.
+"""The readings of a landing that correspond to the scalars that the paper prints.
+
+Each method states how the paper's words are understood.
 """
 
 from __future__ import annotations
@@ -19,11 +20,13 @@ NAN = float("nan")
 
 
 class Reading:
-    """Reads the printed scalars off one landing's history (at least 0.8 s after the first contact,
-    sampled at 1 kHz or finer).
+    """Reads the printed scalars from one landing's history.
 
-    What a landing does not have, as the peaks of a leg that never touches the ground, is NaN.
-    Raises LandingError where no footpad touches or the history is too short.
+    The history needs at least 0.8 s after the first contact, sampled at 1 kHz or finer. A scalar
+    that the landing does not have, such as the peak of a leg that never touches the ground, is NaN.
+
+    Raises:
+        LandingError: No footpad touches, or the history is too short.
     """
 
     def __init__(self, history: History) -> None:
@@ -36,7 +39,8 @@ class Reading:
         self.end = first + RUN_AFTER_CONTACT
         if self.t[-1] < self.end - 1e-3:
             raise LandingError(
-                f"the history ends at {self.t[-1]:g} s; the paper's scalars need it until {self.end:g} s"
+                f"the history ends at {self.t[-1]:g} s; "
+                f"the paper's scalars need it until {self.end:g} s"
             )
 
     def _contact_time(self, leg: int) -> float:
@@ -56,8 +60,9 @@ class Reading:
     def _peak(
         self, sign: float, values: NDArray[np.float64], start: float, end: float
     ) -> int | None:
-        """Where `values` are largest (sign 1) or smallest (-1) from `start` to `end` [s]; None
-        where there is no sample.
+        """The sample with the largest (`sign` 1) or smallest (-1) of `values`.
+
+        The samples are those from `start` to `end` [s]; None where there is none.
         """
         window = self._between(start, end)
         return int(window[np.argmax(sign * values[window])]) if len(window) else None
@@ -66,11 +71,11 @@ class Reading:
         return NAN if i is None else float(values[i])
 
     def contact_time(self, leg: int) -> float:
-        """The penetration passes 0."""
+        """Time at which the penetration passes 0 [s]."""
         return self._contact[leg] if np.isfinite(self._contact[leg]) else NAN
 
     def contact_force(self, leg: int) -> float:
-        """The most negative strut force within 12 ms after that leg's contact."""
+        """Most negative strut force within 12 ms after that leg's contact [N]."""
         t = self._contact[leg]
         return self._at(
             self._force(leg), self._peak(-1.0, self._force(leg), t, t + FIRST_PEAK_WINDOW)
@@ -94,11 +99,11 @@ class Reading:
         return 1e3 * self._at(self._stroke(leg), self._maximum(leg))
 
     def maximum_stroke_time(self, leg: int) -> float:
-        """Its time [s]."""
+        """Time of the maximum stroke [s]."""
         return self._at(self.t, self._maximum(leg))
 
     def maximum_stroke_force(self, leg: int) -> float:
-        """The strut force then [N]."""
+        """Strut force at the maximum stroke [N]."""
         return self._at(self._force(leg), self._maximum(leg))
 
     def _first(self, condition: NDArray[np.bool_], start: float) -> float:
@@ -106,11 +111,11 @@ class Reading:
         return float(self.t[found[0]]) if len(found) else NAN
 
     def unloaded_from(self, leg: int) -> float:
-        """First time after the maximum stroke with the force above -250 N."""
+        """First time after the maximum stroke with the force above -250 N [s]."""
         return self._first(self._force(leg) > UNLOADED, self.maximum_stroke_time(leg))
 
     def unloaded_until(self, leg: int) -> float:
-        """First time at least 40 ms later with the force below -250 N."""
+        """First time at least 40 ms after `unloaded_from` with the force below -250 N [s]."""
         return self._first(self._force(leg) < UNLOADED, self.unloaded_from(leg) + 0.04)
 
     def _rebound(self, leg: int) -> int | None:
@@ -122,7 +127,7 @@ class Reading:
         return 1e3 * self._at(self._stroke(leg), self._rebound(leg))
 
     def rebound_time(self, leg: int) -> float:
-        """Its time [s]."""
+        """Time of the rebound's smallest stroke [s]."""
         return self._at(self.t, self._rebound(leg))
 
     def settled_stroke(self, leg: int) -> float:
@@ -138,13 +143,14 @@ class Reading:
         )
 
     def first_valley_force(self, leg: int) -> float:
-        """Most negative strut force from 12 ms after contact to 20 ms before the maximum stroke
-        [N].
+        """Most negative strut force of the first valley [N].
+
+        The valley lasts from 12 ms after contact to 20 ms before the maximum stroke.
         """
         return self._at(self._force(leg), self._first_valley(leg))
 
     def first_valley_time(self, leg: int) -> float:
-        """Its time [s]."""
+        """Time of the first valley [s]."""
         return self._at(self.t, self._first_valley(leg))
 
     def auxiliary_compression(self, leg: int) -> float:
@@ -153,18 +159,18 @@ class Reading:
         return self._at(self._auxiliary(leg), self._peak(-1.0, self._auxiliary(leg), t, t + 0.03))
 
     def auxiliary_tension(self, leg: int) -> float:
-        """Largest auxiliary strut force of all [N]."""
+        """Largest auxiliary strut force of the landing [N]."""
         return float(self._auxiliary(leg)[self._between(0.0, self.end)].max())
 
     def _auxiliary_peak_time(self, leg: int, start: float, end: float) -> float:
         return self._at(self.t, self._peak(1.0, self._auxiliary(leg), start, end))
 
     def auxiliary_first_peak_time(self, leg: int) -> float:
-        """Time of the largest auxiliary strut force until 0.306 s."""
+        """Time of the largest auxiliary strut force until 0.306 s [s]."""
         return self._auxiliary_peak_time(leg, self._contact[leg], 0.306)
 
     def auxiliary_second_peak_time(self, leg: int) -> float:
-        """Time of the largest auxiliary strut force from 0.31 to 0.40 s."""
+        """Time of the largest auxiliary strut force from 0.31 to 0.40 s [s]."""
         return self._auxiliary_peak_time(leg, 0.31, 0.40)
 
     def _acceleration(self, leg: int) -> int | None:
@@ -176,11 +182,14 @@ class Reading:
         return self._at(self.h["body.top_axial_acceleration"], self._acceleration(leg))
 
     def acceleration_peak_time(self, leg: int) -> float:
-        """Its time [s]."""
+        """Time of that acceleration [s]."""
         return self._at(self.t, self._acceleration(leg))
 
     def rest_time(self, _leg: int) -> float:
-        """Last time the pitch is more than 0.5 deg off its mean over the last 0.1 s."""
+        """Last time at which the pitch is more than 0.5 deg off its final mean [s].
+
+        The mean is over the last 0.1 s.
+        """
         pitch = self.h["body.pitch"]
         settled = pitch[self._between(self.end - 0.1, self.end)].mean()
         moving = np.flatnonzero((np.abs(pitch - settled) > np.radians(0.5)) & (self.t <= self.end))

@@ -1,14 +1,14 @@
-"""The drop tests' sensor chain, on the history of a landing or of a log.
+"""The drop tests' sensor chain, for the history of a landing or of a log.
 
-Yue et al. (2022), section 4.
+Yue et al. (2022), section 4, state: sampling at 5 kHz; damper strokes smoothed by Savitzky and
+Golay (order 2, window 31); the acceleration along the body's axis low-passed at 100 Hz; forces
+neither smoothed nor filtered.
 
-What the paper states: sampling at 5 kHz; damper strokes smoothed by Savitzky and Golay (order 2,
-window 31); the acceleration along the body's axis low-passed at 100 Hz; forces neither smoothed nor
-filtered. It names neither the low-pass nor its phase: a Butterworth filter of order 4 here
-[closure]. `phase="zero"` (default) runs it forward and backward: peaks keep their times, as they do
-in the centred Savitzky-Golay smoothing, so that all channels share one time axis; a sine at 100 Hz
-is damped by 6 dB, and by 3 dB at 90 Hz. `phase="forward"` runs it once, as a filter in the
-instrument would: 3 dB at 100 Hz, and slow signals come 4.2 ms late.
+The paper names neither the low-pass nor its phase: a Butterworth filter of order 4 here [closure].
+`phase="zero"` (default) runs it forward and backward. Peaks keep their times, as they do in the
+centred Savitzky-Golay smoothing, so that all channels share one time axis. A sine at 100 Hz is
+damped by 6 dB, and by 3 dB at 90 Hz. `phase="forward"` runs it once, as a filter in the instrument
+would: 3 dB at 100 Hz, and slow signals come 4.2 ms late.
 """
 
 from __future__ import annotations
@@ -42,15 +42,15 @@ COUNTED = frozenset(q.name for q in OUTPUT_QUANTITIES if q.kind != "real")
 
 
 def through_sensors(history: History, phase: Phase = "zero") -> History:
-    """What the tests' sensors would have recorded of `history`: all its columns at 5 kHz, strokes
-    smoothed, acceleration low-passed.
+    """A history as the tests' sensors would have recorded it.
 
-    Samples finer than 0.2 ms are decimated behind a zero-phase anti-aliasing filter; coarser ones,
-    down to 1 kHz (a log's), are interpolated by monotone cubics, which adds no peaks of its own but
-    cannot bring back what lies above half their rate.
+    All columns are at 5 kHz, strokes smoothed, the acceleration low-passed. Samples finer than 0.2
+    ms are decimated behind a zero-phase anti-aliasing filter. Coarser ones, down to 1 kHz (a
+    log's), are interpolated by monotone cubics, which add no peaks but cannot bring back what lies
+    above half their rate.
 
     Raises:
-        LandingError: a value is not finite, samples are missing, uneven, coarser than 1 ms or fewer
+        LandingError: A value is not finite, samples are missing, uneven, coarser than 1 ms or fewer
             than 31 at 5 kHz; or the phase is unknown.
     """
     if phase not in ("zero", "forward"):
@@ -58,7 +58,8 @@ def through_sensors(history: History, phase: Phase = "zero") -> History:
     sampled = resample(history)
     if len(sampled) < STROKE_WINDOW:
         raise LandingError(
-            f"the history has {len(sampled)} samples at {SAMPLING:g} Hz, the smoothing of strokes needs {STROKE_WINDOW}; run it longer"
+            f"the history has {len(sampled)} samples at {SAMPLING:g} Hz, "
+            f"the smoothing of strokes needs {STROKE_WINDOW}; run it longer"
         )
     data = sampled.data.copy()
     for i, name in enumerate(sampled.names):
@@ -70,16 +71,17 @@ def through_sensors(history: History, phase: Phase = "zero") -> History:
 
 
 def smooth_stroke(stroke: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Savitzky-Golay smoothing (order 2, window 31) of samples at 5 kHz; the ends follow the last
-    window's parabola. [paper]
+    """Savitzky-Golay smoothing (order 2, window 31) of a stroke sampled at 5 kHz.
+
+    The ends follow the last window's parabola. [paper]
     """
     return np.asarray(signal.savgol_filter(stroke, STROKE_WINDOW, STROKE_ORDER, mode="interp"))
 
 
 def low_pass(acceleration: NDArray[np.float64], phase: Phase = "zero") -> NDArray[np.float64]:
-    """Low-pass at 100 Hz of samples at 5 kHz: Butterworth, order 4, from rest at the first sample.
+    """Low-pass at 100 Hz of samples at 5 kHz: Butterworth, order 4.
 
-    [paper: cut-off; closure: filter]
+    It starts from rest at the first sample. [paper: cut-off; closure: filter]
     """
     sections = signal.butter(FILTER_ORDER, CUTOFF, fs=SAMPLING, output="sos")
     if phase == "zero":
@@ -93,12 +95,14 @@ def low_pass(acceleration: NDArray[np.float64], phase: Phase = "zero") -> NDArra
 def resample(history: History, rate: float = SAMPLING) -> History:
     """`history` at `rate` [Hz], from its first to its last time.
 
-    Raises LandingError as `through_sensors` does.
+    Raises:
+        LandingError: As `through_sensors`.
     """
     step = even_step(history)
     if step > COARSEST_STEP * (1.0 + STEP_TOLERANCE):
         raise LandingError(
-            f"the history's samples are {step:g} s apart, the sensor chain needs {COARSEST_STEP:g} s or less; run or record it finer"
+            f"the history's samples are {step:g} s apart, "
+            f"the sensor chain needs {COARSEST_STEP:g} s or less; run or record it finer"
         )
     ratio = step * rate
     start = history.time[0]
@@ -114,8 +118,8 @@ def resample(history: History, rate: float = SAMPLING) -> History:
         share = Fraction(ratio).limit_denominator(1000)
         if abs(float(share) / ratio - 1.0) > STEP_TOLERANCE:
             raise LandingError(
-                f"the history's samples are {step:.9g} s apart, which no ratio of small numbers brings to {rate:g} Hz; "
-                "run it with --every 2e-5"
+                f"the history's samples are {step:.9g} s apart, which no ratio of small numbers "
+                f"brings to {rate:g} Hz; run it with --every 2e-5"
             )
         data = signal.resample_poly(
             history.data, share.numerator, share.denominator, axis=0, padtype="line"
@@ -128,8 +132,9 @@ def resample(history: History, rate: float = SAMPLING) -> History:
 def even_step(history: History) -> float:
     """The time between samples [s], even to 0.1 % (times that were rounded).
 
-    Raises LandingError, with time and value, where a value is not finite, or times are uneven, go
-    back or have a gap.
+    Raises:
+        LandingError: A value is not finite, or times are uneven, go back or have a gap; the message
+            names time and value.
     """
     time = history.time
     if len(time) < 2:
@@ -139,7 +144,8 @@ def even_step(history: History) -> float:
     wrong = np.argwhere(~np.isfinite(time))
     if len(wrong):
         raise LandingError(
-            f"time of sample {wrong[0][0]} = {time[wrong[0][0]]:g} s is not finite; remove that sample's row and resample"
+            f"time of sample {wrong[0][0]} = {time[wrong[0][0]]:g} s is not finite; "
+            "remove that sample's row and resample"
         )
     steps = np.diff(time)
     step = float(np.median(steps))
@@ -155,8 +161,9 @@ def even_step(history: History) -> float:
             else "goes on by"
         )
         raise LandingError(
-            f"time {what} {abs(steps[i]):g} s at t = {time[i]:g} s where samples are {step:g} s apart; the sensor chain needs even "
-            "sampling without gaps: cut the history there, or resample it"
+            f"time {what} {abs(steps[i]):g} s at t = {time[i]:g} s "
+            f"where samples are {step:g} s apart; the sensor chain needs even sampling "
+            "without gaps: cut the history there, or resample it"
         )
     missing = np.argwhere(~np.isfinite(history.data))
     if len(missing):
@@ -164,6 +171,7 @@ def even_step(history: History) -> float:
         name = history.names[column]
         value = f"{history.data[row, column]:g} {UNITS.get(name, '')}".rstrip()
         raise LandingError(
-            f"{name} = {value} at t = {time[row]:g} s; the sensor chain needs finite values: cut the history there, or fill it"
+            f"{name} = {value} at t = {time[row]:g} s; the sensor chain needs finite values: "
+            "cut the history there, or fill it"
         )
     return float(time[-1] - time[0]) / (len(time) - 1)

@@ -1,5 +1,6 @@
-"""Section 5 of the paper anew: every printed scalar and the summary measures, beside simulation,
-tests, and the user's curves.
+"""Validation: the scalars and measures of the paper's section 5 beside those of landings.
+
+The user's own measured curves may be compared as well.
 """
 
 from __future__ import annotations
@@ -21,15 +22,16 @@ from .sensors import SAMPLING, Phase, even_step, through_sensors
 
 Bounds = tuple[int, int, int]
 
-# What `yue2022-figures` is stated to reach: scalars within 5, 10, 20 % of the paper's simulation,
-# by mode.
+# the counts that `yue2022-figures` is stated to reach: scalars within 5, 10, 20 % of the paper's
+# simulation, by mode
 STATED: dict[str, Bounds] = {"2-2": (18, 18, 20), "1-2-1": (20, 24, 28)}
 
 
 @dataclass(frozen=True)
 class CurveMeasure:
-    """How far a landing's curve is from a measured one: RRMS as it is, and with the landing through
-    the sensor chain (fractions).
+    """The distance of a landing's curve from a measured one, as RRMS (fractions).
+
+    `rrms` is of the curve as it is, `rrms_sensors` of the landing through the sensor chain.
     """
 
     mode: str
@@ -40,8 +42,16 @@ class CurveMeasure:
 
 @dataclass(frozen=True)
 class Validation:
-    """What a validation found, by mode: histories at 5 kHz and through the sensor chain,
-    comparisons, dampers' work; measured likewise.
+    """The results of a validation, by landing mode.
+
+    Attributes:
+        histories: The landings at 5 kHz.
+        sensed: The same through the sensor chain.
+        comparisons: The paper's scalars beside ours.
+        work: The dampers' work by leg.
+        measured: The user's measured curves.
+        measured_work: The dampers' work in these.
+        curves: The distance of each measured curve.
     """
 
     histories: Mapping[str, History]
@@ -59,27 +69,28 @@ class Validation:
 
     @property
     def all_comparisons(self) -> list[Comparison]:
-        """Those of all modes, in the paper's order."""
+        """The comparisons of all modes, in the paper's order."""
         return [c for mode in self.modes for c in self.comparisons[mode]]
 
     @property
     def counts(self) -> dict[str, int]:
-        """Scalars within 5, 10, 20 % of the paper's simulation."""
+        """The numbers of scalars within 5, 10, 20 % of the paper's simulation."""
         return counts(self.all_comparisons)
 
     @property
     def counts_against_test(self) -> dict[str, int]:
-        """Scalars within 5, 10, 20 % of the paper's tests."""
+        """The numbers of scalars within 5, 10, 20 % of the paper's tests."""
         return counts(self.all_comparisons, "test")
 
     @property
     def paper_counts_against_test(self) -> dict[str, int]:
-        """The same for the paper's own simulation."""
+        """The same numbers for the paper's own simulation."""
         return paper_counts_against_test(self.modes[0] if len(self.modes) == 1 else None)
 
     def discrepancies(self, mode: str, leg: int) -> tuple[float, float] | None:
-        """Discrepancy [%] of the energies absorbed and dissipated from the measured ones, where the
-        user gave force and stroke.
+        """Discrepancies [%] of the energies absorbed and dissipated from the measured ones.
+
+        None where the user did not give force and stroke.
         """
         ours, measured = self.work[mode].get(leg), self.measured_work.get(mode, {}).get(leg)
         if ours is None or measured is None:
@@ -89,7 +100,7 @@ class Validation:
         )
 
     def record(self) -> dict[str, Any]:
-        """All of it for JSON; what is not there is null.
+        """The results for JSON; missing values are null.
 
         Errors and RRMS are fractions, discrepancies per cent.
         """
@@ -133,11 +144,18 @@ def validate(
     phase: Phase = "zero",
     rtol: float = DEFAULT_RTOL,
 ) -> Validation:
-    """Land `parameters` in every mode and set the landing beside the paper, and beside the user's
-    `measured` curves by mode.
+    """Land in every mode and set the landings beside the paper and measured curves.
 
-    Raises LandingError: no contact, a landing that cannot be run, measured curves that are uneven
-        or do not overlap the landing.
+    Args:
+        parameters: The parameters.
+        modes: The landing modes.
+        measured: Measured curves by mode.
+        phase: Phase of the sensors' low-pass.
+        rtol: Relative tolerance of the integrator.
+
+    Raises:
+        LandingError: No footpad touches, a landing cannot be run, or measured curves are uneven or
+            do not overlap the landing.
     """
     measured = measured or {}
     histories: dict[str, History] = {}
@@ -190,19 +208,22 @@ def _curve_measures(
 
 
 def parse_bounds(text: str) -> Bounds:
-    """`42/46/48` as the least counts within 5, 10 and 20 %.
+    """The least counts within 5, 10 and 20 % from a text such as `42/46/48`.
 
-    Raises LandingError for anything else, and where they fall.
+    Raises:
+        LandingError: The text is anything else, or the counts fall.
     """
     match = re.fullmatch(r"\s*(\d+)\s*/\s*(\d+)\s*/\s*(\d+)\s*", text)
     if match is None:
         raise LandingError(
-            f"--require {text!r} is not three counts; write the least within 5, 10 and 20 %: 36/41/45, or none"
+            f"--require {text!r} is not three counts; "
+            "write the least within 5, 10 and 20 %: 36/41/45, or none"
         )
     a, b, c = (int(n) for n in match.groups())
     if not a <= b <= c:
         raise LandingError(
-            f"--require {text!r} falls: what is within 5 % is within 10 % too; write them rising, for example 36/41/45"
+            f"--require {text!r} falls: what is within 5 % is within 10 % too; "
+            "write them rising, for example 36/41/45"
         )
     return a, b, c
 
@@ -216,14 +237,17 @@ def stated_bounds(modes: Iterable[str]) -> Bounds:
 def missed_bounds(found: Mapping[str, int], bounds: Bounds) -> list[str]:
     """A line for every count below its bound.
 
-    Raises LandingError where a bound asks for more scalars than there are.
+    Raises:
+        LandingError: A bound is above the number of scalars.
     """
     if bounds[-1] > found["of"]:
         raise LandingError(
-            f"--require asks for {bounds[-1]} scalars within 20 %, there are {found['of']}; ask for at most that"
+            f"--require asks for {bounds[-1]} scalars within 20 %, there are {found['of']}; "
+            "ask for at most that"
         )
     return [
-        f"within {level} % of the paper's simulation: {found[f'within_{level}']} of {found['of']}, at least {bound} are required"
+        f"within {level} % of the paper's simulation: {found[f'within_{level}']} of {found['of']}, "
+        f"at least {bound} are required"
         for level, bound in zip(LEVELS, bounds)
         if found[f"within_{level}"] < bound
     ]

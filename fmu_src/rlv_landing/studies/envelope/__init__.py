@@ -1,0 +1,1 @@
+"""Stability envelopes: the boundary between stable and lost landings in two quantities."""

@@ -1,8 +1,8 @@
-"""The boundary between two verdicts in a plane, from as few verdicts as can be: cells are halved
-where their corners differ, then the edges that the boundary crosses.
+"""The boundary between two verdicts in a plane, found with few verdicts.
 
-Points are whole numbers on one fine lattice, so that none is judged twice and the result does not
-depend on who judges.
+Cells are halved where their corners differ, then the edges that the boundary crosses. Points are
+whole numbers on one fine lattice: no point is judged twice, and the result does not depend on the
+order of judging.
 """
 
 from __future__ import annotations
@@ -20,8 +20,13 @@ Judge = Callable[[Sequence[Point]], Sequence[bool]]
 
 @dataclass(frozen=True)
 class Lattice:
-    """`cells` coarse cells along each axis, halved `levels` times where their corners differ; along
-    x and y a coarse cell is `steps` units of the fine lattice, a power of two at least 2^levels.
+    """Coarse cells, the cells that they are halved into, and the fine lattice of points.
+
+    Attributes:
+        cells: Coarse cells along each axis.
+        levels: How many times cells are halved where their corners differ.
+        steps: Units of the fine lattice along x and y in a coarse cell, a power of two of at least
+            2^levels.
     """
 
     cells: int
@@ -35,7 +40,7 @@ class Lattice:
 
     @property
     def uniform(self) -> int:
-        """Points of the whole fine lattice: what a uniform grid of this resolution takes."""
+        """The number of points of the whole fine lattice: a uniform grid of this resolution."""
         return (self.size[0] + 1) * (self.size[1] + 1)
 
 
@@ -48,7 +53,7 @@ class Crossing:
 
     @property
     def middle(self) -> tuple[float, float]:
-        """Where the boundary is taken to be: at most half a unit off."""
+        """The middle of the edge, at most half a unit off the boundary."""
         return 0.5 * (self.stable[0] + self.lost[0]), 0.5 * (self.stable[1] + self.lost[1])
 
 
@@ -62,9 +67,9 @@ class Cell:
 
 
 class Tracer:
-    """Finds the boundary of what `judge` finds true (stable) on a lattice.
+    """Traces the boundary between stable and lost points of a lattice.
 
-    `verdicts` has every point that was judged.
+    `judge` returns True for each point that is stable. `verdicts` has every point that was judged.
     """
 
     def __init__(self, lattice: Lattice, judge: Judge) -> None:
@@ -76,9 +81,11 @@ class Tracer:
         self._side = side
 
     def trace(self) -> list[list[Crossing]]:
-        """The boundary's lines, each in order; a closed one ends at its first crossing.
+        """Trace the boundary.
 
-        None where all verdicts are the same.
+        Returns:
+            The boundary's lines, each in order; a closed line ends at its first crossing. The list
+            is empty where all verdicts are the same.
         """
         cells = self._refine()
         lines = contourpy.contour_generator(z=self._filled(cells)).lines(0.5)
@@ -86,17 +93,18 @@ class Tracer:
         found = self._bisect({edge for line in edges for edge in line})
         return [[found[edge] for edge in line] for line in edges]
 
-    def _ask(self, points: Iterable[Point]) -> None:
+    def _judge_new(self, points: Iterable[Point]) -> None:
         new = sorted(set(points) - self.verdicts.keys())
         self.verdicts.update(zip(new, self._judge(new)))
 
     def _refine(self) -> set[Cell]:
-        """Halve every cell on whose border verdicts differ, hanging points included, down to the
-        finest level.
+        """Halve every cell on whose border verdicts differ, down to the finest level.
+
+        Hanging points (corners of smaller neighbours) count as points of the border.
         """
         n = self.lattice.cells
         cells = {Cell(0, i, j) for i, j in product(range(n), repeat=2)}
-        self._ask(corner for cell in cells for corner in self._border(cell, 1))
+        self._judge_new(corner for cell in cells for corner in self._border(cell, 1))
         while True:
             mixed = [
                 cell for cell in cells if cell.level < self.lattice.levels and self._differ(cell)
@@ -110,7 +118,7 @@ class Tracer:
                 for a, b in product((0, 1), repeat=2)
             ]
             cells.update(halves)
-            self._ask(corner for cell in halves for corner in self._border(cell, 1))
+            self._judge_new(corner for cell in halves for corner in self._border(cell, 1))
 
     def _border(self, cell: Cell, parts: int) -> Iterable[Point]:
         """Points on the cell's border, `parts` to an edge."""
@@ -127,8 +135,9 @@ class Tracer:
         return len({self.verdicts[p] for p in self._border(cell, parts) if p in self.verdicts}) > 1
 
     def _filled(self, cells: set[Cell]) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
-        """1 stable, 0 lost at every corner of the finest cells; the whole of a larger cell has the
-        verdict of its border.
+        """1 stable, 0 lost at every corner of the finest cells.
+
+        The whole of a larger cell has the verdict of its border.
         """
         z = np.zeros((self._side + 1, self._side + 1))
         for cell in sorted(cells):
@@ -142,9 +151,7 @@ class Tracer:
         return z
 
     def _edge(self, x: float, y: float) -> Crossing:
-        """The edge of a finest cell in whose middle a line of contourpy's crosses, its stable end
-        first.
-        """
+        """The edge of a finest cell in whose middle a line of contourpy's crosses it."""
         a, b = (
             (int(way(x)) * self._spacing[0], int(way(y)) * self._spacing[1])
             for way in (np.floor, np.ceil)
@@ -152,7 +159,7 @@ class Tracer:
         return Crossing(a, b) if self.verdicts[a] else Crossing(b, a)
 
     def _bisect(self, edges: set[Crossing]) -> dict[Crossing, Crossing]:
-        """Each edge with the neighbours on the fine lattice between which the boundary crosses it."""
+        """Each edge with the two neighbours on the fine lattice between which the boundary is."""
         narrowed = {edge: edge for edge in edges}
         while True:
             middles = {}
@@ -162,7 +169,7 @@ class Tracer:
                     middles[edge] = (x, y)
             if not middles:
                 return narrowed
-            self._ask(middles.values())
+            self._judge_new(middles.values())
             for edge, middle in middles.items():
                 now = narrowed[edge]
                 narrowed[edge] = (

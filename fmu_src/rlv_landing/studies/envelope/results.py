@@ -1,4 +1,4 @@
-"""An envelope as JSON and CSV, and the runs of its boundary that share a critical condition."""
+"""An envelope as JSON and CSV, and the parts of its boundary that share a critical condition."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ..outcome import SEVERITY
-from .landed import FAILED, Landed
+from .judged_landing import FAILED, JudgedLanding
 from .search import Critical, Envelope, Family
 
 NAMES = (*SEVERITY, FAILED)
@@ -20,28 +20,28 @@ COLUMNS = ("condition", "outcome", "outcome_time", "leg", "limit", "limit_leg", 
 
 
 @dataclass(frozen=True)
-class Run:
+class Stretch:
     """Consecutive points of a boundary line with the same critical `condition`."""
 
     condition: str
     points: tuple[Critical, ...]
 
 
-def runs(line: Sequence[Critical]) -> list[Run]:
-    """The runs of a boundary line, in order."""
+def stretches(line: Sequence[Critical]) -> list[Stretch]:
+    """The stretches of a boundary line, in order."""
     return [
-        Run(condition, tuple(points))
-        for condition, points in groupby(line, lambda c: c.landed.condition)
+        Stretch(condition, tuple(points))
+        for condition, points in groupby(line, lambda c: c.landing.condition)
     ]
 
 
 def verdict(family: Family, criterion: str) -> str:
-    """In a word: a boundary, all stable, or all lost."""
+    """The verdict in words: boundary found, all stable, or all lost."""
     if family.lines:
         return "boundary found"
     return (
         "all lost"
-        if all(landed.lost(criterion) for _, _, landed in family.landings)
+        if all(landing.lost(criterion) for _, _, landing in family.landings)
         else "all stable"
     )
 
@@ -59,43 +59,46 @@ def record(envelope: Envelope) -> dict[str, Any]:
                 "values": dict(f.values),
                 "verdict": verdict(f, study.criterion),
                 "outcomes": {name: f.count(name) for name in NAMES},
-                "boundary": [[_critical(c) for c in line] for line in f.lines],
-                "landings": [{"x": x, "y": y, **_landed(landed)} for x, y, landed in f.landings],
+                "boundary": [[_critical_record(c) for c in line] for line in f.lines],
+                "landings": [
+                    {"x": x, "y": y, **_landing_record(landing)} for x, y, landing in f.landings
+                ],
             }
             for f in envelope.families
         ],
     }
 
 
-def _critical(c: Critical) -> dict[str, Any]:
+def _critical_record(c: Critical) -> dict[str, Any]:
     return {
         "x": c.x,
         "y": c.y,
         "stable": c.stable,
         "lost": c.lost,
-        "condition": c.landed.condition,
-        **_landed(c.landed),
+        "condition": c.landing.condition,
+        **_landing_record(c.landing),
     }
 
 
-def _landed(landed: Landed) -> dict[str, Any]:
+def _landing_record(landing: JudgedLanding) -> dict[str, Any]:
     return {
         k: None if isinstance(v, float) and not isfinite(v) else v
-        for k, v in asdict(landed).items()
+        for k, v in asdict(landing).items()
     }
 
 
 def write_json(envelope: Envelope, path: Path) -> None:
-    """Write `record`."""
+    """Write `record` to a JSON file."""
     path.write_text(
         json.dumps(record(envelope), indent=1, allow_nan=False) + "\n", encoding="utf-8"
     )
 
 
 def write_csv(envelope: Envelope, path: Path) -> None:
-    """Write the boundary's points, a line each: the family's values, the number of the line, the
-    point, the last landing that holds and the first that is lost beside it, and what became of the
-    latter. SI units.
+    """Write the boundary's points to a CSV file, a line for each, in SI units.
+
+    The columns are the family's values, the number of the boundary line, the point, the last stable
+    landing and the first lost one beside it, and the outcome of the latter.
     """
     study = envelope.study
     family_names = list(envelope.families[0].values)
@@ -114,11 +117,17 @@ def write_csv(envelope: Envelope, path: Path) -> None:
         for family in envelope.families:
             for number, line in enumerate(family.lines, 1):
                 for c in line:
-                    limit = c.landed.first_limit
+                    limit = c.landing.first_limit
                     passed = (
                         (limit.name, limit.leg, limit.time) if limit is not None else ("", "", "")
                     )
-                    told = (c.landed.condition, c.landed.name, c.landed.time, c.landed.leg, *passed)
+                    outcome = (
+                        c.landing.condition,
+                        c.landing.name,
+                        c.landing.time,
+                        c.landing.leg,
+                        *passed,
+                    )
                     writer.writerow(
-                        [*family.values.values(), number, c.x, c.y, *c.stable, *c.lost, *told]
+                        [*family.values.values(), number, c.x, c.y, *c.stable, *c.lost, *outcome]
                     )

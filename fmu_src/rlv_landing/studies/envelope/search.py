@@ -1,6 +1,4 @@
-"""The landing-stability boundary in two quantities, and the critical condition at every point of
-it.
-"""
+"""The landing-stability boundary in two quantities, with the critical condition along it."""
 
 from __future__ import annotations
 
@@ -9,42 +7,49 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 from .boundary import Crossing, Point, Tracer
-from .landed import Landed, land
+from .judged_landing import JudgedLanding, judged_landing
 from .store import Store
 from .study import EnvelopeStudy
 
 
 @dataclass(frozen=True)
 class Critical:
-    """A point of the boundary: `x`, `y` [SI] halfway between the last landing that holds and the
-    first that is lost; of the two, what became of the latter.
+    """A point of the boundary.
+
+    Attributes:
+        x: Halfway between the last stable landing and the first lost one [SI].
+        y: The same along the vertical axis [SI].
+        stable: The last stable landing's (x, y) [SI].
+        lost: The first lost landing's (x, y) [SI].
+        landing: The first lost landing.
     """
 
     x: float
     y: float
     stable: tuple[float, float]
     lost: tuple[float, float]
-    landed: Landed
+    landing: JudgedLanding
 
 
 @dataclass(frozen=True)
 class Family:
-    """One family's result: boundary `lines` of critical points, and every landing (x, y, landed)."""
+    """One family's result: boundary `lines` of critical points, and all `landings`.
+
+    A landing is (x, y, judged landing), x and y in SI.
+    """
 
     values: Mapping[str, float | str]
     lines: tuple[tuple[Critical, ...], ...]
-    landings: tuple[tuple[float, float, Landed], ...]
+    landings: tuple[tuple[float, float, JudgedLanding], ...]
 
     def count(self, name: str) -> int:
         """Landings with this outcome."""
-        return sum(landed.name == name for _, _, landed in self.landings)
+        return sum(landing.name == name for _, _, landing in self.landings)
 
 
 @dataclass(frozen=True)
 class Envelope:
-    """The families of a study; `landings` that it took, `uniform` that a uniform grid of the same
-    resolution takes.
-    """
+    """The results of a study, family by family."""
 
     study: EnvelopeStudy
     families: tuple[Family, ...]
@@ -56,9 +61,7 @@ class Envelope:
 
     @property
     def uniform(self) -> int:
-        """Landings of a uniform grid whose spacing is the resolution reached, all families
-        together.
-        """
+        """Landings of a uniform grid of the resolution reached, all families together."""
         return self.study.lattice.uniform * len(self.families)
 
 
@@ -68,12 +71,18 @@ def envelope(
     store: Store | None = None,
     progress: Callable[[int, int], object] | None = None,
 ) -> Envelope:
-    """The boundary of every family. The result does not depend on `workers`, the number of threads.
+    """Find the boundary of every family.
 
-    `progress` is told, after each landing, the family's number and the landings so far.
-    Interrupted, it stops after the landings under way; those made are in the `store`, and a study
-    whose landings it has does not make them again. Raises LandingError where values within the
-    axes' ranges make no landing.
+    Interrupted, it stops after the landings under way.
+
+    Args:
+        study: The study.
+        workers: Number of threads; the result does not depend on it.
+        store: Landings made before, which are not made again; every new one is added.
+        progress: Called after each landing with the family's number and the landings so far.
+
+    Raises:
+        LandingError: Values within the axes' ranges make no landing.
     """
     kept = store if store is not None else Store(study)
     with ThreadPoolExecutor(workers) as pool:
@@ -96,25 +105,25 @@ def _family(
 ) -> Family:
     values = study.families[k]
 
-    def one(point: Point) -> Landed:
-        x, y = study.place(*point)
-        return land(study, {**values, study.x.name: x, study.y.name: y})
+    def land(point: Point) -> JudgedLanding:
+        x, y = study.values_at(*point)
+        return judged_landing(study, {**values, study.x.name: x, study.y.name: y})
 
     def judge(points: Sequence[Point]) -> list[bool]:
         new = [p for p in points if (k, p) not in store.found]
-        for point, landed in zip(new, pool.map(one, new)):
-            store.add(k, point, landed)
+        for point, landing in zip(new, pool.map(land, new)):
+            store.add(k, point, landing)
             if progress is not None:
                 progress(k, len(store.found))
         return [not store.found[k, p].lost(study.criterion) for p in points]
 
     def critical(crossing: Crossing) -> Critical:
-        ends = study.place(*crossing.stable), study.place(*crossing.lost)
-        return Critical(*study.place(*crossing.middle), *ends, store.found[k, crossing.lost])
+        ends = study.values_at(*crossing.stable), study.values_at(*crossing.lost)
+        return Critical(*study.values_at(*crossing.middle), *ends, store.found[k, crossing.lost])
 
     tracer = Tracer(study.lattice, judge)
     lines = tracer.trace()
     landings = tuple(
-        (*study.place(*point), store.found[k, point]) for point in sorted(tracer.verdicts)
+        (*study.values_at(*point), store.found[k, point]) for point in sorted(tracer.verdicts)
     )
     return Family(values, tuple(tuple(critical(c) for c in line) for line in lines), landings)

@@ -1,6 +1,4 @@
-"""The landings of an envelope, kept so that none is made twice and an interrupted study can be
-taken up again.
-"""
+"""The landings of an envelope, kept so that none is made twice and a study can be resumed."""
 
 from __future__ import annotations
 
@@ -13,29 +11,31 @@ from typing import TextIO
 from ... import __version__
 from ...errors import LandingError
 from .boundary import Point
-from .landed import Landed
+from .judged_landing import JudgedLanding
 from .study import EnvelopeStudy
 
 
 class Store:
-    """Every landing made so far, by family and place; in a file as well, a line each, so that a
-    study can be taken up again.
+    """Every landing made so far, by family and point.
 
-    Raises LandingError for a file of another study or version, or one that exists and is not to be
-    resumed.
+    With a `path` they are also in a file, a line each, and `resume` reads what is there.
+
+    Raises:
+        LandingError: The file is of another study or version, or it exists and `resume` is not
+            given.
     """
 
     def __init__(
-        self, study: EnvelopeStudy, path: Path | None = None, resume: bool = False
+        self, study: EnvelopeStudy, path: Path | None = None, *, resume: bool = False
     ) -> None:
-        told = json.dumps({"version": __version__, **study.record()}, sort_keys=True)
-        header = json.dumps({"study": hashlib.sha256(told.encode()).hexdigest()})
-        self.found: dict[tuple[int, Point], Landed] = {}
+        decisive = json.dumps({"version": __version__, **study.record()}, sort_keys=True)
+        header = json.dumps({"study": hashlib.sha256(decisive.encode()).hexdigest()})
+        self.found: dict[tuple[int, Point], JudgedLanding] = {}
         self._file: TextIO | None = None
         if path is None:
             return
         if path.exists() and not resume:
-            raise LandingError(f"{path} exists; --resume goes on with it, or name another folder")
+            raise LandingError(f"{path} exists; --resume continues with it, or name another folder")
         self._file = path.open("a+", encoding="ascii", newline="\n")
         self._file.seek(0)
         lines = self._file.read().splitlines(keepends=True)
@@ -47,22 +47,22 @@ class Store:
                 f"{path} holds landings of another study or version; name another folder"
             )
         elif not lines[-1].endswith("\n"):
-            # it was being written when the last run was killed
+            # the last run was killed while it wrote this line
             self._file.truncate(sum(map(len, lines[:-1])))
             del lines[-1]
         for line in lines[1:]:
             record = json.loads(line)
-            self.found[record["family"], (record["i"], record["j"])] = Landed.from_record(
+            self.found[record["family"], (record["i"], record["j"])] = JudgedLanding.from_record(
                 record["landed"]
             )
 
-    def add(self, family: int, place: Point, landed: Landed) -> None:
-        """Keep a landing."""
-        self.found[family, place] = landed
+    def add(self, family: int, point: Point, landing: JudgedLanding) -> None:
+        """Add a landing; it is in the file when this returns."""
+        self.found[family, point] = landing
         if self._file is not None:
             self._file.write(
                 json.dumps(
-                    {"family": family, "i": place[0], "j": place[1], "landed": asdict(landed)}
+                    {"family": family, "i": point[0], "j": point[1], "landed": asdict(landing)}
                 )
                 + "\n"
             )

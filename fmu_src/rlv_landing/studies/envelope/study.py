@@ -1,6 +1,6 @@
-"""What an envelope is asked for: two axes, families, what counts as lost.
+"""The study of an envelope: two axes, families, and the criterion by which a landing is lost.
 
-Read from TOML, checked before anything lands.
+It is read from TOML and checked before anything lands.
 """
 
 from __future__ import annotations
@@ -18,11 +18,12 @@ from ...parameters import PARAMETER_QUANTITIES, Parameters, check_value
 from ...presets import parse_value, to_toml
 from ...quantities import Quantity
 from .. import toml_keys
-from ..outcome import DEFAULT_SLIDE, LIMITS
+from ..limits import LIMITS
+from ..outcome import DEFAULT_SLIDE
 from ..sweep.factors import VARIABLES, variable
 from .boundary import Lattice
 
-# what is lost, by criterion: each counts what is severer, too
+# the landings that are lost by each criterion, which includes the severer outcomes
 CRITERIA = {
     "toppled": "the vehicle topples",
     "bottomed out": "a damper meets its stop, or the vehicle topples",
@@ -36,7 +37,7 @@ NUMBERS = {
     for q in (
         Quantity(
             "s",
-            "time at which a landing that is neither at rest nor toppled is given up",
+            "latest end of a landing that is neither at rest nor toppled",
             0.1,
             3600.0,
             name="until",
@@ -48,7 +49,7 @@ NUMBERS = {
         ),
         Quantity(
             "m",
-            "what a footpad may move and has not slid",
+            "largest distance that a footpad may move without having slid",
             0.0,
             1e3,
             name="slide",
@@ -62,10 +63,11 @@ AXIS_KEYS = ("name", "low", "high", "tolerance")
 
 @dataclass(frozen=True)
 class Axis:
-    """A quantity from `low` to `high`, the boundary found to `tolerance`, all in SI.
+    """A quantity from `low` to `high`, its boundary found to `tolerance`, all in SI.
 
-    Raises LandingError: an unknown quantity or one without numbers, bounds that are not allowed or
-    not in order, a tolerance that is not above 0, above the range or below 2^-20 of it.
+    Raises:
+        LandingError: The quantity is unknown or has no numbers, the bounds are not allowed or not
+            in order, or the tolerance is not above 0, above the range or below 2^-20 of it.
     """
 
     name: str
@@ -90,24 +92,25 @@ class Axis:
             raise LandingError(
                 f"{q.name}: tolerance = {self.tolerance:g} {q.unit}".rstrip()
                 + f" is outside [{least:g}, {self.high - self.low:g}] {q.unit}".rstrip()
-                + "; give what you need to know it to"
+                + "; give the resolution that you need"
             )
 
     @property
     def quantity(self) -> Quantity:
-        """What is varied."""
+        """The quantity that is varied."""
         return VARIABLES[self.name]
 
 
 @dataclass(frozen=True)
 class EnvelopeStudy:
-    """All that decides an envelope; values in SI.
+    """Everything that decides an envelope; values in SI.
 
     The flight before the first contact is left out: the axes are states at first contact.
+    `families` are values by name, one boundary each.
 
-    `families` are values by name, one boundary each. Raises LandingError: an unknown criterion or
-    limit, `limit` without limits, cells or levels out of bounds, a quantity that is both varied and
-    set, a family that makes no vehicle.
+    Raises:
+        LandingError: A criterion or limit is unknown, `limit` has no limits, cells or levels are
+            out of bounds, a quantity is both varied and set, or a family makes no vehicle.
     """
 
     parameters: Parameters
@@ -142,8 +145,9 @@ class EnvelopeStudy:
             self.parameters_with(family)
 
     def parameters_with(self, values: Mapping[str, Any]) -> Parameters:
-        """The parameters with those of `values` that are parameters; the landing starts at its
-        first contact.
+        """The parameters with those of `values` that are parameters.
+
+        The landing starts at its first contact.
         """
         own = {name: value for name, value in values.items() if name in PARAMETER_QUANTITIES}
         base = self.parameters.for_mode(str(own.get("drop.mode", self.parameters.drop.mode)))
@@ -151,7 +155,7 @@ class EnvelopeStudy:
 
     @property
     def lattice(self) -> Lattice:
-        """The fine lattice: a unit along each axis is at most its tolerance."""
+        """The fine lattice, whose unit along each axis is at most the axis' tolerance."""
 
         def steps(axis: Axis) -> int:
             halvings = ceil(log2((axis.high - axis.low) / self.cells / axis.tolerance))
@@ -159,90 +163,110 @@ class EnvelopeStudy:
 
         return Lattice(self.cells, self.levels, (steps(self.x), steps(self.y)))
 
-    def place(self, x: float, y: float) -> tuple[float, float]:
-        """The values at a place on the fine lattice."""
+    def values_at(self, x: float, y: float) -> tuple[float, float]:
+        """The values (x, y) [SI] of a point of the fine lattice."""
         width, height = self.lattice.size
-        return self.x.low + (self.x.high - self.x.low) * x / width, self.y.low + (
-            self.y.high - self.y.low
-        ) * y / height
+        return (
+            self.x.low + (self.x.high - self.x.low) * x / width,
+            self.y.low + (self.y.high - self.y.low) * y / height,
+        )
 
     def record(self) -> dict[str, Any]:
-        """All that decides the results, for a file and for comparing studies."""
+        """Everything that decides the results, for a file and for comparing studies."""
         return {
-            "x": vars(self.x), "y": vars(self.y), "families": [dict(f) for f in self.families], "inputs": dict(self.inputs),
-            "criterion": self.criterion, "limits": dict(self.limits), "cells": self.cells, "levels": self.levels, "until": self.until,
-            "every": self.every, "rtol": self.rtol, "slide": self.slide, "parameters": to_toml(self.parameters, comments=False),
-        }  # fmt: skip
+            "x": vars(self.x),
+            "y": vars(self.y),
+            "families": [dict(f) for f in self.families],
+            "inputs": dict(self.inputs),
+            "criterion": self.criterion,
+            "limits": dict(self.limits),
+            "cells": self.cells,
+            "levels": self.levels,
+            "until": self.until,
+            "every": self.every,
+            "rtol": self.rtol,
+            "slide": self.slide,
+            "parameters": to_toml(self.parameters, comments=False),
+        }
 
 
 def study_from(document: Mapping[str, Any], folder: Path = Path()) -> EnvelopeStudy:
     """A study from its TOML document; `docs/envelope.md` has every key.
 
-    A parameter file that it names lies in `folder`.
+    Args:
+        document: The document.
+        folder: The folder in which a parameter file that it names lies.
 
-    Raises LandingError: unknown keys or names, wrong units, values out of bounds, no axes, an empty
-        family.
+    Raises:
+        LandingError: Unknown keys or names, wrong units, values out of bounds, no axes, or an empty
+            family.
     """
-    toml_keys.only(document, TABLES, "table")
-    told = toml_keys.table(document, "envelope")
-    toml_keys.only(told, KEYS, "key of [envelope]")
+    toml_keys.refuse_unknown(document, TABLES, "table")
+    keys = toml_keys.table(document, "envelope")
+    toml_keys.refuse_unknown(keys, KEYS, "key of [envelope]")
     fixed = toml_keys.values(toml_keys.table(document, "set"), VARIABLES, "quantity in [set]")
-    families = read_families(toml_keys.flat(toml_keys.table(document, "families")))
+    families = read_families(toml_keys.by_dotted_name(toml_keys.table(document, "families")))
     x, y = _axis(document, "x"), _axis(document, "y")
     for name in (x.name, y.name, *families[0]):
         if name in fixed:
             raise LandingError(f"{name} is both set and varied; leave one")
-    file = folder / toml_keys.text(told, "parameters", "") if "parameters" in told else None
-    preset = toml_keys.text(told, "preset", "") if "preset" in told else None
-    mode = toml_keys.text(told, "mode", "") if "mode" in told else None
+    file = folder / toml_keys.text(keys, "parameters", "") if "parameters" in keys else None
+    preset = toml_keys.text(keys, "preset", "") if "preset" in keys else None
+    mode = toml_keys.text(keys, "mode", "") if "mode" in keys else None
     parameters = choose_parameters(
         preset, file, mode, {n: v for n, v in fixed.items() if n in PARAMETER_QUANTITIES}
     )
     limits = toml_keys.values(toml_keys.table(document, "limits"), LIMITS, "limit")
-    numbers = {name: toml_keys.number(told, q) for name, q in NUMBERS.items()}
+    numbers = {name: toml_keys.number(keys, q) for name, q in NUMBERS.items()}
     return EnvelopeStudy(
-        parameters, x, y, families,
+        parameters,
+        x,
+        y,
+        families,
         inputs={n: float(v) for n, v in fixed.items() if n not in PARAMETER_QUANTITIES},
-        criterion=toml_keys.text(told, "criterion", "toppled"),
+        criterion=toml_keys.text(keys, "criterion", "toppled"),
         limits={name: float(v) for name, v in limits.items()},
-        cells=toml_keys.whole(told, "cells", 8, 2, 256), levels=toml_keys.whole(told, "levels", 2, 0, 6),
+        cells=toml_keys.integer(keys, "cells", 8, 2, 256),
+        levels=toml_keys.integer(keys, "levels", 2, 0, 6),
         **numbers,
-    )  # fmt: skip
+    )
 
 
-def read_families(told: Mapping[str, Any]) -> tuple[dict[str, float | str], ...]:
+def read_families(keys: Mapping[str, Any]) -> tuple[dict[str, float | str], ...]:
     """Every combination of the values given by name; one empty family where there are none."""
-    toml_keys.only(told, VARIABLES, "quantity in [families]")
+    toml_keys.refuse_unknown(keys, VARIABLES, "quantity in [families]")
     columns: list[Sequence[float | str]] = []
-    for name, values in told.items():
+    for name, values in keys.items():
         if not isinstance(values, (list, tuple)) or not values:
             raise LandingError(
-                f'families: {name} = {values!r} must be a list of one value or more, for example ["0 deg", "5 deg"]'
+                f"families: {name} = {values!r} must be a list of one value or more, "
+                'for example ["0 deg", "5 deg"]'
             )
         column = [parse_value(VARIABLES[name], v) for v in values]
         if len(set(column)) < len(column):
             raise LandingError(f"families: {name} = {values} names a value twice")
         columns.append(column)
-    return tuple(dict(zip(told, chosen)) for chosen in product(*columns))
+    return tuple(dict(zip(keys, chosen)) for chosen in product(*columns))
 
 
 def _axis(document: Mapping[str, Any], key: str) -> Axis:
-    told = toml_keys.table(document, key)
-    toml_keys.only(told, AXIS_KEYS, f"key of [{key}]")
+    keys = toml_keys.table(document, key)
+    toml_keys.refuse_unknown(keys, AXIS_KEYS, f"key of [{key}]")
     for needed in ("name", "low", "high"):
-        if needed not in told:
+        if needed not in keys:
             raise LandingError(
-                f'[{key}] has no {needed}; an axis is name = "drop.tilt", low = "-10 deg", high = "10 deg", tolerance = "0.5 deg"'
+                f'[{key}] has no {needed}; an axis is name = "drop.tilt", low = "-10 deg", '
+                'high = "10 deg", tolerance = "0.5 deg"'
             )
-    q = variable(toml_keys.text(told, "name", ""), "quantity for an axis")
-    low, high = (_number(q, told[bound]) for bound in ("low", "high"))
+    q = variable(toml_keys.text(keys, "name", ""), "quantity for an axis")
+    low, high = (_number(q, keys[bound]) for bound in ("low", "high"))
     default = (high - low) / 128.0
     return Axis(
         q.name,
         low,
         high,
-        _number(replace(q, lo=0.0, hi=float("inf")), told["tolerance"])
-        if "tolerance" in told
+        _number(replace(q, lo=0.0, hi=float("inf")), keys["tolerance"])
+        if "tolerance" in keys
         else default,
     )
 

@@ -1,5 +1,6 @@
-"""A study's landings on a Dask cluster: small tasks of some landings each; a worker that dies costs
-the tasks that it held, made anew.
+"""A study's landings on a Dask cluster.
+
+Tasks are small, some landings each. The tasks of a worker that dies are made anew.
 """
 
 from __future__ import annotations
@@ -13,17 +14,17 @@ from typing import Any
 from ... import __version__
 from ...errors import LandingError
 from .extras import dask
-from .row import Plan, run_rows
 from .sweep import Engine, LostError, Rows
+from .sweep_row import Plan, sweep_rows
 
-# landings a task: some tenths of a second, beside a scheduler's millisecond
+# landings in a task: some tenths of a second, against a scheduler's millisecond
 CLUSTER_ROWS = 25
-# how often a wait looks whether the cluster is still there [s]
-LOOK = 1.0
+# time between checks that the cluster is still there [s]
+CHECK_EVERY = 1.0
 
 
 def worker_version() -> str:
-    """In a worker: its version of rlv-landing."""
+    """The version of rlv-landing in a worker, where this runs."""
     return __version__
 
 
@@ -37,82 +38,99 @@ class Cluster:
         self._client = client
         self._address = address
         self._timeout = timeout
-        self._looked = -LOOK
-        self._found = 0
+        self._checked = -CHECK_EVERY
+        self._thread_count = 0
 
     def submit(self, rows: Sequence[dict[str, Any]]) -> Any:
-        """Have these landings made. Raises LostError where the scheduler is gone."""
-        try:
-            return self._client.submit(run_rows, self._plan, list(rows), pure=False)
-        except Exception as e:
-            raise self._gave_up(e) from None
+        """Submit a task that makes these landings.
 
-    def _gave_up(self, error: BaseException) -> LostError:
+        Raises:
+            LostError: The scheduler is gone.
+        """
+        try:
+            return self._client.submit(sweep_rows, self._plan, list(rows), pure=False)
+        except Exception as e:
+            raise self._lost(e) from None
+
+    def _lost(self, error: BaseException) -> LostError:
         return LostError(
-            f"the cluster at {self._address} gave up: {type(error).__name__}: {' '.join(str(error).split())}"
+            f"the cluster at {self._address} gave up: {type(error).__name__}: "
+            f"{' '.join(str(error).split())}"
         )
 
     def result(self, task: Any) -> Rows:
         """Wait for a task's rows.
 
-        Raises LostError where the scheduler is gone, or every worker for longer than the timeout.
+        Raises:
+            LostError: The scheduler is gone, or every worker has been for longer than the timeout.
         """
         distributed = dask()
-        alone_since: float | None = None
+        idle_since: float | None = None
         while True:
             try:
-                rows: Rows = task.result(timeout=LOOK)
+                rows: Rows = task.result(timeout=CHECK_EVERY)
                 return rows
             except (TimeoutError, distributed.TimeoutError):
                 if self._client.status != "running":
                     raise LostError(f"the scheduler at {self._address} is gone") from None
                 if self._threads():
-                    alone_since = None
-                elif alone_since is None:
-                    alone_since = time.monotonic()
-                elif time.monotonic() - alone_since > self._timeout:
+                    idle_since = None
+                elif idle_since is None:
+                    idle_since = time.monotonic()
+                elif time.monotonic() - idle_since > self._timeout:
                     raise LostError(
-                        f"the scheduler at {self._address} has had no worker for {self._timeout:g} s"
+                        f"the scheduler at {self._address} has had no worker "
+                        f"for {self._timeout:g} s"
                     ) from None
             except KeyboardInterrupt:
                 raise
             except BaseException as e:
-                raise self._gave_up(e) from None
+                raise self._lost(e) from None
 
-    def room(self) -> int:
-        """Enough that no worker runs dry, however many there are now."""
+    def capacity(self) -> int:
+        """The number of tasks that may wait: enough that no worker runs out of work."""
         return 4 * self._threads() + 8
 
     def _threads(self) -> int:
-        """How many threads the workers have, as of a second ago at most: asking the scheduler costs
-        as much as a task.
+        """The number of the workers' threads, at most a second old.
+
+        Asking the scheduler costs as much as a task.
         """
-        if time.monotonic() - self._looked >= LOOK:
+        if time.monotonic() - self._checked >= CHECK_EVERY:
             workers: dict[str, dict[str, Any]] = self._client.scheduler_info().get("workers", {})
-            self._found = sum(int(worker["nthreads"]) for worker in workers.values())
-            self._looked = time.monotonic()
-        return self._found
+            self._thread_count = sum(int(worker["nthreads"]) for worker in workers.values())
+            self._checked = time.monotonic()
+        return self._thread_count
 
     def stop(self, tasks: Sequence[Any]) -> list[Rows]:
-        """What is there already; the rest is cancelled."""
-        whole: list[Rows] = []
+        """The rows of tasks that are done, from the first on without a gap.
+
+        The other tasks are cancelled.
+        """
+        done: list[Rows] = []
         for task in tasks:
             if task.status != "finished":
                 break
-            whole.append(task.result(timeout=self._timeout))
+            done.append(task.result(timeout=self._timeout))
         self._client.cancel(list(tasks))
-        return whole
+        return done
 
 
 @contextmanager
 def cluster(plan: Plan, address: str, timeout: float) -> Iterator[Engine]:
     """The engine of the cluster whose scheduler is at `address`.
 
-    Raises LandingError: no scheduler answers, or no worker is there, within `timeout` [s]; a worker
-    lacks rlv-landing or has another version of it.
+    Args:
+        plan: The plan of the landings.
+        address: The scheduler's address.
+        timeout: The longest wait for scheduler and workers [s].
+
+    Raises:
+        LandingError: No scheduler answers, no worker is there, or a worker lacks rlv-landing or has
+            another version of it.
     """
     distributed = dask()
-    # what goes wrong is told by our own errors, in a line
+    # an error of the cluster is reported once, in one line, by LandingError
     for name in ("distributed", "distributed.client"):
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
@@ -120,14 +138,16 @@ def cluster(plan: Plan, address: str, timeout: float) -> Iterator[Engine]:
         client = distributed.Client(address, timeout=timeout, set_as_default=False)
     except (OSError, ValueError, TimeoutError, distributed.TimeoutError) as e:
         raise LandingError(
-            f"no Dask scheduler answers at {address} within {timeout:g} s ({e}); start one with `dask scheduler`, and check host and port"
+            f"no Dask scheduler answers at {address} within {timeout:g} s ({e}); "
+            "start one with `dask scheduler`, and check host and port"
         ) from None
     try:
         try:
             client.wait_for_workers(1, timeout=timeout)
         except (TimeoutError, distributed.TimeoutError):
             raise LandingError(
-                f"the scheduler at {address} has no worker after {timeout:g} s; start some: dask worker {address}"
+                f"the scheduler at {address} has no worker after {timeout:g} s; "
+                f"start some: dask worker {address}"
             ) from None
         _check_versions(client)
         yield Cluster(plan, client, address, timeout)
@@ -140,10 +160,12 @@ def _check_versions(client: Any) -> None:
         found = client.run(worker_version)
     except Exception as e:
         raise LandingError(
-            f"a worker cannot run rlv-landing ({type(e).__name__}: {e}); install it in the workers' Python"
+            f"a worker cannot run rlv-landing ({type(e).__name__}: {e}); "
+            "install it in the workers' Python"
         ) from None
     for worker, version in found.items():
         if version != __version__:
             raise LandingError(
-                f"worker {worker} has rlv-landing {version}, here is {__version__}; rows would differ: install the same"
+                f"worker {worker} has rlv-landing {version}, here is {__version__}; "
+                "rows would differ: install the same"
             )

@@ -1,5 +1,6 @@
-"""A study's points: one row of values a landing, drawn by grid, Latin hypercube or Sobol sequence,
-the same for the same seed.
+"""The points of a study: one row of values a sample, by grid, Latin hypercube or Sobol sequence.
+
+The same seed gives the same points.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ LARGEST = 100_000_000
 class Design:
     """Columns of values by quantity name, SI, one row a sample.
 
-    A column holds floats, or objects where it has texts.
+    A column is an array of floats, or of objects where it has texts.
     """
 
     def __init__(self, columns: Mapping[str, NDArray[Any]], count: int) -> None:
@@ -42,22 +43,23 @@ class Design:
         )
 
     def digest(self) -> str:
-        """A fingerprint of every value."""
-        told = hashlib.sha256(str(self.count).encode())
+        """The SHA-256 of every value."""
+        fingerprint = hashlib.sha256(str(self.count).encode())
         for name, values in self.columns.items():
-            told.update(name.encode())
-            told.update(
+            fingerprint.update(name.encode())
+            fingerprint.update(
                 repr(values.tolist()).encode()
                 if values.dtype == object
                 else np.ascontiguousarray(values).tobytes()
             )
-        return told.hexdigest()
+        return fingerprint.hexdigest()
 
 
 def grid(factors: Sequence[Factor]) -> Design:
-    """Every level with every other; the last factor turns fastest.
+    """All combinations of the factors' levels; the last factor varies fastest.
 
-    Raises LandingError for a factor without levels, or too many points.
+    Raises:
+        LandingError: A factor has no levels, or there are too many points.
     """
     levels = [f.levels() for f in factors]
     count = 1
@@ -65,22 +67,23 @@ def grid(factors: Sequence[Factor]) -> Design:
         count *= len(values)
     if count > LARGEST:
         raise LandingError(
-            f'this grid has {count} points, more than {LARGEST}; take fewer levels, or method = "sobol" or "lhs"'
+            f"this grid has {count} points, more than {LARGEST}; take fewer levels, "
+            'or method = "sobol" or "lhs"'
         )
-    places = (
+    indices = (
         np.unravel_index(np.arange(count), [len(values) for values in levels]) if levels else ()
     )
-    return Design({f.name: values[i] for f, values, i in zip(factors, levels, places)}, count)
+    return Design({f.name: values[i] for f, values, i in zip(factors, levels, indices)}, count)
 
 
 def drawn(factors: Sequence[Factor], method: str, count: int, seed: int) -> Design:
     """`count` samples of the factors by `lhs` or `sobol` (scrambled), by `scipy.stats.qmc`."""
-    places = unit_points(method, count, len(factors), seed)
-    return Design({f.name: f.at(places[:, i]) for i, f in enumerate(factors)}, count)
+    points = unit_points(method, count, len(factors), seed)
+    return Design({f.name: f.quantiles(points[:, i]) for i, f in enumerate(factors)}, count)
 
 
 def unit_points(method: str, count: int, dimensions: int, seed: int) -> Array:
-    """`count` points of the unit cube."""
+    """Points of the unit cube, (`count`, `dimensions`), by `lhs` or `sobol`."""
     from scipy.stats import qmc
 
     if not dimensions:
@@ -91,7 +94,7 @@ def unit_points(method: str, count: int, dimensions: int, seed: int) -> Array:
         else qmc.Sobol(dimensions, seed=seed)
     )
     with warnings.catch_warnings():
-        # scipy warns where the count is no power of 2; the plan says so in our words
+        # scipy warns where the count is no power of 2; `Study.notes` has the note for the user
         warnings.simplefilter("ignore", UserWarning)
         points: Array = engine.random(count)
     return points

@@ -1,4 +1,4 @@
-"""What the studies need beyond the package's own dependencies: the extra `studies`."""
+"""Packages that the studies need beyond the package's own dependencies: the extra `studies`."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ INSTALL = 'install it with pip install "rlv-landing[studies]"'
 
 
 def arrow() -> tuple[Any, Any]:
-    """pyarrow and pyarrow.parquet.
+    """The modules pyarrow and pyarrow.parquet.
 
-    Raises LandingError, with the extra to install, where it is missing.
+    Raises:
+        LandingError: pyarrow is missing; the message names the extra to install.
     """
     try:
         import pyarrow
@@ -25,7 +26,11 @@ def arrow() -> tuple[Any, Any]:
 
 
 def dask() -> Any:
-    """dask.distributed. Raises LandingError, with the extra to install, where it is missing."""
+    """The module dask.distributed.
+
+    Raises:
+        LandingError: It is missing; the message names the extra to install.
+    """
     try:
         import distributed
     except ImportError as e:

@@ -1,6 +1,4 @@
-"""A study's factors: what is varied, in which unit, and how a place between 0 and 1 becomes a
-value.
-"""
+"""The factors of a study: the quantities that vary, their units and distributions."""
 
 from __future__ import annotations
 
@@ -19,7 +17,7 @@ from ...quantities import INPUT_QUANTITIES, Quantity, shown
 from .. import toml_keys
 
 Array = NDArray[np.float64]
-# what a study may vary or set: every parameter, and every input as a constant from the start on
+# quantities that a study may vary or set: every parameter, and every input as a constant
 VARIABLES: dict[str, Quantity] = {**PARAMETER_QUANTITIES, **{q.name: q for q in INPUT_QUANTITIES}}
 DISTRIBUTIONS = {
     "uniform": ("low", "high", "count"),
@@ -31,10 +29,11 @@ ALL_KEYS = ("name", "unit", "distribution", "low", "high", "count", "mean", "dev
 
 @dataclass(frozen=True)
 class Factor:
-    """One factor, all numbers in SI. `unit` is the one that the study gave, for printing.
+    """One factor, all numbers in SI; `unit` is the one that the study gave, for printing.
 
-    uniform: evenly between `low` and `high`, in a grid `count` levels, both ends included. normal:
-    `mean` and `deviation`, cut off at `low` and `high`. choice: each of `values` as often.
+    - uniform: evenly between `low` and `high`; in a grid `count` levels, both ends included.
+    - normal: `mean` and `deviation`, cut off at `low` and `high`.
+    - choice: each of `values` with the same probability.
     """
 
     quantity: Quantity
@@ -52,10 +51,10 @@ class Factor:
         """The quantity's name."""
         return self.quantity.name
 
-    def at(self, places: Array) -> NDArray[Any]:
-        """Values at `places` (0 to 1) of the distribution: its quantiles."""
+    def quantiles(self, probabilities: Array) -> NDArray[Any]:
+        """The distribution's quantiles at `probabilities`, 0 to 1."""
         if self.distribution == "choice":
-            which = np.minimum((places * len(self.values)).astype(int), len(self.values) - 1)
+            which = np.minimum((probabilities * len(self.values)).astype(int), len(self.values) - 1)
             chosen: NDArray[Any] = column(self.values)[which]
             return chosen
         if self.distribution == "normal":
@@ -65,12 +64,16 @@ class Factor:
                 (self.low - self.mean) / self.deviation,
                 (self.high - self.mean) / self.deviation,
             )
-            drawn: Array = truncnorm.ppf(places, low, high, self.mean, self.deviation)
+            drawn: Array = truncnorm.ppf(probabilities, low, high, self.mean, self.deviation)
             return np.clip(drawn, self.low, self.high)
-        return np.clip(self.low + (self.high - self.low) * places, self.low, self.high)
+        return np.clip(self.low + (self.high - self.low) * probabilities, self.low, self.high)
 
     def levels(self) -> NDArray[Any]:
-        """The values of a grid. Raises LandingError for a factor that has none."""
+        """The values of a grid.
+
+        Raises:
+            LandingError: The factor has no levels.
+        """
         if self.distribution == "choice":
             return column(self.values)
         if self.distribution == "uniform" and self.count:
@@ -80,7 +83,7 @@ class Factor:
         )
 
     def record(self) -> dict[str, Any]:
-        """All that decides the values, in SI, for the study's fingerprint and for JSON."""
+        """Everything that decides the values, in SI, for the study's fingerprint and for JSON."""
         keys = DISTRIBUTIONS[self.distribution]
         return {
             "name": self.name,
@@ -98,7 +101,12 @@ def column(values: Any) -> NDArray[Any]:
 def variable(name: Any, what: str) -> Quantity:
     """The quantity of this name.
 
-    Raises LandingError, with the nearest name, where there is none that can be varied.
+    Args:
+        name: The name.
+        what: The word for it in the error.
+
+    Raises:
+        LandingError: There is no such quantity that can be varied; the message names the nearest.
     """
     if not isinstance(name, str) or name not in VARIABLES:
         raise unknown(what, name, VARIABLES)
@@ -108,18 +116,20 @@ def variable(name: Any, what: str) -> Quantity:
 def read_factor(entry: Mapping[str, Any]) -> Factor:
     """A factor from a `[[factor]]` table.
 
-    Raises LandingError: no name or an unknown one, unknown keys, a wrong unit, missing or bad
-        numbers, an empty range.
+    Raises:
+        LandingError: No name or an unknown one, unknown keys, a wrong unit, missing or bad numbers,
+            or an empty range.
     """
     if "name" not in entry:
         raise LandingError('a [[factor]] has no name; write for example name = "drop.tilt"')
     q = variable(entry["name"], "factor")
     where = f"factor {q.name}"
-    toml_keys.only(entry, ALL_KEYS, f"key of {where}")
+    toml_keys.refuse_unknown(entry, ALL_KEYS, f"key of {where}")
     unit = entry.get("unit", q.unit)
     if not isinstance(unit, str):
         raise LandingError(
-            f'{where}: unit = {unit!r} must be a text, for example unit = "{q.display_unit or q.unit}"'
+            f"{where}: unit = {unit!r} must be a text, "
+            f'for example unit = "{q.display_unit or q.unit}"'
         )
     distribution = entry.get("distribution", "choice" if "values" in entry else "uniform")
     if distribution not in DISTRIBUTIONS:
@@ -127,7 +137,8 @@ def read_factor(entry: Mapping[str, Any]) -> Factor:
     for key in entry:
         if key not in ("name", "unit", "distribution", *DISTRIBUTIONS[distribution]):
             raise LandingError(
-                f"{where}: {key} does not belong to {distribution}, which takes {', '.join(DISTRIBUTIONS[distribution])}"
+                f"{where}: {key} does not belong to {distribution}, "
+                f"which takes {', '.join(DISTRIBUTIONS[distribution])}"
             )
     if q.choices and distribution != "choice":
         raise LandingError(f"{where} is one of {', '.join(q.choices)}; give values = [...]")
@@ -161,7 +172,8 @@ def read_factor(entry: Mapping[str, Any]) -> Factor:
         )
         if not (isfinite(mean) and 0.0 < deviation < float("inf")):
             raise LandingError(
-                f"{where}: mean = {mean:g} and deviation = {deviation:g} {q.unit} must be finite, the deviation above 0"
+                f"{where}: mean = {mean:g} and deviation = {deviation:g} {q.unit} must be finite, "
+                "the deviation above 0"
             )
     else:
         mean = deviation = 0.0
@@ -199,7 +211,7 @@ def _count(where: str, count: Any) -> int:
 
 
 def value_text(name: str, value: float | str) -> str:
-    """A value as people read it, with its unit."""
+    """A value in its display unit, with the unit."""
     if isinstance(value, str):
         return value
     unit, scale = shown(VARIABLES[name])

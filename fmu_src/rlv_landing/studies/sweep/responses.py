@@ -1,4 +1,4 @@
-"""A study's responses: numbers (and a word or two) that say what a landing came to."""
+"""The responses of a study: the numbers and texts that are taken from each landing."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..outcome import TOPPLED, Outcome, outcome
 
 Array = NDArray[np.float64]
 Reduction = Callable[[Array, Array], Array]
-# over the samples: columns (n, k) and times (n,) to k numbers
+# reductions over the n samples: columns (n, k) and times (n,) to k numbers
 REDUCTIONS: dict[str, tuple[str, Reduction]] = {
     "min": ("smallest", lambda a, t: a.min(axis=0)),
     "max": ("largest", lambda a, t: a.max(axis=0)),
@@ -31,12 +31,12 @@ WORK = {"absorbed": "J", "dissipated": "J", "efficiency": ""}
 MARGINS = ("stability_min", "stability_end", "stroke_left", "slid", "joint_clearance")
 OUTCOME = (
     Quantity("", "toppled, bottomed out, slid, moving or settled", name="outcome", kind="string"),
-    Quantity("s", "when it was so", name="outcome.time"),
+    Quantity("s", "time of the outcome", name="outcome.time"),
     Quantity("", "the leg that bottomed out first", name="outcome.leg", kind="integer"),
     Quantity(
         "", "the limit of [limits] that was passed first", name="outcome.first_limit", kind="string"
     ),
-    Quantity("s", "when it was passed", name="outcome.first_limit_time"),
+    Quantity("s", "time at which it was passed", name="outcome.first_limit_time"),
     *(
         Quantity("m", f"{name.replace('_', ' ')}, see Outcome", name=f"margin.{name}")
         for name in MARGINS
@@ -46,26 +46,52 @@ RHS_CALLS = Quantity(
     "", "calls of the right-hand side that the landing took", name="rhs_calls", kind="integer"
 )
 DEFAULT = (
-    "outcome", "outcome.*", "margin.*", "legs.main_strut.force.min", "legs.main_strut.stroke.max", "legs.auxiliary_strut.force.abs_max",
-    "legs.contact.force_y.max", "legs.main_strut.absorbed", "legs.main_strut.dissipated", "leg[*].contact.time",
-    "leg[*].main_strut.force.min", "leg[*].main_strut.force.min_time", "leg[*].main_strut.stroke.max",
-    "leg[*].main_strut.stroke.max_time", "leg[*].main_strut.stroke.final", "leg[*].main_strut.pressure_lower.max",
-    "leg[*].auxiliary_strut.force.min", "leg[*].auxiliary_strut.force.max", "leg[*].contact.force_y.max", "leg[*].main_strut.absorbed",
-    "leg[*].main_strut.dissipated", "leg[*].main_strut.efficiency", "body.top_axial_acceleration.max", "body.pitch.abs_max",
-    "body.pitch.final", "body.x.final", "energy.dissipated.final", "energy.dissipated_orifice.final", "energy.dissipated_seal.final",
-    "energy.dissipated_friction.final", "energy.dissipated_contact.final", "energy.balance.abs_max", "rhs_calls",
-)  # fmt: skip
+    "outcome",
+    "outcome.*",
+    "margin.*",
+    "legs.main_strut.force.min",
+    "legs.main_strut.stroke.max",
+    "legs.auxiliary_strut.force.abs_max",
+    "legs.contact.force_y.max",
+    "legs.main_strut.absorbed",
+    "legs.main_strut.dissipated",
+    "leg[*].contact.time",
+    "leg[*].main_strut.force.min",
+    "leg[*].main_strut.force.min_time",
+    "leg[*].main_strut.stroke.max",
+    "leg[*].main_strut.stroke.max_time",
+    "leg[*].main_strut.stroke.final",
+    "leg[*].main_strut.pressure_lower.max",
+    "leg[*].auxiliary_strut.force.min",
+    "leg[*].auxiliary_strut.force.max",
+    "leg[*].contact.force_y.max",
+    "leg[*].main_strut.absorbed",
+    "leg[*].main_strut.dissipated",
+    "leg[*].main_strut.efficiency",
+    "body.top_axial_acceleration.max",
+    "body.pitch.abs_max",
+    "body.pitch.final",
+    "body.x.final",
+    "energy.dissipated.final",
+    "energy.dissipated_orifice.final",
+    "energy.dissipated_seal.final",
+    "energy.dissipated_friction.final",
+    "energy.dissipated_contact.final",
+    "energy.balance.abs_max",
+    "rhs_calls",
+)
 
 
 @cache
 def known_responses() -> Mapping[str, Quantity]:
-    """Every response there is, by name.
+    """Every response by name.
 
-    `OUTPUT.min`, `.max`, `.abs_max`, `.final`, `.min_time`, `.max_time` of every output; `legs.…`
-    is the extreme over the four legs. `leg[N].main_strut.absorbed`, `.dissipated`, `.efficiency`
-    are of a damper's first compression and rebound, `legs.…` their sum over the legs;
-    `leg[N].contact.time` is when the ground first pushes on a footpad; `outcome`, `outcome.…` and
-    `margin.…` are `Outcome`'s.
+    - `OUTPUT.min`, `.max`, `.abs_max`, `.final`, `.min_time`, `.max_time` of every output; `legs.…`
+      is the extreme over the four legs.
+    - `leg[N].main_strut.absorbed`, `.dissipated`, `.efficiency` are of a damper's first compression
+      and rebound; `legs.…` is their sum over the legs.
+    - `leg[N].contact.time` is the first time at which the ground pushes on a footpad.
+    - `outcome`, `outcome.…` and `margin.…` are those of `Outcome`.
     """
     found = {q.name: q for q in OUTCOME}
     for q in OUTPUT_QUANTITIES:
@@ -93,17 +119,19 @@ def known_responses() -> Mapping[str, Quantity]:
     for leg in LEGS:
         full = f"leg[{leg}].contact.time"
         found[full] = Quantity(
-            "s", f"leg {leg}: when the ground first pushes on the footpad", name=full
+            "s", f"leg {leg}: first time at which the ground pushes on the footpad", name=full
         )
     found[RHS_CALLS.name] = RHS_CALLS
     return found
 
 
 def expand(names: Sequence[str] | None) -> tuple[str, ...]:
-    """Names of responses in the order given, `leg[*]` for each leg, a trailing `.*` for all below;
-    None is the default set.
+    """Names of responses in the order given, with patterns expanded.
 
-    Raises LandingError for a response that does not exist, with the nearest, or one named twice.
+    `leg[*]` stands for each leg, a trailing `.*` for all names below. None is the default set.
+
+    Raises:
+        LandingError: A response does not exist (the message names the nearest), or is named twice.
     """
     known = known_responses()
     found: list[str] = []
@@ -124,7 +152,7 @@ def expand(names: Sequence[str] | None) -> tuple[str, ...]:
 
 
 class Measure:
-    """Takes the responses `names` off a history. `limits` and `slide` are those of `outcome`."""
+    """Takes the responses `names` from histories; `limits` and `slide` are those of `outcome`."""
 
     def __init__(
         self,
@@ -133,46 +161,53 @@ class Measure:
         slide: float | None = None,
     ) -> None:
         self.names = tuple(names)
-        self._how = {} if slide is None else {"slide": slide}
+        self._slide = {} if slide is None else {"slide": slide}
         self._limits = dict(limits or {})
         self._columns: dict[str, list[int]] = {}
-        self._places: list[tuple[str, list[int]] | None] = [self._place(name) for name in names]
+        self._reductions: list[tuple[str, list[int]] | None] = [
+            self._reduction_of(name) for name in names
+        ]
         self._with_outcome = any(name.partition(".")[0] in ("outcome", "margin") for name in names)
         self._with_work = any(
             name.rpartition(".")[2] in WORK and "main_strut" in name for name in names
         )
 
-    def _place(self, name: str) -> tuple[str, list[int]] | None:
-        """The reduction and where its results hold this response, for one that is a reduction of
-        outputs.
-        """
-        output, _, how = name.rpartition(".")
-        if how not in REDUCTIONS or output.partition(".")[0] in ("outcome", "margin"):
+    def _reduction_of(self, name: str) -> tuple[str, list[int]] | None:
+        """The reduction of a response and the columns of its results; None for other responses."""
+        output, _, reduction = name.rpartition(".")
+        if reduction not in REDUCTIONS or output.partition(".")[0] in ("outcome", "margin"):
             return None
         outputs = (
             [output.replace("legs.", f"leg[{leg}].", 1) for leg in LEGS]
             if output.startswith("legs.")
             else [output]
         )
-        columns = self._columns.setdefault(how, [])
-        places = []
+        columns = self._columns.setdefault(reduction, [])
+        positions = []
         for one in outputs:
             index = OUTPUT_NAMES.index(one)
             if index not in columns:
                 columns.append(index)
-            places.append(columns.index(index))
-        return how, places
+            positions.append(columns.index(index))
+        return reduction, positions
 
     def __call__(self, history: History, rhs_calls: int) -> list[Any]:
-        """The responses in the order of `names`; None where a landing has none: an efficiency
-        without compression, no limit passed.
+        """The responses in the order of `names`.
 
-        What a vehicle does once it has toppled does not count, the stability margins apart.
+        The motion after toppling does not count, the stability margins apart.
+
+        Args:
+            history: The landing's columns over time.
+            rhs_calls: Calls of the right-hand side that the landing took.
+
+        Returns:
+            The values; None where a landing has none: an efficiency without compression, no limit
+            passed.
         """
         others: dict[str, Any] = {"rhs_calls": rhs_calls}
         toppled = history["status.phase"][-1] == TOPPLED
         if self._with_outcome or toppled:
-            found = outcome(history, self._limits or None, **self._how)
+            found = outcome(history, self._limits or None, **self._slide)
             others.update(_outcome_values(found))
             if toppled:
                 end = int(np.searchsorted(history.time, found.time, "right"))
@@ -180,19 +215,19 @@ class Measure:
                     history.time[:end], history.names, history.data[:end], history.parameters
                 )
         reduced = {
-            how: REDUCTIONS[how][1](history.data[:, columns], history.time).tolist()
-            for how, columns in self._columns.items()
+            reduction: REDUCTIONS[reduction][1](history.data[:, columns], history.time).tolist()
+            for reduction, columns in self._columns.items()
         }
         if self._with_work:
             others.update(_work_values(history))
         values: list[Any] = []
-        for name, place in zip(self.names, self._places):
-            if place is None:
+        for name, taken in zip(self.names, self._reductions):
+            if taken is None:
                 values.append(others[name] if name in others else _contact_time(history, name))
             else:
-                how, places = place
-                numbers = [reduced[how][i] for i in places]
-                values.append(numbers[0] if len(numbers) == 1 else OVER_LEGS[how](numbers))
+                reduction, positions = taken
+                numbers = [reduced[reduction][i] for i in positions]
+                values.append(numbers[0] if len(numbers) == 1 else OVER_LEGS[reduction](numbers))
         return values
 
 
@@ -210,19 +245,20 @@ def _outcome_values(found: Outcome) -> dict[str, Any]:
 
 
 def _first_push(history: History, leg: int) -> int | None:
-    """The first sample at which the ground pushes on the leg's footpad."""
+    """The first sample with the ground pushing on the leg's footpad; None without any."""
     pushed = history[f"leg[{leg}].contact.force_y"] > 0.0
     first = int(pushed.argmax())
     return first if pushed[first] else None
 
 
 def _contact_time(history: History, name: str) -> float | None:
-    first = _first_push(history, int(name[4]))
+    leg = int(name.removeprefix("leg[").partition("]")[0])
+    first = _first_push(history, leg)
     return None if first is None else float(history.time[first])
 
 
 def _work_values(history: History) -> dict[str, Any]:
-    """The dampers' work; mirror images carry the same, which is worked out once."""
+    """The dampers' work; it is calculated once for legs that are mirror images."""
     assert history.parameters is not None
     values: dict[str, Any] = {}
     total = {f"legs.main_strut.{what}": 0.0 for what, unit in WORK.items() if unit}

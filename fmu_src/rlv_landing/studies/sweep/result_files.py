@@ -1,10 +1,11 @@
-"""The results folder of a study: rows in Parquet parts while it runs, one file at the end; nothing
-that is done is ever lost.
+"""The results folder of a study: rows in Parquet parts while it runs, one file at the end.
 
-study.json        what decides every row, and its fingerprint; study.toml, the study as it was read
-parts/            rows so far, each file renamed into place whole: after `kill -9` all but the last
-seconds are there results.parquet   every row in the order of its index, when all are done; the
-parts are removed then
+- study.json: everything that decides the rows, and its fingerprint.
+- study.toml: the study as it was read.
+- parts/: the rows so far. Each file is renamed into place whole: after `kill -9` all but the last
+  seconds are there.
+- results.parquet: every row in the order of its index, when all are done; the parts are then
+  removed.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, TextIO
 
 import numpy
 import scipy
@@ -29,6 +30,7 @@ from ...durable import write_durably
 from ...errors import LandingError
 from ...quantities import Quantity
 from .extras import arrow
+from .sweep_row import Task
 
 STUDY, COPY, PARTS, RESULTS = "study.json", "study.toml", "parts", "results.parquet"
 LEADING = (
@@ -47,55 +49,60 @@ GROUP_ROWS = 10_000
 
 
 class Results:
-    """The rows of a study in `folder`, which is made, or taken up again by `resume`.
+    """The rows of a study in `folder`, which is created, or continued by `resume`.
 
-    Use it in a `with`; leaving it writes what it holds.
+    It is a context manager: on leaving, the rows in memory are written.
 
-    `about` is what decides the rows; `quantities` their columns after index, sample and seed;
-    `count` how many there will be. Raises LandingError: the folder holds a study and `resume` is
-    not asked for, or another study; it is in use, damaged or cannot be written.
+    Raises:
+        LandingError: The folder has a study and `resume` is not given, or another study or other
+            files; or it is in use, damaged or cannot be written.
     """
 
-    def __init__(
-        self,
-        folder: Path,
-        about: Mapping[str, Any],
-        text: str,
-        quantities: Sequence[Quantity],
-        count: int,
-        resume: bool = False,
-    ) -> None:
+    def __init__(self, folder: Path, task: Task, *, resume: bool = False) -> None:
         self.folder = folder
-        self.count = count
+        self.count = len(task)
         self._pyarrow, self._parquet = arrow()
-        self._quantities = [*LEADING, *quantities]
+        self._quantities = [*LEADING, *task.quantities()]
+        about = task.about()
         self._about = {"fingerprint": fingerprint(about), **about}
-        self._text = text
+        self._text = task.study.text
         self._rows: list[list[Any]] = []
         self._since = time.monotonic()
-        if (folder / STUDY).exists() and not resume:
-            raise LandingError(
-                f"{folder} holds a study's results; --resume goes on with it, --results names another folder"
-            )
-        if folder.exists() and not (folder / STUDY).exists() and any(folder.iterdir()):
-            raise LandingError(
-                f"{folder} holds other files and no study; --results names another folder"
-            )
-        if (folder / STUDY).exists():
+        self._check_folder(resume=resume)
+        self._lock = self._locked()
+        self.done = self._load()
+
+    def _check_folder(self, *, resume: bool) -> None:
+        study = self.folder / STUDY
+        if study.exists():
+            if not resume:
+                raise LandingError(
+                    f"{self.folder} holds a study's results; --resume continues with it, "
+                    "--results names another folder"
+                )
             self._compare()
+        elif self.folder.exists() and any(self.folder.iterdir()):
+            raise LandingError(
+                f"{self.folder} holds other files and no study; --results names another folder"
+            )
+
+    def _locked(self) -> TextIO:
+        """The folder's lock file, locked for this process."""
         try:
-            (folder / PARTS).mkdir(parents=True, exist_ok=True)
-            self._lock = (folder / ".lock").open("w")
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            (self.folder / PARTS).mkdir(parents=True, exist_ok=True)
+            lock = (self.folder / ".lock").open("w")
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return lock
         except BlockingIOError:
             raise LandingError(
-                f"{folder} is in use by another sweep; wait for it, or name another folder by --results"
+                f"{self.folder} is in use by another sweep; wait for it, "
+                "or name another folder by --results"
             ) from None
         except OSError as e:
             raise LandingError(
-                f"{folder} cannot be written: {e.strerror or e}; name another folder by --results"
+                f"{self.folder} cannot be written: {e.strerror or e}; "
+                "name another folder by --results"
             ) from None
-        self.done = self._take_up()
 
     def __enter__(self) -> Results:
         return self
@@ -118,10 +125,10 @@ class Results:
         path = self.folder / STUDY
         try:
             kept = json.loads(path.read_text(encoding="utf-8"))
-            told = kept["fingerprint"]
+            kept_fingerprint = kept["fingerprint"]
         except (OSError, ValueError, KeyError, TypeError) as e:
             raise LandingError(f"{path} cannot be read ({e}); there is nothing to resume") from None
-        if told == self._about["fingerprint"]:
+        if kept_fingerprint == self._about["fingerprint"]:
             return
         changed = [
             key
@@ -129,12 +136,13 @@ class Results:
             if key != "fingerprint" and kept.get(key) != json.loads(json.dumps(self._about[key]))
         ]
         raise LandingError(
-            f"{self.folder} holds rows of another study: {', '.join(changed)} changed since. Resume with the study as it was "
-            f"({self.folder / COPY} is a copy of it), or name another folder by --results"
+            f"{self.folder} holds rows of another study: {', '.join(changed)} changed since. "
+            f"Resume with the study as it was ({self.folder / COPY} is a copy of it), "
+            "or name another folder by --results"
         )
 
-    def _take_up(self) -> list[tuple[int, int]]:
-        """What is done already, as ranges of indices; writes what says which study this is."""
+    def _load(self) -> list[tuple[int, int]]:
+        """The ranges of indices that are done already; a new study's files are written."""
         if (self.folder / RESULTS).exists():
             self._remove_parts()
             return [(0, self.count)]
@@ -144,7 +152,8 @@ class Results:
                 write_durably(self.folder / STUDY, json.dumps(self._about, indent=1).encode())
         except OSError as e:
             raise LandingError(
-                f"{self.folder} cannot be written: {e.strerror or e}; make room, or name another folder"
+                f"{self.folder} cannot be written: {e.strerror or e}; "
+                "make room, or name another folder"
             ) from None
         ranges: list[tuple[int, int]] = []
         for path in self._parts():
@@ -157,7 +166,8 @@ class Results:
             first = int(path.stem)
             if ranges and first < ranges[-1][1]:
                 raise LandingError(
-                    f"{path} has rows that the part before it has, too; remove it, and --resume makes its rows anew"
+                    f"{path} has rows that the part before it has, too; "
+                    "remove it, and --resume makes its rows anew"
                 )
             ranges.append((first, first + rows))
         return ranges
@@ -167,11 +177,11 @@ class Results:
 
     @property
     def rows_done(self) -> int:
-        """How many rows are on the disk."""
+        """The number of rows on the disk."""
         return sum(last - first for first, last in self.done)
 
     def missing(self) -> list[tuple[int, int]]:
-        """Ranges of indices that are still to be made."""
+        """The ranges of indices that are still to be made."""
         gaps, at = [], 0
         for first, last in [*self.done, (self.count, self.count)]:
             if at < first:
@@ -180,7 +190,11 @@ class Results:
         return gaps
 
     def add(self, rows: Sequence[list[Any]]) -> None:
-        """Append rows; indices rise. Raises OSError where the disk refuses, the rows still held."""
+        """Append rows, whose indices rise.
+
+        Raises:
+            OSError: The disk refuses; the rows stay in memory.
+        """
         for row in rows:
             if self._rows and row[0] != self._rows[-1][0] + 1:
                 self.flush()
@@ -189,7 +203,7 @@ class Results:
             self.flush()
 
     def flush(self) -> None:
-        """Write the rows held to a part."""
+        """Write the rows in memory to a part."""
         if self._rows:
             buffer = io.BytesIO()
             self._parquet.write_table(self._table(self._rows), buffer)
@@ -230,7 +244,11 @@ class Results:
     def finish(self) -> Path:
         """Join the parts to one file, in the order of the indices, and remove them.
 
-        Raises OSError where the disk refuses: parts stay.
+        Returns:
+            The file.
+
+        Raises:
+            OSError: The disk refuses; the parts stay.
         """
         path = self.folder / RESULTS
         if path.exists():
@@ -253,19 +271,20 @@ class Results:
         return path
 
     def _groups(self) -> Iterator[Any]:
-        """All rows in tables of GROUP_ROWS, whatever the parts were, so that the file does not
-        depend on them.
+        """All rows in tables of GROUP_ROWS.
+
+        The size does not depend on the parts: neither does the file.
         """
-        held = self._schema().empty_table()
+        pending = self._schema().empty_table()
         for part in self._parts():
-            held = self._pyarrow.concat_tables(
-                [held, self._parquet.read_table(part, schema=self._schema())]
+            pending = self._pyarrow.concat_tables(
+                [pending, self._parquet.read_table(part, schema=self._schema())]
             )
-            while held.num_rows >= GROUP_ROWS:
-                yield held.slice(0, GROUP_ROWS).combine_chunks()
-                held = held.slice(GROUP_ROWS)
-        if held.num_rows:
-            yield held.combine_chunks()
+            while pending.num_rows >= GROUP_ROWS:
+                yield pending.slice(0, GROUP_ROWS).combine_chunks()
+                pending = pending.slice(GROUP_ROWS)
+        if pending.num_rows:
+            yield pending.combine_chunks()
 
     def _remove_parts(self) -> None:
         for part in self._parts():
@@ -275,12 +294,12 @@ class Results:
 
 
 def fingerprint(about: Mapping[str, Any]) -> str:
-    """The same for the same study, and for no other."""
+    """The SHA-256 of everything that decides a study's rows."""
     return sha256(json.dumps(about, sort_keys=True).encode()).hexdigest()
 
 
 def versions() -> dict[str, str]:
-    """What the rows were made by."""
+    """The versions of the software that made the rows."""
     return {
         "rlv-landing": __version__,
         "python": platform.python_version(),

@@ -1,8 +1,8 @@
-"""Sobol indices of a study's responses: how much of their variance each factor brings, alone and
-with the others.
+"""Sobol indices of a study's responses: each factor's part of their variance.
 
-The points are Saltelli's: two independent samples A and B of all factors, and for each factor a
-copy of A with B's column of it.
+First-order indices count a factor alone, total indices with all others. The points are Saltelli's:
+two independent samples A and B of all factors, and for each factor a copy of A with B's column of
+it.
 """
 
 from __future__ import annotations
@@ -29,12 +29,20 @@ LEAST_WHOLE = 0.9
 
 @dataclass(frozen=True)
 class Indices:
-    """Sobol indices of one response over the landings of one mode: `first` and `total` (factors,
-    3), each index with its interval.
+    """Sobol indices of one response over the landings of one mode.
 
-    `used` of `samples` had the response in all their landings; the place of another is taken by one
-    of these, drawn at random. All are NaN where that is more than a tenth of them, or the response
-    does not vary.
+    All indices are NaN where more than a tenth of the samples lack the response, or it does not
+    vary.
+
+    Attributes:
+        response: The response's name.
+        mode: The landing mode, or `all`.
+        factors: The factors' names.
+        first: First-order indices with their intervals, (factors, 3): index, low, high.
+        total: Total indices with their intervals, (factors, 3).
+        used: Samples that have the response in all their landings; one of these, drawn at random,
+            replaces each other sample.
+        samples: All samples.
     """
 
     response: str
@@ -68,29 +76,34 @@ class Indices:
 
 
 def sobol_design(study: Study) -> Design:
-    """The points of `study.samples` (a power of 2) samples: A, then B, then for each factor A with
-    B's column of it.
+    """The points of `study.samples` (a power of 2) samples, as blocks of rows.
 
-    Raises LandingError: the study is a table, has fewer than two factors, or its samples are no
-        power of 2.
+    The blocks are A, then B, then for each factor A with B's column of it.
+
+    Raises:
+        LandingError: The study is a table, has fewer than two factors, or its samples are no power
+            of 2.
     """
     if study.method == "table":
         raise LandingError(
-            "the columns of a table are not independent of each other, which Sobol indices need; give factors with ranges"
+            "the columns of a table are not independent of each other, which Sobol indices need; "
+            "give factors with ranges"
         )
     if len(study.factors) < 2:
         raise LandingError(
-            "Sobol indices share variance out between factors; the study needs two [[factor]] or more"
+            "Sobol indices divide variance between factors; the study needs two [[factor]] or more"
         )
     n = study.samples
     if n < 2 or n & (n - 1):
-        told = f"this {study.method} has samples = {n}" if n else f"a {study.method} has none"
+        found = f"this {study.method} has samples = {n}" if n else f"a {study.method} has none"
         raise LandingError(
-            f'Sobol indices need samples = a power of 2, for example 256 or 1024, with method = "sobol" or "lhs"; {told}'
+            "Sobol indices need samples = a power of 2, for example 256 or 1024, "
+            f'with method = "sobol" or "lhs"; {found}'
         )
-    places = unit_points("sobol", n, 2 * len(study.factors), study.seed)
+    points = unit_points("sobol", n, 2 * len(study.factors), study.seed)
     a, b = (
-        [f.at(half[:, i]) for i, f in enumerate(study.factors)] for half in np.hsplit(places, 2)
+        [f.quantiles(half[:, i]) for i, f in enumerate(study.factors)]
+        for half in np.hsplit(points, 2)
     )
     blocks = len(study.factors) + 2
     columns = {}
@@ -104,12 +117,18 @@ def sobol_design(study: Study) -> Design:
 def sobol_indices(
     pages: Array, seed: int, level: float = LEVEL, resamples: int = RESAMPLES
 ) -> tuple[Array, Array]:
-    """First-order and total indices with their bootstrap intervals, each (responses, factors, 3):
-    index, low, high.
+    """First-order and total indices with their bootstrap intervals.
 
-    `pages` (factors + 2, responses, samples) are responses in the order of `sobol_design`. By
-    `scipy.stats`: Saltelli's estimators (2010), percentile intervals of the confidence `level`. NaN
-    for a response that does not vary.
+    By `scipy.stats`: Saltelli's estimators (2010), percentile intervals.
+
+    Args:
+        pages: Responses in the order of `sobol_design`, (factors + 2, responses, samples).
+        seed: Seed of the bootstrap.
+        level: Confidence of the intervals.
+        resamples: Bootstrap resamples.
+
+    Returns:
+        Both as (responses, factors, 3): index, low, high; NaN for a response that does not vary.
     """
     from scipy.stats import bootstrap
     from scipy.stats import sobol_indices as estimate
@@ -117,12 +136,12 @@ def sobol_indices(
     factors, responses, n = pages.shape[0] - 2, pages.shape[1], pages.shape[2]
 
     def both(which: NDArray[np.intp]) -> Array:
-        told: Any = {
+        values: Any = {
             "f_A": pages[0][:, which],
             "f_B": pages[1][:, which],
             "f_AB": pages[2:][:, :, which],
         }
-        found = estimate(func=told, n=n)
+        found = estimate(func=values, n=n)
         return np.array(
             [
                 np.reshape(order, (responses, factors))
@@ -130,11 +149,16 @@ def sobol_indices(
             ]
         )
 
-    drawn: Any = bootstrap(
-        (np.arange(n),), both, vectorized=False, method="percentile", confidence_level=level, n_resamples=resamples,
+    resampled: Any = bootstrap(
+        (np.arange(n),),
+        both,
+        vectorized=False,
+        method="percentile",
+        confidence_level=level,
+        n_resamples=resamples,
         random_state=np.random.default_rng(seed),
-    )  # fmt: skip
-    interval = drawn.confidence_interval
+    )
+    interval = resampled.confidence_interval
     indices = np.stack([both(np.arange(n)), interval.low, interval.high], axis=-1)
     indices[:, np.ptp(pages[:2], axis=(0, 2)) == 0.0] = np.nan
     return indices[0], indices[1]
@@ -147,8 +171,14 @@ def indices_of(
     level: float = LEVEL,
     resamples: int = RESAMPLES,
 ) -> list[Indices]:
-    """Indices of these responses, mode by mode, from a results file that was made of
-    `sobol_design`.
+    """Indices of responses, mode by mode, from a results file made of `sobol_design`.
+
+    Args:
+        path: The results file.
+        study: The study that it was made of.
+        responses: Names of responses that are numbers.
+        level: Confidence of the intervals.
+        resamples: Bootstrap resamples.
     """
     _, parquet = arrow()
     modes = study.modes or ("all",)
@@ -172,8 +202,9 @@ def indices_of(
 
 
 def _filled(pages: Array, seed: int) -> tuple[Array, int]:
-    """The responses (factors + 2, samples) with incomplete samples replaced by others, and how many
-    were complete; the same number in all where too few were.
+    """The responses (factors + 2, samples) without gaps, and the number of complete samples.
+
+    Incomplete samples are replaced by complete ones. All values are 0 where too few are complete.
     """
     whole = np.flatnonzero(np.isfinite(pages).all(axis=0))
     n = pages.shape[1]
@@ -186,11 +217,14 @@ def _filled(pages: Array, seed: int) -> tuple[Array, int]:
 
 
 def numeric_responses(study: Study, wanted: Sequence[str]) -> tuple[str, ...]:
-    """The responses to share out: those that are named; else all of the study's that say something
-    of the whole vehicle, if there are any, else all that are numbers.
+    """The responses whose variance is divided: those of `wanted`, if any.
 
-    Raises LandingError for one that the study does not take, with the nearest, or that is a text,
-    and where there are none.
+    Else they are the study's responses of the whole vehicle, or, where there are none, all that are
+    numbers.
+
+    Raises:
+        LandingError: A response is not the study's (the message names the nearest) or is a text, or
+            there is no response that is a number.
     """
     known = known_responses()
     for name in wanted:

@@ -1,5 +1,6 @@
-"""A table of touchdown states from elsewhere, a guidance simulation say: CSV or Parquet, columns by
-our names and units.
+"""A table of touchdown states, for example of a guidance simulation: CSV or Parquet.
+
+Columns have our names, and units in brackets.
 """
 
 from __future__ import annotations
@@ -19,19 +20,25 @@ from .design import Design
 from .extras import arrow
 from .factors import column, variable
 
-# what makes a touchdown state; a table has all of them, or the study sets the others
+# the quantities of a touchdown state: a table has all of them, or the study sets the others
 STATE = ("drop.tilt", "drop.pitch_rate", "drop.horizontal_velocity", "drop.vertical_velocity")
 HEADING = re.compile(r"\s*(\S+?)\s*(?:\[([^\]]*)\])?\s*")
 
 
 def read_states(path: Path, ignored: Collection[str], given: Collection[str]) -> Design:
-    """The table's rows as a design; headings are a name and, in brackets, a unit (default SI):
-    `drop.tilt [deg]`. Columns named in `ignored` are passed over; of a touchdown state's four
-    quantities, those that are `given` elsewhere need no column.
+    """The table's rows as a design.
 
-    A value that is no number stays what it is, so that its row is refused when it is its turn.
-    Raises LandingError: missing or unreadable file, unknown or doubled columns, a wrong unit,
-    missing columns, no rows.
+    A heading is a name and, in brackets, a unit (default SI): `drop.tilt [deg]`. A value that is no
+    number is kept as it is, so that its row is refused when it is made.
+
+    Args:
+        path: The table, .csv or .parquet.
+        ignored: Columns to skip.
+        given: Quantities that are given elsewhere; a touchdown state needs no column for these.
+
+    Raises:
+        LandingError: A missing or unreadable file, an unknown or doubled column, a wrong unit, a
+            missing column, or no rows.
     """
     if path.suffix not in (".csv", ".parquet"):
         raise LandingError(f"table {path} must be a .csv or .parquet file")
@@ -64,7 +71,8 @@ def read_states(path: Path, ignored: Collection[str], given: Collection[str]) ->
     missing = [name for name in STATE if name not in columns and name not in given]
     if missing:
         raise LandingError(
-            f"{path} has no column {', '.join(missing)}; a touchdown state needs it: add it, or give it in [set]"
+            f"{path} has no column {', '.join(missing)}; a touchdown state needs it: "
+            "add it, or give it in [set]"
         )
     count = len(next(iter(columns.values()))) if columns else 0
     if not count:

@@ -1,6 +1,6 @@
-"""A study: which landings to make and what to take off each.
+"""The study of a sweep: the landings to make and the responses to take from each.
 
-Read from TOML, checked before anything runs.
+It is read from TOML and checked before anything runs.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ from ...parameters import PARAMETER_QUANTITIES, Parameters
 from ...presets import to_toml
 from ...quantities import MODES, Quantity
 from .. import toml_keys
-from ..outcome import DEFAULT_SLIDE, LIMITS
+from ..limits import LIMITS
+from ..outcome import DEFAULT_SLIDE
 from .design import LARGEST, Design, drawn, grid
 from .factors import VARIABLES, Factor, read_factor
 from .responses import expand
@@ -39,7 +40,7 @@ NUMBERS = {
         ),
         Quantity(
             "m",
-            "what a footpad may move and has not slid",
+            "largest distance that a footpad may move without having slid",
             0.0,
             1e3,
             name="slide",
@@ -64,10 +65,25 @@ KEYS = (
 
 @dataclass(frozen=True)
 class Study:
-    """A study as it is run; values in SI.
+    """A study; values in SI.
 
-    `fixed` are set in every landing, `factors` varied, `table` holds touchdown states. `modes` are
-    landed for each sample; none where the mode is varied.
+    Attributes:
+        name: The study's name.
+        method: grid, lhs, sobol or table.
+        samples: Samples drawn; 0 for a grid or table.
+        seed: Seed of the points.
+        parameters: The parameters that are not varied.
+        modes: Landing modes, each landed for every sample; empty where the mode is varied.
+        until: End of each landing [s].
+        every: Time between samples [s].
+        rtol: Relative tolerance of the integrator.
+        slide: Largest distance that a footpad may move without having slid [m].
+        responses: Names of the responses.
+        limits: Limits by name.
+        fixed: Values that are set in every landing, by name.
+        factors: The quantities that are varied.
+        table: Touchdown states.
+        text: The file's text.
     """
 
     name: str
@@ -99,28 +115,43 @@ class Study:
 
     @property
     def notes(self) -> list[str]:
-        """What a user should know of this study before running it."""
+        """Notes for the user before the study is run."""
         if self.method != "sobol" or self.samples & (self.samples - 1) == 0:
             return []
         below = 1 << (self.samples.bit_length() - 1)
-        return [
-            f"Sobol points are balanced where their number is a power of 2: {below} or {2 * below}, not {self.samples}"
-        ]
+        note = (
+            "Sobol points are balanced where their number is a power of 2: "
+            f"{below} or {2 * below}, not {self.samples}"
+        )
+        return [note]
 
     def record(self) -> dict[str, Any]:
-        """All that decides a row, the points apart: for the fingerprint."""
+        """Everything that decides a row, the points apart, for the fingerprint."""
         return {
-            "method": self.method, "samples": self.samples, "seed": self.seed, "modes": list(self.modes), "until": self.until,
-            "every": self.every, "rtol": self.rtol, "slide": self.slide, "responses": list(self.responses), "limits": dict(self.limits),
-            "set": dict(self.fixed), "factors": [f.record() for f in self.factors], "parameters": to_toml(self.parameters, comments=False),
-        }  # fmt: skip
+            "method": self.method,
+            "samples": self.samples,
+            "seed": self.seed,
+            "modes": list(self.modes),
+            "until": self.until,
+            "every": self.every,
+            "rtol": self.rtol,
+            "slide": self.slide,
+            "responses": list(self.responses),
+            "limits": dict(self.limits),
+            "set": dict(self.fixed),
+            "factors": [f.record() for f in self.factors],
+            "parameters": to_toml(self.parameters, comments=False),
+        }
 
 
 def read_study(path: Path) -> Study:
-    """A study from a TOML file; `docs/studies.md` has every key. Files that it names lie beside it.
+    """A study from a TOML file; `docs/studies.md` has every key.
 
-    Raises LandingError: missing file, TOML syntax, unknown keys or names, values out of bounds, an
-        empty range, a bad table.
+    Files that it names lie beside it.
+
+    Raises:
+        LandingError: A missing file, TOML syntax, unknown keys or names, values out of bounds, an
+            empty range, or a bad table.
     """
     document, text = toml_keys.read(path)
     try:
@@ -130,10 +161,10 @@ def read_study(path: Path) -> Study:
 
 
 def _study(document: dict[str, Any], path: Path, text: str) -> Study:
-    toml_keys.only(document, TABLES, "table")
-    told = toml_keys.table(document, "study")
-    toml_keys.only(told, KEYS, "key of [study]")
-    method = toml_keys.text(told, "method", "table" if "table" in told else "none")
+    toml_keys.refuse_unknown(document, TABLES, "table")
+    keys = toml_keys.table(document, "study")
+    toml_keys.refuse_unknown(keys, KEYS, "key of [study]")
+    method = toml_keys.text(keys, "method", "table" if "table" in keys else "none")
     if method not in METHODS:
         raise unknown("method", method, METHODS)
     fixed = toml_keys.values(toml_keys.table(document, "set"), VARIABLES, "quantity in [set]")
@@ -142,19 +173,21 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
     for name in given:
         if given.count(name) > 1:
             raise LandingError(f"{name} is given twice, in [set] or as a [[factor]]; leave one")
-    table = _states(told, method, path, given)
+    table = _states(keys, method, path, given)
     if table is None and not factors:
         raise LandingError(
-            'the study varies nothing; add a [[factor]], or method = "table" with table = "FILE.csv"'
+            "the study varies nothing; add a [[factor]], "
+            'or method = "table" with table = "FILE.csv"'
         )
-    samples = _samples(told, method)
+    samples = _samples(keys, method)
     if method == "grid":
         grid(factors)
-    parameters = _parameters(told, path, fixed)
-    numbers = {name: toml_keys.number(told, q) for name, q in NUMBERS.items()}
+    parameters = _parameters(keys, path, fixed)
+    numbers = {name: toml_keys.number(keys, q) for name, q in NUMBERS.items()}
     if numbers["every"] > numbers["until"]:
         raise LandingError(
-            f"every = {numbers['every']:g} s is above until = {numbers['until']:g} s; no landing would have a second sample"
+            f"every = {numbers['every']:g} s is above until = {numbers['until']:g} s; "
+            "no landing would have a second sample"
         )
     limits = {
         name: float(v)
@@ -162,17 +195,17 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
             toml_keys.table(document, "limits"), LIMITS, "limit"
         ).items()
     }
-    name = toml_keys.text(told, "name", path.stem)
+    name = toml_keys.text(keys, "name", path.stem)
     if Path(name).name != name:
         raise LandingError(f"name = {name!r} names a folder; take one without '/'")
     return Study(
         name=name,
         method=method,
         samples=samples,
-        seed=toml_keys.whole(told, "seed", 1, 0, 2**31 - 1),
+        seed=toml_keys.integer(keys, "seed", 1, 0, 2**31 - 1),
         parameters=parameters,
-        modes=_modes(told, parameters, {*given, *(table.columns if table is not None else ())}),
-        responses=expand(toml_keys.texts(told, "responses")),
+        modes=_modes(keys, parameters, {*given, *(table.columns if table is not None else ())}),
+        responses=expand(toml_keys.texts(keys, "responses")),
         limits=limits,
         fixed=fixed,
         factors=factors,
@@ -183,29 +216,30 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
 
 
 def _states(
-    told: Mapping[str, Any], method: str, path: Path, given: Collection[str]
+    keys: Mapping[str, Any], method: str, path: Path, given: Collection[str]
 ) -> Design | None:
     if method != "table":
         for key in ("table", "ignore"):
-            if key in told:
+            if key in keys:
                 raise LandingError(
-                    f'{key} = {told[key]!r} belongs to method = "table"; this study\'s is {method!r}'
+                    f'{key} = {keys[key]!r} belongs to method = "table"; '
+                    f"this study's is {method!r}"
                 )
         return None
-    if "table" not in told:
+    if "table" not in keys:
         raise LandingError('method = "table" needs table = "FILE.csv", the touchdown states')
     return read_states(
-        path.parent / toml_keys.text(told, "table", ""),
-        toml_keys.texts(told, "ignore") or (),
+        path.parent / toml_keys.text(keys, "table", ""),
+        toml_keys.texts(keys, "ignore") or (),
         given,
     )
 
 
 def _parameters(
-    told: Mapping[str, Any], path: Path, fixed: Mapping[str, float | str]
+    keys: Mapping[str, Any], path: Path, fixed: Mapping[str, float | str]
 ) -> Parameters:
-    preset = toml_keys.text(told, "preset", "") if "preset" in told else None
-    file = path.parent / toml_keys.text(told, "parameters", "") if "parameters" in told else None
+    preset = toml_keys.text(keys, "preset", "") if "preset" in keys else None
+    file = path.parent / toml_keys.text(keys, "parameters", "") if "parameters" in keys else None
     parameters = choose_parameters(preset, file)
     return parameters.with_values(
         {name: value for name, value in fixed.items() if name in PARAMETER_QUANTITIES}, "study"
@@ -213,13 +247,14 @@ def _parameters(
 
 
 def _modes(
-    told: Mapping[str, Any], parameters: Parameters, given: Collection[str]
+    keys: Mapping[str, Any], parameters: Parameters, given: Collection[str]
 ) -> tuple[str, ...]:
-    modes = toml_keys.texts(told, "modes")
+    modes = toml_keys.texts(keys, "modes")
     if "drop.mode" in given:
         if modes is not None:
             raise LandingError(
-                "drop.mode is given as a factor, in [set] or in the table, and modes in [study]; leave one"
+                "drop.mode is given as a factor, in [set] or in the table, and modes in [study]; "
+                "leave one"
             )
         return ()
     for mode in modes or ():
@@ -228,13 +263,14 @@ def _modes(
     return tuple(modes) if modes is not None else (parameters.drop.mode,)
 
 
-def _samples(told: Mapping[str, Any], method: str) -> int:
+def _samples(keys: Mapping[str, Any], method: str) -> int:
     if method in ("grid", "table"):
-        if "samples" in told:
+        if "samples" in keys:
             raise LandingError(
-                f'samples = {told["samples"]!r} belongs to "lhs" and "sobol"; a {method} has as many as its points are'
+                f'samples = {keys["samples"]!r} belongs to "lhs" and "sobol"; '
+                f"a {method} has as many as its points are"
             )
         return 0
-    if "samples" not in told:
+    if "samples" not in keys:
         raise LandingError(f"{method} needs samples = N, the number of points")
-    return toml_keys.whole(told, "samples", 0, 1, LARGEST)
+    return toml_keys.integer(keys, "samples", 0, 1, LARGEST)

@@ -1,4 +1,4 @@
-"""What a study's results come to: counts of outcomes and failures, and the spread of each response."""
+"""The summary of a study's results: outcomes, failures, and the spread of each response."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ SHOWN_FAILURES = 5
 
 @dataclass(frozen=True)
 class Spread:
-    """A response over the landings that have it: how many, smallest, 5 %, median, 95 %, largest
-    [SI].
+    """A response over the landings that have it.
+
+    `count` is their number; `quantiles` are smallest, 5 %, median, 95 % and largest [SI].
     """
 
     name: str
@@ -28,8 +29,14 @@ class Spread:
 
 @dataclass
 class Summary:
-    """A study's results: `outcomes` counts names, `failures` are the first few (index, reason) of
-    `failed`.
+    """A study's results.
+
+    Attributes:
+        landings: All landings.
+        failed: Landings that could not be made.
+        failures: Index and reason of the first of these.
+        outcomes: Landings by the outcome's name.
+        spreads: The spread of each response that is a number.
     """
 
     landings: int
@@ -56,7 +63,7 @@ class Summary:
 
 
 def summarise_results(path: Path) -> Summary:
-    """Reads a results file a column at a time."""
+    """The summary of a results file, which is read a column at a time."""
     _, parquet = arrow()
     file = parquet.ParquetFile(path)
     summary = Summary(file.metadata.num_rows)

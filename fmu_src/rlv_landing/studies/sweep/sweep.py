@@ -1,10 +1,10 @@
-"""Runs a study's landings on all cores or a cluster, in any order, and keeps their rows in the
-order of their index.
+"""The run of a study's landings, on all cores or a cluster.
+
+Landings are made in any order; their rows are kept in the order of their index.
 """
 
 from __future__ import annotations
 
-import os
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -13,12 +13,13 @@ from threading import Event
 from typing import Any, Protocol
 
 from ...errors import LandingError
+from ...workers import default_workers
 from .result_files import LEADING, Results
-from .row import Plan, Task
+from .sweep_row import Plan, Task
 
 Rows = list[list[Any]]
-Failed = list[tuple[str, str]]
-# landings that a thread takes at once: few, so that Ctrl-C is answered soon
+Failures = list[tuple[str, str]]
+# landings in a task of a thread: few, so that Ctrl-C ends soon
 THREAD_ROWS = 8
 
 
@@ -27,28 +28,29 @@ class LostError(RuntimeError):
 
 
 class Engine(Protocol):
-    """Where landings are made. `rows` is how many go into one task."""
+    """Makes landings in tasks of `rows` landings each."""
 
     rows: int
 
     def submit(self, rows: Sequence[dict[str, Any]]) -> Any:
-        """Have these landings made: a task."""
+        """Submit a task that makes these landings."""
 
     def result(self, task: Any) -> Rows:
         """Wait for a task's rows."""
 
-    def room(self) -> int:
-        """How many tasks may wait at once."""
+    def capacity(self) -> int:
+        """The number of tasks that may wait at once."""
 
     def stop(self, tasks: Sequence[Any]) -> list[Rows]:
-        """Begin nothing more.
+        """Start no more landings.
 
-        The rows of those tasks, from the first on without a gap, that are there or were begun.
+        Returns:
+            The rows of the tasks that are done or were started, from the first on without a gap.
         """
 
 
 class Threads:
-    """Landings in threads of this process: a landing runs without the GIL."""
+    """Makes landings in threads of this process; a landing runs without the GIL."""
 
     rows = THREAD_ROWS
 
@@ -59,7 +61,7 @@ class Threads:
         self._stopped = Event()
 
     def submit(self, rows: Sequence[dict[str, Any]]) -> Future[Rows]:
-        """Have these landings made; of those that are stopped in between, the first ones."""
+        """Submit a task; where it is stopped in between, it returns its first landings."""
         return self._pool.submit(self._run, rows)
 
     def _run(self, rows: Sequence[dict[str, Any]]) -> Rows:
@@ -67,19 +69,19 @@ class Threads:
         for values in rows:
             if self._stopped.is_set():
                 break
-            made.append(self._plan.row(values))
+            made.append(self._plan.sweep_row(values))
         return made
 
     def result(self, task: Future[Rows]) -> Rows:
         """Wait for a task's rows."""
         return task.result()
 
-    def room(self) -> int:
-        """Enough that no thread runs dry while one lands slowly."""
+    def capacity(self) -> int:
+        """The number of tasks that may wait: no thread runs out of work while one is slow."""
         return 4 * self._workers + 4
 
     def stop(self, tasks: Sequence[Future[Rows]]) -> list[Rows]:
-        """Threads end with the landing that they are at."""
+        """Stop each thread after its present landing; the rows as in `Engine.stop`."""
         self._stopped.set()
         begun = [task for task in tasks if not task.cancel()]
         whole: list[Rows] = []
@@ -90,14 +92,9 @@ class Threads:
         return whole
 
 
-def default_workers() -> int:
-    """The cores that this process may use."""
-    return len(os.sched_getaffinity(0))
-
-
 @contextmanager
 def threads(plan: Plan, workers: int | None = None) -> Iterator[Engine]:
-    """An engine of `workers` threads, default all cores."""
+    """An engine of `workers` threads [default: all cores that this process may use]."""
     count = workers or default_workers()
     with ThreadPoolExecutor(count) as pool:
         engine = Threads(plan, count, pool)
@@ -108,15 +105,22 @@ def threads(plan: Plan, workers: int | None = None) -> Iterator[Engine]:
 
 
 class Sweep:
-    """One run of a study: `progress` is told how many more landings are done, and label and reason
-    of those that failed.
+    """One run of a study.
+
+    Args:
+        task: The landings.
+        results: Takes the rows.
+        progress: Called with the number of landings done since the last call, and label and reason
+            of those that failed.
+        strict: Whether to end at the first landing that fails.
     """
 
     def __init__(
         self,
         task: Task,
         results: Results,
-        progress: Callable[[int, Failed], object],
+        progress: Callable[[int, Failures], object],
+        *,
         strict: bool = False,
     ) -> None:
         self._task = task
@@ -128,9 +132,13 @@ class Sweep:
     def run(self, engine: Engine) -> None:
         """Make every landing that the results lack.
 
-        What is done is in the results whatever happens: KeyboardInterrupt, a lost cluster, a disk
-        that refuses (OSError). Raises LandingError, when strict, at the first landing that fails,
-        and for a lost cluster.
+        The rows that are done are in the results whatever happens.
+
+        Raises:
+            LandingError: With `strict`, a landing failed.
+            LostError: The cluster is lost.
+            OSError: The disk refuses.
+            KeyboardInterrupt: The user interrupted.
         """
         waiting: deque[tuple[int, Any]] = deque()
         try:
@@ -138,7 +146,7 @@ class Sweep:
                 for first in range(begin, end, engine.rows):
                     rows = self._task.rows(first, min(first + engine.rows, end))
                     waiting.append((first, engine.submit(rows)))
-                    while len(waiting) >= engine.room():
+                    while len(waiting) >= engine.capacity():
                         self._keep_first(waiting, engine)
             while waiting:
                 self._keep_first(waiting, engine)
@@ -149,13 +157,12 @@ class Sweep:
 
     def _keep_first(self, waiting: deque[tuple[int, Any]], engine: Engine) -> None:
         made = engine.result(waiting[0][1])
-        # interrupted from here on, rows may be missing, for `--resume` to make, but none is kept
-        # twice
+        # an interrupt from here on may lose rows, which `--resume` makes again; it keeps none twice
         first, _ = waiting.popleft()
         self._keep(first, made)
 
     def _keep(self, first: int, made: Rows) -> None:
-        """Put the landings from `first` on into the results."""
+        """Add the rows of the landings from `first` on to the results."""
         task = self._task
         values = task.rows(first, first + len(made))
         rows = [
@@ -163,28 +170,29 @@ class Sweep:
             for i, (v, row) in enumerate(zip(values, made))
         ]
         failed = [i for i, row in enumerate(rows) if row[self._error] is not None]
-        told = [(task.label(first + i), str(rows[i][self._error])) for i in failed]
+        failures = [(task.label(first + i), str(rows[i][self._error])) for i in failed]
         if self._strict and failed:
             self._results.add(rows[: failed[0]])
-            raise LandingError(f"{told[0][0]}: {told[0][1]}")
+            raise LandingError(f"{failures[0][0]}: {failures[0][1]}")
         self._results.add(rows)
-        self._progress(len(rows), told)
+        self._progress(len(rows), failures)
 
 
 def check_all(task: Task) -> None:
     """Set up every landing of a study without running it.
 
-    Raises LandingError naming the first rows that are refused.
+    Raises:
+        LandingError: Landings are refused; the message names the first of them.
     """
-    refused: Failed = []
+    refused: Failures = []
     for index in range(len(task)):
         try:
             task.plan.landing(task.rows(index, index + 1)[0])
         except LandingError as e:
             refused.append((task.label(index), str(e)))
     if refused:
-        told = "; ".join(f"{label}: {reason}" for label, reason in refused[:5])
+        first = "; ".join(f"{label}: {reason}" for label, reason in refused[:5])
         raise LandingError(
-            f"{len(refused)} of {len(task)} landings are refused: {told}"
+            f"{len(refused)} of {len(task)} landings are refused: {first}"
             + ("; ..." if len(refused) > 5 else "")
         )

@@ -1,5 +1,6 @@
-"""Identification: it finds what is known, repeats itself, goes on where it stopped, and refuses
-what makes no sense.
+"""Identification: it finds known parameters again, repeats itself, and resumes after an interrupt.
+
+Input that makes no sense is refused.
 """
 
 from __future__ import annotations
@@ -61,8 +62,9 @@ def measured(tmp_path: Path) -> Path:
 
 
 def test_known_parameters_are_found_again_from_measured_curves(measured, tmp_path):
-    done = run("--series", f"2-2={measured}", "--free", ",".join(TRUTH), "--population", 8, "--evaluations", 150, "--polish", 60,
-               "--sigma", 0.2, cwd=tmp_path)  # fmt: skip
+    free = ("--series", f"2-2={measured}", "--free", ",".join(TRUTH))
+    search = ("--population", 8, "--evaluations", 150, "--polish", 60, "--sigma", 0.2)
+    done = run(*free, *search, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     found = read_toml(tmp_path / "identification" / "identified.toml")
     for name, value in TRUTH.items():

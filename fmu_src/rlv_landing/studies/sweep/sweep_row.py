@@ -1,6 +1,6 @@
 """One landing of a study: from a row of values to a row of responses.
 
-What a worker runs, in a thread here or on a cluster.
+A worker runs it, in a thread of this process or on a cluster.
 """
 
 from __future__ import annotations
@@ -25,7 +25,18 @@ MODE = "drop.mode"
 
 @dataclass(frozen=True)
 class Plan:
-    """What every landing of a study has in common. Small, so that it travels with each task."""
+    """Everything that all landings of a study share; small, because each task carries it.
+
+    Attributes:
+        parameters: The parameters that are not varied.
+        inputs: Constant inputs by name [SI].
+        until: End of each landing [s].
+        every: Time between samples [s].
+        rtol: Relative tolerance of the integrator.
+        responses: Names of the responses.
+        limits: Limits by name [SI].
+        slide: Largest distance that a footpad may move without having slid [m].
+    """
 
     parameters: Parameters
     inputs: Mapping[str, float]
@@ -46,13 +57,17 @@ class Plan:
 
     @cached_property
     def measure(self) -> Measure:
-        """Takes the responses off a history."""
+        """Takes the responses from a history."""
         return Measure(self.responses, self.limits, self.slide)
 
     def landing(self, values: Mapping[str, Any]) -> Landing:
         """The landing with these values, at its start.
 
-        Raises LandingError where they do not fit.
+        Args:
+            values: Parameters and inputs by name [SI].
+
+        Raises:
+            LandingError: The values make no landing.
         """
         mode = values.get(MODE, self.parameters.drop.mode)
         base = self.by_mode[mode] if mode in self.by_mode else self.parameters.for_mode(mode)
@@ -70,26 +85,32 @@ class Plan:
             landing.set_inputs(inputs)
         return landing
 
-    def row(self, values: Mapping[str, Any]) -> list[Any]:
-        """Version, error text (None where there is none), then the responses (None with an error)
-        of the landing with these values.
+    def sweep_row(self, values: Mapping[str, Any]) -> list[Any]:
+        """Make the landing with these values and take its responses.
+
+        Args:
+            values: Parameters and inputs by name [SI].
+
+        Returns:
+            The version, the error's text (None where there is none), then the responses (None with
+            an error).
         """
         try:
             landing = self.landing(values)
             history = landing.run(self.until, self.every)
             return [__version__, None, *self.measure(history, landing.statistics["rhs_calls"])]
         except Exception as e:
-            told = str(e) if isinstance(e, LandingError) else f"{type(e).__name__}: {e}"
-            return [__version__, told, *([None] * len(self.responses))]
+            error = str(e) if isinstance(e, LandingError) else f"{type(e).__name__}: {e}"
+            return [__version__, error, *([None] * len(self.responses))]
 
 
-def run_rows(plan: Plan, rows: Sequence[Mapping[str, Any]]) -> list[list[Any]]:
-    """`Plan.row` of each."""
-    return [plan.row(values) for values in rows]
+def sweep_rows(plan: Plan, rows: Sequence[Mapping[str, Any]]) -> list[list[Any]]:
+    """`Plan.sweep_row` of each row of values."""
+    return [plan.sweep_row(values) for values in rows]
 
 
 class Task:
-    """All landings of a study in order: their number, values by index, and what comes back.
+    """All landings of a study in order: their number, values by index, and columns.
 
     A sample lands once in each mode.
     """
@@ -103,8 +124,15 @@ class Task:
             if name not in PARAMETER_QUANTITIES
         }
         self.plan = Plan(
-            study.parameters, inputs, study.until, study.every, study.rtol, study.responses, study.limits, study.slide
-        )  # fmt: skip
+            parameters=study.parameters,
+            inputs=inputs,
+            until=study.until,
+            every=study.every,
+            rtol=study.rtol,
+            responses=study.responses,
+            limits=study.limits,
+            slide=study.slide,
+        )
         self.names = [MODE, *(name for name in design.columns if name != MODE)]
         self._modes = study.modes
 
@@ -116,15 +144,16 @@ class Task:
         return index // max(1, len(self._modes))
 
     def label(self, index: int) -> str:
-        """How errors call a landing; the rows of a table are counted from 1."""
+        """The name of a landing in errors; rows of a table are counted from 1."""
         row = (
             f" (row {self.sample(index) + 1} of the table)" if self.study.table is not None else ""
         )
         return f"landing {index}{row}"
 
     def rows(self, first: int, last: int) -> list[dict[str, Any]]:
-        """Values by name, the mode first, of the landings from `first` up to, not including,
-        `last`.
+        """Values by name of the landings from `first` up to, not including, `last`.
+
+        The mode is the first value.
         """
         if first >= last:
             return []
@@ -142,17 +171,19 @@ class Task:
         return found
 
     def about(self) -> dict[str, Any]:
-        """All that decides the rows."""
+        """Everything that decides the rows."""
         return {"version": __version__, **self.study.record(), "points": self.design.digest()}
 
     def quantities(self) -> list[Quantity]:
-        """The columns of a row after index, sample and seed: values, then version, error,
-        responses.
+        """The columns of a row after index, sample and seed.
+
+        They are values, version, error and responses.
         """
-        told = [Quantity("", "version of rlv-landing", name="version", kind="string"),
-                Quantity("", "why there is no landing", name="error", kind="string")]  # fmt: skip
+        version = Quantity("", "version of rlv-landing", name="version", kind="string")
+        error = Quantity("", "why there is no landing", name="error", kind="string")
         return [
             *(VARIABLES[name] for name in self.names),
-            *told,
+            version,
+            error,
             *(known_responses()[name] for name in self.plan.responses),
         ]

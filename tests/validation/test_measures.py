@@ -1,6 +1,4 @@
-"""The summary measures against loops whose areas are known, and against the model's own account of
-its energy.
-"""
+"""The summary measures beside loops of known area and the model's own energies."""
 
 from __future__ import annotations
 
@@ -36,8 +34,9 @@ def test_a_closed_ellipse_dissipates_its_area():
 
 
 def triangle(back: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Time, force, stroke: up a straight line to (SMAX, FMAX), back along one that starts at `back`
-    FMAX.
+    """Time, force and stroke along a triangle.
+
+    It goes up a straight line to (SMAX, FMAX), and back along one that starts at `back` FMAX.
     """
     stroke = np.concatenate([np.linspace(0.0, SMAX, 101), np.linspace(SMAX, 0.0, 101)])
     force = -FMAX / SMAX * stroke
@@ -64,8 +63,9 @@ def test_a_constant_force_has_efficiency_1():
 
 
 def test_the_dampers_work_is_what_the_model_says_they_hold_and_have_dissipated(validation):
-    """Over the whole landing, all legs: int -F ds = change of liquid and stop energy + dissipation
-    in orifice, seal and stop.
+    """The work int -F ds is the change of liquid and stop energy plus the dissipation.
+
+    Dissipation is in orifice, seal and stop; the sums are over the whole landing and all legs.
     """
     for history in validation.histories.values():
         done = sum(

@@ -1,6 +1,4 @@
-"""The audit: what it finds on the preset, that it notices what is wrong, and that its own account
-of momentum is right.
-"""
+"""The audit: its result on the preset, the faults that it detects, and its account of momentum."""
 
 from __future__ import annotations
 
@@ -57,9 +55,7 @@ def test_the_smooth_arc_is_in_contact_and_free_of_events():
 
 
 def test_momentum_is_the_rate_of_the_mass_points_own_positions(mode):
-    """Central differences of sum(m x), sum(m y), and of each point's position for the angular
-    momentum.
-    """
+    """Central differences of sum(m x), sum(m y), and of each point's position."""
     parameters = load_preset(FIGURES, mode)
     landing = Landing(parameters, rtol=1e-10)
     landing.advance_to(0.3)

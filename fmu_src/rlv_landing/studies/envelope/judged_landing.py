@@ -1,4 +1,4 @@
-"""One landing of an envelope: made, judged, and put in words."""
+"""One landing of an envelope, with its outcome by the study's limits."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ from typing import Any
 from ...errors import LandingError
 from ...landing import Landing
 from ...parameters import PARAMETER_QUANTITIES
-from ..outcome import Passed, outcome
+from ..limits import PassedLimit
+from ..outcome import outcome
 from ..whole_landing import whole_landing
 from .study import EnvelopeStudy
 
 FAILED = "failed"
-# landings of each outcome are lost by each criterion; a landing that the integrator could not make
-# is always lost
+# outcomes that are lost by each criterion; a landing that the integrator could not make is always
+# lost
 LOST = {
     "toppled": {"toppled", FAILED},
     "bottomed out": {"toppled", "bottomed out", FAILED},
@@ -25,19 +26,25 @@ LOST = {
 
 
 @dataclass(frozen=True)
-class Landed:
+class JudgedLanding:
     """One landing of an envelope.
 
-    `name`, `time` [s], `leg` and `first_limit` as in `Outcome`, and `failed` where the integrator
-    gave up, with its message in `error`; `towards` the side, +x or -x, to which it toppled;
-    `stability_min` and `stroke_left` [m].
+    Attributes:
+        name: As in `Outcome`, or `failed` where the integrator stopped.
+        time: As in `Outcome` [s].
+        leg: As in `Outcome`.
+        towards: The side, +x or -x, to which it toppled; else empty.
+        first_limit: As in `Outcome`.
+        stability_min: Smallest stability margin [m].
+        stroke_left: Least stroke left to a damper's stop [m].
+        error: The integrator's message where it failed.
     """
 
     name: str
     time: float
     leg: int | None = None
     towards: str = ""
-    first_limit: Passed | None = None
+    first_limit: PassedLimit | None = None
     stability_min: float = float("nan")
     stroke_left: float = float("nan")
     error: str = ""
@@ -50,8 +57,10 @@ class Landed:
 
     @property
     def condition(self) -> str:
-        """What is critical: which way it topples, which leg bottoms out first, which limit is
-        passed first.
+        """The critical condition, in words.
+
+        It names the side to which the vehicle topples, the leg that bottoms out first, and the
+        limit that is passed first.
         """
         parts = [f"topples to {self.towards}" if self.name == "toppled" else self.name]
         if self.leg is not None:
@@ -63,19 +72,25 @@ class Landed:
         return ", ".join(parts)
 
     @classmethod
-    def from_record(cls, record: Mapping[str, Any]) -> Landed:
-        """The same from what `asdict` made of it."""
+    def from_record(cls, record: Mapping[str, Any]) -> JudgedLanding:
+        """The landing of a record that `asdict` made."""
         limit = record["first_limit"]
-        return cls(**{**record, "first_limit": None if limit is None else Passed(**limit)})
+        return cls(**{**record, "first_limit": None if limit is None else PassedLimit(**limit)})
 
 
-def land(study: EnvelopeStudy, values: Mapping[str, float | str]) -> Landed:
-    """One landing with `values` of the axes and the family.
+def judged_landing(study: EnvelopeStudy, values: Mapping[str, float | str]) -> JudgedLanding:
+    """Make one landing with `values` of the axes and the family, and judge it.
 
-    Raises LandingError where the values make no landing (out of bounds, the flight starts below the
-    ground).
+    Args:
+        study: The study.
+        values: Parameters and inputs by name [SI].
+
+    Raises:
+        LandingError: The values make no landing: out of bounds, or the flight starts below the
+            ground.
     """
-    landing = Landing(study.parameters_with(values), rtol=study.rtol)
+    parameters = study.parameters_with(values)
+    landing = Landing(parameters, rtol=study.rtol)
     inputs = {
         name: float(value) for name, value in values.items() if name not in PARAMETER_QUANTITIES
     }
@@ -83,20 +98,18 @@ def land(study: EnvelopeStudy, values: Mapping[str, float | str]) -> Landed:
     try:
         history = whole_landing(landing, study.until, study.every)
     except LandingError as e:
-        return Landed(FAILED, landing.time, error=str(e))
+        return JudgedLanding(FAILED, landing.time, error=str(e))
     found = outcome(history, study.limits, study.slide)
     towards = ""
     if found.name == "toppled":
-        towards = (
-            "+x" if history["body.pitch"][-1] > study.parameters_with(values).ground.slope else "-x"
-        )
+        towards = "+x" if history["body.pitch"][-1] > parameters.ground.slope else "-x"
     margins = found.margins
-    return Landed(
-        found.name,
-        found.time,
-        found.leg,
-        towards,
-        found.first_limit,
-        margins["stability_min"],
-        margins["stroke_left"],
+    return JudgedLanding(
+        name=found.name,
+        time=found.time,
+        leg=found.leg,
+        towards=towards,
+        first_limit=found.first_limit,
+        stability_min=margins["stability_min"],
+        stroke_left=margins["stroke_left"],
     )

@@ -102,9 +102,9 @@ def test_rrms_and_discrepancies_are_in_json_and_tables(command, validation, tmp_
     names = [FORCE, STROKE]
     kept = History(part.time, names, np.column_stack([part[n] for n in names]))
     kept.to_csv(tmp_path / "t.csv")
-    told = command("validate", "--test-data", f"1-2-1={tmp_path / 't.csv'}", "--json")
-    assert told.code == 0, told.err
-    record = json.loads(told.out)
+    done = command("validate", "--test-data", f"1-2-1={tmp_path / 't.csv'}", "--json")
+    assert done.code == 0, done.err
+    record = json.loads(done.out)
     assert [(c["mode"], c["column"]) for c in record["rrms"]] == [("1-2-1", n) for n in names]
     assert record["rrms"][0]["rrms"] == approx(0.0, abs=1e-12)
     assert "discrepancy_absorbed" in record["measures"]["1-2-1"][0]

@@ -1,6 +1,4 @@
-"""How a difference from a printed number is judged: on the number's own scale, or its curve's where
-it is near zero.
-"""
+"""The scale on which a difference from a printed number is judged: its own, or its curve's."""
 
 from __future__ import annotations
 

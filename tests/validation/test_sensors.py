@@ -1,6 +1,4 @@
-"""The sensor chain against closed forms: what passes unchanged, what is damped and by how much,
-what comes late, what is refused.
-"""
+"""The sensor chain beside closed forms: gain, delay, and the input that it refuses."""
 
 from __future__ import annotations
 
@@ -47,8 +45,9 @@ def amplitude(t: np.ndarray, values: np.ndarray, frequency: float) -> float:
 
 
 def butterworth(frequency: float) -> float:
-    """Gain of a fourth-order digital Butterworth filter of 100 Hz at 5 kHz, in closed form
-    (bilinear, pre-warped).
+    """Gain of a fourth-order digital Butterworth filter of 100 Hz at 5 kHz, in closed form.
+
+    It is bilinear and pre-warped.
     """
     return float((1.0 + (tan(pi * frequency / 5000.0) / tan(pi * 100.0 / 5000.0)) ** 8) ** -0.5)
 
@@ -60,7 +59,7 @@ def test_polynomials_up_to_order_2_pass_the_stroke_smoothing_unchanged_ends_incl
 
 
 def test_the_stroke_smoothing_has_the_closed_form_weights_of_savitzky_and_golay():
-    """Order 2, 31 points, m = 15: w_i = 3 (3 m^2 + 3 m - 1 - 5 i^2)/((2 m + 3)(2 m + 1)(2 m - 1))."""
+    """w_i = 3 (3 m^2 + 3 m - 1 - 5 i^2)/((2 m + 3)(2 m + 1)(2 m - 1)) with order 2, m = 15."""
     impulse = np.zeros(101)
     impulse[50] = 1.0
     i = np.arange(-15, 16)
@@ -92,8 +91,9 @@ def test_a_sine_at_100_hz_loses_3_db_forward_and_6_db_with_zero_phase():
 
 
 def test_zero_phase_keeps_a_pulses_time_and_symmetry_and_forward_delays_a_ramp_by_4_2_ms():
-    """Group delay at rest of the bilinear Butterworth filter: 2.6131 (sum of its sections' 1/Q) T/2
-    / tan(pi fc T).
+    """Group delay at rest of the bilinear Butterworth filter.
+
+    It is 2.6131 (sum of its sections' 1/Q) T/2 / tan(pi fc T).
     """
     t = np.arange(-1000, 1001) / SAMPLING
     pulse = np.exp(-((t / 0.004) ** 2))
@@ -116,7 +116,7 @@ def test_the_chain_leaves_forces_at_5_khz_raw_to_the_digit():
 
 @pytest.mark.parametrize("rate", [20000.0, 50000.0, 12000.0])
 def test_finer_samples_are_decimated_without_aliases(rate):
-    """4 kHz would fold to 1 kHz at 5 kHz; it is taken out, while 50 Hz stays, and flags stay flags."""
+    """4 kHz would fold to 1 kHz at 5 kHz; it is removed, while 50 Hz and flags stay."""
     t = np.arange(int(0.4 * rate)) / rate
     active = (t > 0.2).astype(float)
     history = made(t, force=np.sin(2 * pi * 50.0 * t) + np.sin(2 * pi * 4000.0 * t), active=active)
@@ -183,7 +183,10 @@ def broken(what: str) -> History:
         ("inf", r"stroke = inf m at t = 0\.02 s"),
         (
             "gap",
-            r"time goes on by 0\.0102 s at t = 0\.0498 s where samples are 0\.0002 s apart; .* resample",
+            (
+                r"time goes on by 0\.0102 s at t = 0\.0498 s "
+                r"where samples are 0\.0002 s apart; .* resample"
+            ),
         ),
         ("back", r"time goes back by 0\.0002 s at t = 0\.0498 s"),
         ("twice", r"time stands still for 0 s at t = 0\.0498 s"),

@@ -1,4 +1,4 @@
-"""The report: one self-contained page that shows every printed scalar, written whole or not at all."""
+"""The report: one self-contained page with every printed scalar, written whole or not at all."""
 
 from __future__ import annotations
 
@@ -18,9 +18,7 @@ VOID = {"meta", "link", "br", "hr", "img", "input"}
 
 
 class Page(HTMLParser):
-    """Tags with their attributes, texts by the id of the row around them, and whether every tag is
-    closed.
-    """
+    """Tags with their attributes, texts by the id of their row, and unclosed tags."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -125,8 +123,9 @@ def test_a_page_that_cannot_be_written_leaves_nothing_behind(tmp_path):
 
 
 def test_a_landing_that_lacks_what_the_paper_prints_has_a_page_all_the_same():
-    """Tilted back by 46 degrees, it falls over leg 1: the others never touch, their scalars are not
-    found, the rest is shown.
+    """Tilted back by 46 degrees, the vehicle falls over leg 1.
+
+    The other legs never touch: their scalars are missing, the rest is shown.
     """
     thrown = load_preset("yue2022-figures").with_values(
         {"drop.tilt": -0.8, "drop.contact_time": 0.0}
