@@ -46,8 +46,8 @@ from vehicle_3d import LEGS, SCALE, Vehicle3D  # noqa: E402
 PRESET = "yue2022-figures"
 # the files of the core that do arithmetic in a right-hand side
 PARTS = (
-    "bodies.planar_legs", "bodies.planar_motion", "leg", "struts.liquid_spring", "struts.end_stops", "struts.fluid", "struts.elastic",
-    "ground.normal", "ground.paper_friction",
+    "bodies.planar_legs", "bodies.planar_motion", "leg", "struts.liquid_spring",
+    "struts.end_stops", "struts.fluid", "struts.elastic", "ground.normal", "ground.paper_friction",
 )  # fmt: skip
 STROKES = [f"leg[{leg}].main_strut.stroke" for leg in (1, 2, 3, 4)]
 BODY = ("x", "y", "pitch", "vx", "vy", "pitch_rate")

@@ -1,5 +1,4 @@
-"""What is C in the compiled core: the declarations that Cython reads, made from the kernels'
-annotations.
+"""Makes the declarations that Cython reads for the compiled core from the kernels' annotations.
 
 A record becomes a struct, an annotated function a C function. A method is for C alone where its
 name begins with `_`, or where it takes or gives an address or a record; the others can be called
@@ -15,7 +14,10 @@ from pathlib import Path
 
 # these become C: records, and how arrays and records are accessed
 TRANSLATED = ("records", "access", "memory")
-MATH = "from cython cimport final\nfrom libc.math cimport cos, exp, expm1, fabs, log, pow, sin, sqrt, tanh\n"
+MATH = (
+    "from cython cimport final\n"
+    "from libc.math cimport cos, exp, expm1, fabs, log, pow, sin, sqrt, tanh\n"
+)
 DATA = """
 cdef inline double* data(double[::1] numbers) noexcept nogil:
     return &numbers[0]
@@ -86,8 +88,12 @@ def _overridden(modules: list[ast.Module]) -> set[str]:
 
 
 class Types:
-    """C's names for the kernels' annotations; `records` are the names of the records, `accessed` of
-    those that stand in arrays, `overridden` those of methods that a subclass may replace.
+    """C's names for the kernels' annotations.
+
+    Args:
+        records: Names of the records.
+        accessed: Names of the records that stand in arrays.
+        overridden: Names of the methods that a subclass may replace.
     """
 
     def __init__(self, records: set[str], accessed: set[str], overridden: set[str]) -> None:
@@ -115,9 +121,7 @@ class Types:
         return TYPES.get(text, text)
 
     def parameter(self, annotation: ast.expr | None) -> str:
-        """C's name of a parameter's type: as `name`, and the address of a record that stands in an
-        array.
-        """
+        """C's name of a parameter's type: as `name`, or the address of a record in an array."""
         found = self.name(annotation)
         return f"{found}*" if found in self.accessed & self.records else found
 
@@ -218,9 +222,7 @@ def _constants(records: ast.Module, access: ast.Module) -> Iterator[str]:
 
 
 def _access(tree: ast.Module, types: Types) -> Iterator[str]:
-    """The functions of `access.py`: of records that stand at `y[at:]`, and of the i-th of kept
-    records.
-    """
+    """The functions of `access.py`: for records at `y[at:]`, and for the i-th of kept records."""
     written = ", ".join
     yield "ctypedef fused AnyRecord:\n" + "".join(
         f"    {name}\n" for name in sorted(_used(tree, types.records))
@@ -243,9 +245,11 @@ def _access(tree: ast.Module, types: Types) -> Iterator[str]:
         buffer = "double[::1]" if kept else "double*"
         if record == "None":
             parameters = written((f"AnyRecord {first}", f"{buffer} {array}", f"int {last}"))
-            yield f"cdef inline void {node.name}({parameters}) noexcept nogil:\n    ({place})[0] = {first}\n"
+            yield f"cdef inline void {node.name}({parameters}) noexcept nogil:\n"
+            yield f"    ({place})[0] = {first}\n"
         else:
-            yield f"cdef inline {types.parameter(node.returns)} {node.name}({buffer} {array}, int {last}) noexcept nogil:\n"
+            result, parameters = types.parameter(node.returns), f"{buffer} {array}, int {last}"
+            yield f"cdef inline {result} {node.name}({parameters}) noexcept nogil:\n"
             yield f"    return {place}\n"
 
 

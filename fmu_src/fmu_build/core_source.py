@@ -70,9 +70,7 @@ def _siblings(path: Path) -> Iterator[Path]:
 
 
 def translated(text: str) -> str:
-    """`text` with its imports and tables of laws blanked, and the choices of laws as branches on
-    their numbers.
-    """
+    """`text` without its imports and tables of laws; a choice of a law branches on its number."""
     lines = text.splitlines()
     tree = ast.parse(text)
     laws = tables(tree)
@@ -112,8 +110,10 @@ def tables(tree: ast.Module) -> dict[str, list[dict[str, str]]]:
 
 
 def _branches(function: ast.FunctionDef, laws: dict[str, list[dict[str, str]]]) -> list[str]:
-    """The lines that stand for `return chosen(TABLE, kind).member(arguments)`; none where a
-    function chooses no law.
+    """The lines that replace `return chosen(TABLE, kind).member(arguments)`.
+
+    Returns:
+        One branch a law; no lines for a function that chooses no law.
     """
     last = function.body[-1]
     if not (
@@ -137,15 +137,18 @@ def _branches(function: ast.FunctionDef, laws: dict[str, list[dict[str, str]]]) 
 
 
 def check_names(sources: list[Path]) -> None:
-    """Raise ValueError where two kernel files give the same name to different things: joined, they
-    share one module.
+    """Check that no two kernel files define the same name: joined, they share one module.
+
+    Raises:
+        ValueError: Two files do.
     """
     owners: dict[str, Path] = {}
     for path in sources:
         for name in defined_names(ast.parse(path.read_text())):
             if owners.setdefault(name, path) != path:
                 raise ValueError(
-                    f"{name} is defined in {owners[name].name} and in {path.name}; give one of them another name"
+                    f"{name} is defined in {owners[name].name} and in {path.name}; "
+                    "give one of them another name"
                 )
 
 
@@ -181,7 +184,8 @@ def write_source(folder: Path, core: Path = CORE) -> Path:
     texts = "".join(
         f"# {p.relative_to(core).as_posix()}\n{translated(p.read_text())}" for p in sources
     )
-    python = f'from array import array\n\nfrom cython import nogil\n\n{MEMORY}\n{texts}SOURCE_DIGEST = "{digest(core)}"\n'
+    imports = "from array import array\n\nfrom cython import nogil\n\n"
+    python = f'{imports}{MEMORY}\n{texts}SOURCE_DIGEST = "{digest(core)}"\n'
     package = folder / package_name(core)
     package.mkdir(parents=True, exist_ok=True)
     (package / "__init__.py").touch()

@@ -1,5 +1,6 @@
-"""A new law of the main strut is one file, and its import and its line in `struts/kinds.py`: in a
-copy of the core, pure and compiled.
+"""A new law of the main strut is one file, and its import and its line in `struts/kinds.py`.
+
+Shown in a copy of the core, pure and compiled.
 """
 
 import importlib
@@ -91,8 +92,9 @@ def compiled(core: Path, folder: Path) -> Path:
 
 
 def land(planar, exponential, kind: float) -> np.ndarray:
-    """The outputs of a landing, a row every millisecond, with a mixed vehicle: the first leg group
-    keeps its liquid spring.
+    """The outputs of a landing, a row every millisecond.
+
+    The vehicle is mixed: its first leg group keeps the liquid spring.
     """
     parameters = load_preset("yue2022-figures", "2-2").with_values(
         {"vehicle.transverse_load_at": "footpad"}
@@ -161,6 +163,7 @@ def test_two_kernel_files_that_define_the_same_name_are_refused(tmp_path):
     (core / "struts" / "another.py").write_text("DAMPING = 1.0\n")
     with pytest.raises(
         ValueError,
-        match=r"DAMPING is defined in another\.py and in linear_spring\.py; give one of them another name",
+        match=r"DAMPING is defined in another\.py and in linear_spring\.py; "
+        "give one of them another name",
     ):
         write_source(tmp_path / "source", core)

@@ -1,4 +1,4 @@
-"""Records are the only layout: what the kernels write stands where the names of the quantities say."""
+"""Records are the only layout: kernels write where the names of the quantities say."""
 
 from array import array
 

@@ -20,8 +20,9 @@ def doubles(*values):
 
 
 class Relaxing(System):
-    """x'' = u - x, and a pair whose difference decays at 3 `decay` [1/s] and whose first state is
-    driven as x is.
+    """An oscillator x'' = u - x beside a pair of states that evens out.
+
+    The pair's difference decays at 3 `decay` [1/s]; its first state is driven as x is.
     """
 
     def __init__(self, decay, told):

@@ -238,8 +238,9 @@ def decoded(data: bytes, topic: Topic) -> Any:
 
 
 def decoded_by_mcap(data: bytes, topic: Topic) -> Any:
-    """For messages that end in an empty array of numbers: rclpy adds the gap before its first
-    element, which rosbags refuses.
+    """Decodes messages that end in an empty array of numbers.
+
+    rclpy adds the gap before the array's first element, which rosbags refuses.
     """
     text = definition(topic.type_name).text.encode()
     decode = DecoderFactory().decoder_for("cdr", Schema(1, text, "ros2msg", topic.type_name))

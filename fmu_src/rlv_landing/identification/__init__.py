@@ -1,0 +1,1 @@
+"""Identification: numbers that the paper does not print, found from those that it prints."""

@@ -197,7 +197,7 @@ class Search:
         )
 
     def jacobian(self, z: NDArray[np.float64]) -> NDArray[np.float64]:
-        """d misfit/d z (targets, numbers) by central differences, one-sided at the cube's faces."""
+        """Derivative of the misfit by `z` (targets, numbers) by central differences, one-sided at the cube's faces."""
         higher: list[NDArray[np.float64]] = []
         lower: list[NDArray[np.float64]] = []
         for i in range(len(z)):
