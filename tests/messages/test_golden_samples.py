@@ -37,7 +37,7 @@ from rlv_ros_bridge.messages.topics import (
     Topic,
 )
 from rlv_ros_bridge.messages.transforms import Transforms
-from rlv_ros_bridge.node.input_queue import Applied
+from rlv_ros_bridge.node.input_queue import InputChange
 
 STORE = get_typestore(Stores.ROS2_KILTED)
 # 12 s and 345 000 006 ns.
@@ -359,7 +359,7 @@ def test_the_outputs_are_read_back_from_the_independent_readers_message(topic: T
 def test_applied_inputs_are_golden_and_read_back(
     topic: Topic, values: dict[str, float], golden: dict[str, Any]
 ) -> None:
-    data = serialize_message(Applied(topic, NANOSECONDS, values).message())
+    data = serialize_message(InputChange(topic, NANOSECONDS, values).message())
     message = decoded_by_mcap(data, topic)
     assert_golden(message, {**HEADER, "header.frame_id": "map", **golden})
     assert INPUT_READINGS[topic.name](message) == values
