@@ -26,12 +26,12 @@ from ..messages import topics as landing_topics
 from ..messages.message_types import message_class
 from ..messages.qos import CLOCK, parse_qos
 from ..messages.rclpy_qos import qos_profile
-from ..messages.restamp import Restamper
 from ..messages.samples import set_stamp
 from ..node.pacer import lateness_percentiles
 from ..ros.setup import StopFlag, ros_context, wait_for_acknowledgement, wait_for_subscribers
 from .clock import ReplayClock
 from .keyboard import Keyboard
+from .restamp import Restamper
 from .selection import ReplayOptions, Selection
 
 # The system ends a sleep up to some hundred microseconds late, so the last part of a wait is a busy

@@ -10,9 +10,9 @@ from collections.abc import Mapping
 
 from rclpy.serialization import deserialize_message, serialize_message
 
-from .message_types import message_class
-from .samples import set_stamp
-from .wire import ENCAPSULATION, NANOSECONDS
+from ..messages.message_types import message_class
+from ..messages.samples import set_stamp
+from ..messages.wire import ENCAPSULATION, NANOSECONDS
 
 HEADER = "std_msgs/Header"
 # Types that are lists of what carries a header: the list's name.
