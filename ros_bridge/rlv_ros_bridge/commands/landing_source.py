@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from rlv_landing.commands.options import chosen_parameters
 from rlv_landing.errors import LandingError
 
 from ..logs.libraries import require_log_readers
@@ -46,11 +47,7 @@ class VehicleOptions:
         Raises:
             LandingError: an unknown name, or a value out of bounds.
         """
-        from rlv_landing.choices import choose_parameters, parse_pairs
-        from rlv_landing.parameters import PARAMETER_QUANTITIES
-
-        values = parse_pairs(self.pairs, PARAMETER_QUANTITIES, "parameter")
-        return choose_parameters(self.preset, self.file, self.mode, values)
+        return chosen_parameters(**asdict(self))
 
 
 def compute_landing(vehicle: VehicleOptions, end: float | None) -> tuple[History, Parameters]:
