@@ -124,11 +124,10 @@ def parts(study: Path) -> dict[str, float]:
     task = Task(read, read.design)
     plan = task.plan
     values = task.rows(0, 1)[0]
-    history = plan.landing(values).run(plan.until, plan.every)
+    history = plan.history(plan.landing(values))
 
     def run() -> None:
-        landing = plan.landing(values)
-        landing.run(plan.until, plan.every)
+        plan.history(plan.landing(values))
 
     set_up = best(lambda: plan.landing(values))
     landed = best(run) - set_up
