@@ -84,8 +84,17 @@ def comparison_table(history: History, mode: str) -> str:
         render(table)
         + f"within 5 / 10 / 20 % of the paper's simulation: {counts_line(counts(comparisons))}\n"
         + near_zero_note(comparisons)
+        + sampling_note(history)
         + other_vehicle_note(history.parameters)
     )
+
+
+def sampling_note(history: History) -> str:
+    """How far apart the samples are: a narrow peak between them is not seen."""
+    if len(history) < 2:
+        return ""
+    step = 1e3 * float(history.time[-1] - history.time[0]) / (len(history) - 1)
+    return f"samples are {step:.3g} ms apart; a peak between them is not seen\n"
 
 
 def other_vehicle_note(parameters: Parameters | None) -> str:
@@ -172,7 +181,7 @@ def summary_table(history: History, title: str) -> str:
             f"BOTTOMED OUT: the damper of leg {', '.join(map(str, s['bottomed_out']))} "
             "met its compression stop"
         )
-    return render(table, 170) + "\n".join([*lines, *unfinished(s)]) + "\n"
+    return render(table, 170) + "\n".join([*lines, *unfinished(s)]) + "\n" + sampling_note(history)
 
 
 def parameter_table(parameters: Parameters) -> str:

@@ -18,6 +18,7 @@ from .landing import (
     other_vehicle_note,
     percent,
     render,
+    sampling_note,
 )
 
 
@@ -26,6 +27,7 @@ def validation_tables(found: Validation) -> str:
     parts = [
         _scalar_table(found.all_comparisons),
         near_zero_note(found.all_comparisons),
+        sampling_note(found.histories[found.modes[0]]),
         other_vehicle_note(found.parameters),
         measure_table(found),
     ]
