@@ -21,7 +21,8 @@ help:
 	@echo "                           cost of FMU, node, replay and sweeps"
 	@echo "make annotate              the core's lines that call Python, marked, in build/annotate"
 	@echo "make coverage              coverage, measured on the pure core"
-	@echo "make docs                  the pictures of README, docs and example anew (some minutes)"
+	@echo "make docs                  pictures and marked numbers of README, docs and examples anew"
+	@echo "                           (some minutes; measured times are those of the last make bench)"
 	@echo "make clean                 remove .venv and build (logs stay)"
 
 $(VENV)/.packages: pyproject.toml
@@ -88,6 +89,8 @@ docs: $(FMU)
 	$(BIN)/rlv-landing envelope examples/envelope.toml --work build/envelope \
 	  --plot docs/envelope.png --force
 	$(BIN)/python examples/ship_deck/run.py --picture examples/ship_deck/ship_deck.png
+	$(BIN)/python docs/claims --update
+	$(BIN)/python docs/claims --update --slow
 
 clean:
 	rm -rf $(VENV) build fmu_src/rlv_landing/core/compiled.*

@@ -28,7 +28,7 @@ from typing import Any
 
 from rich.console import Console
 from rich.table import Table
-from rows import FMU, append_rows
+from rows import FMU, append_rows, start
 
 from rlv_ros_bridge.fmu.runner import FmuRunner
 from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
@@ -271,7 +271,7 @@ def punctual(folder: Path) -> list[dict[str, Any]]:
 
 def main() -> None:
     """Runs all cases, prints them, and appends them to the results."""
-    load = os.getloadavg()[0]
+    load = start().load
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         speeds, figures = fast(Path(name)), punctual(Path(name))
     table = Table(

@@ -30,7 +30,7 @@ import fmpy
 from fmpy.fmi2 import FMU2Slave
 from rich.console import Console
 from rich.table import Table
-from rows import FMU, append_rows
+from rows import FMU, append_rows, start
 
 HERE = Path(__file__).parent
 HEADERS = Path(fmpy.__file__).parent / "c-code"
@@ -138,6 +138,7 @@ def calls(fmu: Path, folder: Path) -> dict[str, float]:
 
 def main() -> None:
     """Measure both FMUs, print the table and append the rows."""
+    start()
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         folder = Path(name)
         fmus = {"FMU": FMU, "C FMU without a model": empty_fmu(folder)}
@@ -150,7 +151,7 @@ def main() -> None:
             for case, fmu in fmus.items():
                 for key, seconds in {**cold(fmu), **calls(fmu, unpacked[case])}.items():
                     best[case][key] = min(seconds, best[case].get(key, seconds))
-    load = os.getloadavg()[0]
+    load = start().load
     ours, empty = best.values()
     table = Table(
         title=f"Cost to FMPy {fmpy.__version__}: best of {REPEATS}, "

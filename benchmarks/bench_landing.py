@@ -1,7 +1,7 @@
 """Measures a 1 s landing at equal error: the core, the FMU, C, other solvers and MuJoCo.
 
 All run in one process. Writes the table and the picture of `docs/performance.md`, prints the table
-and appends one row per solver to `results.jsonl`.
+and appends one row per solver to `results.jsonl`; of an idle machine and a commit only.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from peers import OURS
 from problem import Problem
 from rich.console import Console
 from rich.table import Table
-from rows import HERE, append_rows, load, provenance
+from rows import HERE, append_rows, load, provenance, start
 from work_precision import Run, cost, draw, measure
 
 from rlv_landing.core import COMPILED
@@ -115,7 +115,7 @@ def row_of(mode: str, runs: list[Run], loads: list[float]) -> dict[str, Any]:
 
 
 def report(console: Console, lines: dict[str, list[list[str]]], note: str) -> None:
-    """Print the tables, and write them to `docs/performance.md` between its marks."""
+    """Print the tables; where they are kept, write them to `docs/performance.md` too."""
     text = f"Measured on {note}.\n"
     for mode, table_lines in lines.items():
         table = Table(
@@ -131,6 +131,8 @@ def report(console: Console, lines: dict[str, list[list[str]]], note: str) -> No
         )
         text += "".join(f"| {' | '.join(line)} |\n" for line in table_lines)
     console.print(note)
+    if start().unfit:
+        return
     page = DOCS / "performance.md"
     before, _, rest = page.read_text(encoding="utf-8").partition(MARKS[0])
     page.write_text(
@@ -142,7 +144,7 @@ def main() -> None:
     """Measure all solvers in both modes, report, and append the rows."""
     if not COMPILED:
         raise SystemExit("error: the core is not compiled here; run make")
-    console, loads = Console(width=160), [load()]
+    console, loads = Console(width=160), [start().load]
     runs: dict[str, list[list[Run]]] = {}
     for mode in MODES:
         problem = Problem(mode)
@@ -168,6 +170,8 @@ def main() -> None:
         f"{machine}; commit {stamp['commit']}, Python {stamp['python']}, {versions}; "
         f"`gcc {' '.join(EXACT)}`",
     )
+    if start().unfit:
+        return
     draw(
         {mode: [*chain(*own)] for mode, own in runs.items()},
         DOCS / "work-precision.png",

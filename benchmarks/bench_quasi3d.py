@@ -31,7 +31,7 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 from rich.table import Table
-from rows import append_rows
+from rows import append_rows, start
 from scipy.integrate import solve_ivp
 
 from rlv_landing import Landing, Parameters, load_preset
@@ -279,6 +279,7 @@ def measure(mode: str) -> list[dict[str, Any]]:
 
 def main() -> None:
     """Measure both modes, print the table and append the rows."""
+    start()
     rows = [row for mode in ("2-2", "1-2-1") for row in measure(mode)]
     table = Table(title=f"Landing to {UNTIL} s at equal error of the strokes", title_justify="left")
     for name in (

@@ -20,9 +20,10 @@ from pathlib import Path
 from typing import Any
 
 import click
-from bench_landing import append_rows
 from rich.console import Console
 from rich.table import Table
+from rows import append_rows
+from rows import start as begin
 
 from rlv_landing.studies.sweep.result_files import PART_ROWS, Results
 from rlv_landing.studies.sweep.study import read_study
@@ -103,7 +104,7 @@ def swept(study: Path, folder: Path, workers: int) -> dict[str, float]:
         raise SystemExit(f"the sweep ended with {os.waitstatus_to_exitcode(status)}")
     return {
         "seconds": time.perf_counter() - start,
-        "cpu": usage.ru_utime + usage.ru_stime,
+        "processor": usage.ru_utime + usage.ru_stime,
         "memory": usage.ru_maxrss / 1024.0,
     }
 
@@ -124,11 +125,10 @@ def parts(study: Path) -> dict[str, float]:
     task = Task(read, read.design)
     plan = task.plan
     values = task.rows(0, 1)[0]
-    history = plan.landing(values).run(plan.until, plan.every)
+    history = plan.history(plan.landing(values))
 
     def run() -> None:
-        landing = plan.landing(values)
-        landing.run(plan.until, plan.every)
+        plan.history(plan.landing(values))
 
     set_up = best(lambda: plan.landing(values))
     landed = best(run) - set_up
@@ -174,9 +174,9 @@ def print_tables(
     for count, row in zip(counts, rows):
         cells = (
             row["seconds"],
-            row["cpu"],
+            row["processor"],
             count / row["seconds"],
-            1e3 * row["cpu"] / count,
+            1e3 * row["processor"] / count,
             row["memory"],
         )
         table.add_row(str(count), *(f"{v:.1f}" for v in cells))
@@ -194,6 +194,7 @@ def print_tables(
 )
 def main(counts: tuple[int, ...], until: float, workers: int, *, keep: bool) -> None:
     """Sweep COUNTS landings each [default: 100 1000]."""
+    begin()
     rows: list[dict[str, Any]] = []
     with tempfile.TemporaryDirectory() as name:
         study = Path(name) / "bench.toml"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from html.parser import HTMLParser
 from math import isnan
 
@@ -10,7 +11,10 @@ import pytest
 
 from rlv_landing import LandingError, load_preset
 from rlv_landing.figures.report import render_report, write_whole
+from rlv_landing.history import History
 from rlv_landing.tables.landing import number
+from rlv_landing.tables.study_tables import measure_table
+from rlv_landing.validation.measures import leg_work
 from rlv_landing.validation.paper import printed_scalars
 from rlv_landing.validation.validate import validate
 
@@ -136,3 +140,20 @@ def test_a_landing_that_lacks_what_the_paper_prints_has_a_page_all_the_same():
     page = Page(render_report(found, thrown, "thrown"))
     assert set(page.rows) == {f"scalar-{s.id}" for s in printed_scalars() if s.mode == "1-2-1"}
     assert {s["id"]: s["ours"] for s in found.record()["scalars"]}["121-fm3-v1"] is None
+
+
+def test_measures_that_the_landing_cuts_off_are_dashes_with_the_reason(validation):
+    """The landing cut at 0.3 s: legs 1 and 2 in rebound, 3 and 4 in compression."""
+    whole = validation.histories["2-2"]
+    part = whole.time <= 0.3
+    cut = History(whole.time[part], whole.names, whole.data[part], whole.parameters)
+    found = replace(validation, work={**validation.work, "2-2": leg_work(cut)})
+    page = render_report(found, load_preset("yue2022-figures"), "cut")
+    for line in (
+        "2-2, leg 1: the landing ends in the first rebound: dissipated is not known",
+        "2-2, leg 3: the landing ends in the first compression: no measures; run it longer",
+    ):
+        assert line in page
+        assert line in measure_table(found)
+    rows = [row for row in page.splitlines() if row.startswith("<tr><td>2-2</td>")]
+    assert [row.count('<td class="n">-</td>') for row in rows] == [1, 1, 5, 5]

@@ -57,9 +57,10 @@ def test_a_triangle_absorbs_half_the_rectangle_and_dissipates_what_does_not_come
 
 
 def test_a_constant_force_has_efficiency_1():
-    stroke = np.linspace(0.0, SMAX, 50)
-    found = damper_work(np.linspace(0.0, 0.1, 50), np.full(50, -FMAX), stroke, 0.0)
+    stroke = SMAX * np.sin(np.linspace(0.0, np.pi, 51))
+    found = damper_work(np.linspace(0.0, 0.1, 51), np.full(51, -FMAX), stroke, 0.0)
     assert found.efficiency == approx(1.0)
+    assert found.dissipated == approx(0.0, abs=1e-9)
 
 
 def test_the_dampers_work_is_what_the_model_says_they_hold_and_have_dissipated(validation):
@@ -121,8 +122,8 @@ def test_measures_that_cannot_be_taken_say_why():
         LandingError, match=r"force_max = 0 N and stroke_max = 0\.01 m must be above 0"
     ):
         buffering_efficiency(1.0, 0.0, 0.01)
-    with pytest.raises(LandingError, match=r"not compressed within 0\.22 s after t = 0 s"):
-        damper_work(time, time, np.zeros(11), 0.0)
+    with pytest.raises(LandingError, match="contact at 2 s is after the last sample at 1 s"):
+        damper_work(time, time, np.zeros(11), 2.0)
     with pytest.raises(LandingError, match="measured energy = 0 J"):
         energy_discrepancy(1.0, 0.0)
     with pytest.raises(LandingError, match="do not overlap; shift the measured times"):

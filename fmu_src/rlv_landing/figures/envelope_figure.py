@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 MORE_COLOURS = (*COLOURS, "#7a4fa3", "#b8860b", "#3d3d3d")
 MARKERS = "osD^v<>Ph*X"
+# height of a line of the legend [inch]
+LEGEND_LINE = 0.2
 
 
 def save_envelope(envelope: Envelope, path: str | Path) -> None:
@@ -56,22 +58,29 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
         ax.set_ylabel(_label(envelope.study.y.quantity))
     for condition, marker in markers.items():
         named[condition] = Line2D([], [], color="#666666", marker=marker, linestyle="none")
+    across = 1 if columns == 1 else 2
     figure.legend(
         named.values(),
         named.keys(),
         loc="outside lower center",
         frameon=False,
         fontsize="small",
-        ncols=2,
+        ncols=across,
     )
+    figure.set_figheight(figure.get_figheight() + LEGEND_LINE * -(-len(named) // across))
     title = (
         f"lost: {envelope.study.criterion}; {envelope.landings} landings "
         f"(a uniform grid: {envelope.uniform})"
     )
     figure.suptitle(title, fontsize="medium", x=0.01, ha="left")
     with mpl.rc_context({"svg.hashsalt": "envelope", "svg.fonttype": "none"}):
+        # the picture grows where legend or title are wider than the panels
         figure.savefig(
-            path, dpi=110, metadata={"Date": None} if Path(path).suffix == ".svg" else None
+            path,
+            dpi=110,
+            bbox_inches="tight",
+            pad_inches=0.1,
+            metadata={"Date": None} if Path(path).suffix == ".svg" else None,
         )
 
 

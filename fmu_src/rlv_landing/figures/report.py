@@ -14,7 +14,15 @@ from typing import Any
 from .. import __version__
 from ..errors import LandingError
 from ..parameters import Parameters
-from ..tables.landing import counts_line, near_zero_note, number, parameter_records, percent
+from ..tables.landing import (
+    counts_line,
+    decimals,
+    near_zero_note,
+    number,
+    other_vehicle_note,
+    parameter_records,
+    percent,
+)
 from ..validation.paper import Scalar
 from ..validation.validate import Validation
 from .plots import inline_svg
@@ -92,8 +100,10 @@ def render_report(
         counts_against_test=counts_line(found.counts_against_test),
         paper_counts_against_test=counts_line(found.paper_counts_against_test),
         scalars=_scalar_rows(found),
+        other_vehicle=other_vehicle_note(found.parameters).strip(),
         near_zero=near_zero_note(found.all_comparisons).strip(),
         work=_work_rows(found),
+        work_notes=found.notes,
         curves=found.curves,
         figures={mode: _mode_figures(found, mode) for mode in found.modes},
         measures=inline_svg(
@@ -181,13 +191,16 @@ def _work_rows(found: Validation) -> list[dict[str, str]]:
                 {
                     "mode": mode,
                     "leg": str(leg),
-                    "force": f"{w.force_max / 1e3:.2f}",
-                    "stroke": f"{w.stroke_max * 1e3:.2f}",
-                    "absorbed": f"{w.absorbed:.1f}"
-                    + (f" ({off[0]:.1f} % off the measured)" if off else ""),
-                    "dissipated": f"{w.dissipated:.1f}"
-                    + (f" ({off[1]:.1f} % off the measured)" if off else ""),
-                    "efficiency": f"{w.efficiency:.3f}",
+                    "force": decimals(w.force_max and w.force_max / 1e3, 2),
+                    "stroke": decimals(w.stroke_max and w.stroke_max * 1e3, 2),
+                    "largest": f"{w.largest * 1e3:.2f} at {w.largest_time:.3f} s",
+                    "absorbed": decimals(w.absorbed, 1) + _off(off[0]),
+                    "dissipated": decimals(w.dissipated, 1) + _off(off[1]),
+                    "efficiency": decimals(w.efficiency, 3),
                 }
             )
     return rows
+
+
+def _off(percentage: float | None) -> str:
+    return "" if percentage is None else f" ({percentage:.1f} % off the measured)"

@@ -72,7 +72,7 @@ def loop_figure(found: Validation, mode: str) -> tuple[Figure, dict[str, str]]:
             label="this landing, through the sensor chain",
         )
         work = found.work[mode].get(legs[0])
-        if work is not None:
+        if work and work.top and work.stroke_max and work.force_max:
             part = (history.time >= work.start) & (history.time <= work.top)
             ax.fill_between(
                 1e3 * stroke[part], -1e-3 * force[part], color=COLOURS[i], alpha=0.15, linewidth=0
@@ -144,14 +144,14 @@ def measures_figure(found: Validation) -> Figure:
     ax = figure.add_subplot(grid[0, 0])
     ax.bar(
         x - 0.2,
-        [w.absorbed for w in work],
+        [_bar(w.absorbed) for w in work],
         0.38,
         color=COLOURS[0],
         label="absorbed until the largest stroke",
     )
     ax.bar(
         x + 0.2,
-        [w.dissipated for w in work],
+        [_bar(w.dissipated) for w in work],
         0.38,
         color=COLOURS[1],
         label="dissipated by the end of the rebound",
@@ -160,7 +160,7 @@ def measures_figure(found: Validation) -> Figure:
     ax.legend(frameon=False, fontsize=9)
     ax.margins(y=0.25)
     ax = figure.add_subplot(grid[0, 1])
-    ax.bar(x, [w.efficiency for w in work], 0.6, color=COLOURS[2])
+    ax.bar(x, [_bar(w.efficiency) for w in work], 0.6, color=COLOURS[2])
     _set_up_bars(ax, x, labels, "buffering efficiency")
     ax.set_ylim(0.0, 1.0)
     if found.curves:
@@ -184,6 +184,11 @@ def measures_figure(found: Validation) -> Figure:
         )
         ax.legend(frameon=False, fontsize=9)
     return figure
+
+
+def _bar(value: float | None) -> float:
+    """A bar's height; NaN, no bar, where the measure is not known."""
+    return float("nan") if value is None else value
 
 
 def error_figure(found: Validation) -> Figure:

@@ -109,7 +109,7 @@ def marks(
             else 0.0
         )
         if "settled" in s.event:
-            ours = float(history.time[-1]) - 0.1
+            ours = min(float(history.time[-1]), 1.0) - 0.1
         when = timed.scalar.simulation if timed else ours
         test_time = timed.scalar.test if timed and timed.scalar.test == timed.scalar.test else when
         tests = tuple((test_time, v * factor) for v in (s.test_a, s.test_b) if v == v)

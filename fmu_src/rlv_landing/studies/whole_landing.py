@@ -9,6 +9,8 @@ from ..landing import Landing
 from .outcome import SETTLED, TOPPLED
 
 CHECK_EVERY = 0.25
+# the end [s after the first contact] of a landing that is not decided before
+LATEST = 10.0
 
 
 def whole_landing(landing: Landing, until: float, every: float = 1e-3) -> History:

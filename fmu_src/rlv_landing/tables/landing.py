@@ -14,8 +14,8 @@ from rich.table import Table
 from ..history import History
 from ..parameters import PARAMETER_QUANTITIES, Parameters
 from ..quantities import Quantity
-from ..summary import summarise
-from ..validation.paper import Comparison, compare, counts
+from ..summary import summarise, unfinished
+from ..validation.paper import Comparison, compare, counts, other_vehicle
 
 
 def render(table: Table, width: int = 140) -> str:
@@ -49,6 +49,11 @@ def number(value: float | None, unit: str) -> str:
     return f"{value:.0f}" if unit == "N" else f"{value:.3f}" if unit == "s" else f"{value:.2f}"
 
 
+def decimals(value: float | None, digits: int) -> str:
+    """A number with so many decimals; a dash for None."""
+    return "-" if value is None else f"{value:.{digits}f}"
+
+
 def comparison_table(history: History, mode: str) -> str:
     """Our numbers beside the paper's simulation and tests, and the counts of `mode`.
 
@@ -79,6 +84,29 @@ def comparison_table(history: History, mode: str) -> str:
         render(table)
         + f"within 5 / 10 / 20 % of the paper's simulation: {counts_line(counts(comparisons))}\n"
         + near_zero_note(comparisons)
+        + sampling_note(history)
+        + other_vehicle_note(history.parameters)
+    )
+
+
+def sampling_note(history: History) -> str:
+    """How far apart the samples are: a narrow peak between them is not seen."""
+    if len(history) < 2:
+        return ""
+    step = 1e3 * float(history.time[-1] - history.time[0]) / (len(history) - 1)
+    return f"samples are {step:.3g} ms apart; a peak between them is not seen\n"
+
+
+def other_vehicle_note(parameters: Parameters | None) -> str:
+    """What the comparison is worth for a vehicle that is not the paper's; empty for the paper's."""
+    differences = [] if parameters is None else other_vehicle(parameters)
+    if not differences:
+        return ""
+    more = f" and {len(differences) - 2} more" if len(differences) > 2 else ""
+    return (
+        f"this is not the paper's vehicle ({', '.join(differences[:2])}{more}): its numbers are "
+        "read in the windows of time of the paper's, a dash where they miss the event; "
+        "the measures of the dampers hold for any vehicle\n"
     )
 
 
@@ -107,7 +135,7 @@ def near_zero_note(comparisons: Iterable[Comparison]) -> str:
 
 
 def summary_table(history: History, title: str) -> str:
-    """The peaks of every leg, with the outcome below."""
+    """The peaks of every leg and its damper's first compression and rebound; the outcome below."""
     s = summarise(history)
     table = new_table(
         title,
@@ -119,6 +147,9 @@ def summary_table(history: History, title: str) -> str:
             "stroke [mm]",
             "at [s]",
             "auxiliary strut force [kN]",
+            "absorbed [J]",
+            "dissipated [J]",
+            "efficiency",
         ),
     )
     for leg in s["legs"]:
@@ -131,6 +162,9 @@ def summary_table(history: History, title: str) -> str:
             f"{leg['main_strut_stroke_max_time']:.3f}",
             f"{leg['auxiliary_strut_force_min'] / 1e3:.2f} ... "
             f"{leg['auxiliary_strut_force_max'] / 1e3:+.2f}",
+            decimals(leg["main_strut_absorbed"], 1),
+            decimals(leg["main_strut_dissipated"], 1),
+            decimals(leg["main_strut_efficiency"], 3),
         )
     outcome = (
         f"after {s['end_time']:.3f} s: {s.get('outcome', 'recorded')}; "
@@ -147,7 +181,7 @@ def summary_table(history: History, title: str) -> str:
             f"BOTTOMED OUT: the damper of leg {', '.join(map(str, s['bottomed_out']))} "
             "met its compression stop"
         )
-    return render(table) + "\n".join(lines) + "\n"
+    return render(table, 170) + "\n".join([*lines, *unfinished(s)]) + "\n" + sampling_note(history)
 
 
 def parameter_table(parameters: Parameters) -> str:

@@ -9,7 +9,17 @@ from ..validation.bounds import BOUNDS
 from ..validation.convergence import Errors
 from ..validation.paper import Comparison
 from ..validation.validate import Validation
-from .landing import counts_line, near_zero_note, new_table, number, percent, render
+from .landing import (
+    counts_line,
+    decimals,
+    near_zero_note,
+    new_table,
+    number,
+    other_vehicle_note,
+    percent,
+    render,
+    sampling_note,
+)
 
 
 def validation_tables(found: Validation) -> str:
@@ -17,6 +27,8 @@ def validation_tables(found: Validation) -> str:
     parts = [
         _scalar_table(found.all_comparisons),
         near_zero_note(found.all_comparisons),
+        sampling_note(found.histories[found.modes[0]]),
+        other_vehicle_note(found.parameters),
         measure_table(found),
     ]
     if found.curves:
@@ -74,6 +86,9 @@ def measure_table(found: Validation) -> str:
         (
             "Fmax [kN]",
             "Smax [mm]",
+            "at [s]",
+            "largest of all [mm]",
+            "at [s]",
             "absorbed [J]",
             "dissipated [J]",
             "efficiency",
@@ -87,14 +102,21 @@ def measure_table(found: Validation) -> str:
             table.add_row(
                 mode,
                 str(leg),
-                f"{w.force_max / 1e3:.2f}",
-                f"{w.stroke_max * 1e3:.2f}",
-                f"{w.absorbed:.1f}",
-                f"{w.dissipated:.1f}",
-                f"{w.efficiency:.3f}",
-                *((f"{off[0]:.1f} % off", f"{off[1]:.1f} % off") if off else ("-", "-")),
+                decimals(w.force_max and w.force_max / 1e3, 2),
+                decimals(w.stroke_max and w.stroke_max * 1e3, 2),
+                decimals(w.top, 3),
+                f"{w.largest * 1e3:.2f}",
+                f"{w.largest_time:.3f}",
+                decimals(w.absorbed, 1),
+                decimals(w.dissipated, 1),
+                decimals(w.efficiency, 3),
+                *(_off(percentage) for percentage in off),
             )
-    return render(table)
+    return render(table, 170) + "".join(f"{line}\n" for line in found.notes)
+
+
+def _off(percentage: float | None) -> str:
+    return "-" if percentage is None else f"{percentage:.1f} % off"
 
 
 def _curve_table(found: Validation) -> str:

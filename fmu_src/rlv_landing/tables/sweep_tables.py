@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
-from ..studies.sweep.sensitivity import Indices
+from ..studies.sweep.sensitivity import WIDEST, Indices
 from ..studies.sweep.summary import Summary
 from ..studies.sweep.sweep_row import Task
 from .landing import new_table, render
@@ -42,6 +40,15 @@ def summary_table(name: str, summary: Summary) -> str:
         if summary.outcomes
         else []
     )
+    lines += [
+        f"{name}: {', '.join(f'{count} {value}' for value, count in counts.items())}"
+        for name, counts in summary.texts.items()
+    ]
+    constant = [s.name for s in summary.spreads if s.constant and s.count > 1]
+    if constant:
+        lines.append(f"the same in all landings that have it: {', '.join(constant)}")
+    if summary.missing:
+        lines.append(f"no landing has: {', '.join(summary.missing)}")
     if len(shown) < len(summary.spreads):
         lines.append(
             f"{len(summary.spreads) - len(shown)} more, of single legs, "
@@ -59,30 +66,34 @@ def indices_table(found: Sequence[Indices], level: float) -> str:
         f"Sobol indices, {100.0 * level:g} % intervals",
         ("response", "mode", "factor"),
         ("first order", "from", "to", "total", "from", "to"),
+        ("",),
     )
     lines = []
     for f in found:
-        if np.isnan(f.total).any():
-            lines.append(
-                f"{f.response}, {f.mode}: no indices: "
-                + ("it does not vary" if f.used == f.samples else _incomplete(f))
-            )
+        if f.reason:
+            lines.append(f"{f.response}, {f.mode}: no indices: {f.reason}")
             continue
         if f.used < f.samples:
-            lines.append(f"{f.response}, {f.mode}: {_incomplete(f)}; others replace the rest")
-        for factor, first, total in zip(f.factors, f.first, f.total):
+            lines.append(
+                f"{f.response}, {f.mode}: {f.used} of {f.samples} samples have it; "
+                "others replace the rest"
+            )
+        for k, (factor, first, total) in enumerate(zip(f.factors, f.first, f.total)):
             table.add_row(
                 f.response.replace("[", r"\["),
                 f.mode,
                 factor,
                 *(f"{v:.3f}" for v in (*first, *total)),
+                "" if f.enough(k) else "too few samples",
             )
         table.add_section()
-    return render(table) + "".join(f"{line}\n" for line in lines)
-
-
-def _incomplete(found: Indices) -> str:
-    return f"{found.used} of {found.samples} samples have it"
+    if any(not f.reason and not f.enough(k) for f in found for k in range(len(f.factors))):
+        lines.append(
+            f"too few samples: an interval wider than {WIDEST:g} or outside 0 to 1; "
+            f"take more than {found[0].samples}, for example {4 * found[0].samples}"
+        )
+    shown = render(table, 160) if table.rows else ""
+    return shown + "".join(f"{line}\n" for line in lines)
 
 
 def _text(value: Any) -> str:

@@ -6,16 +6,19 @@ Yue et al. (2022), section 5. Forces are those of the outputs: negative in compr
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 
+from ..core import Phase
 from ..errors import LandingError
 from ..history import History
 from ..quantities import LEGS
-from .reading import REBOUND_WINDOW, STROKE_WINDOW
+from .first_stroke import State, first_stroke
 
 Array = NDArray[np.float64]
 ONSET = 0.02
@@ -23,31 +26,50 @@ ONSET = 0.02
 
 @dataclass(frozen=True)
 class DamperWork:
-    """One damper's first compression and rebound.
+    """One damper's first compression and rebound, as far as the curves show them.
+
+    What the curves do not show is None: `top` to `efficiency` where they end in the compression or
+    the damper was not compressed, `end` and `dissipated` where they end in the rebound as well.
 
     Attributes:
+        state: `not compressed`, `in compression`, `in rebound` or `complete`, see `FirstStroke`.
         start: Time of contact [s].
-        top: Time of the largest stroke [s].
-        end: Time of the smallest stroke after `top` [s].
+        largest: Largest stroke from the contact to the end of the curves [m].
+        largest_time: Its time [s].
+        top: Time of the largest stroke of the first compression [s].
+        end: Time of the smallest stroke of the rebound [s].
         force_max: Largest compressive force during the compression, positive [N].
-        stroke_max: Largest stroke [m].
+        stroke_max: Largest stroke of the first compression [m].
         absorbed: Energy taken up until `top` (the paper's energy 1 and its Ed) [J].
         dissipated: Part of it that is not given back until `end` (the paper's energy 2) [J].
         efficiency: absorbed / (force_max stroke_max).
     """
 
+    state: State
     start: float
-    top: float
-    end: float
-    force_max: float
-    stroke_max: float
-    absorbed: float
-    dissipated: float
-    efficiency: float
+    largest: float
+    largest_time: float
+    top: float | None = None
+    end: float | None = None
+    force_max: float | None = None
+    stroke_max: float | None = None
+    absorbed: float | None = None
+    dissipated: float | None = None
+    efficiency: float | None = None
 
-    def record(self) -> dict[str, float]:
+    def record(self) -> dict[str, Any]:
         """The measures for JSON."""
         return asdict(self)
+
+    @property
+    def note(self) -> str:
+        """Why measures are missing; empty where none is."""
+        return {
+            "not compressed": "its damper was not compressed",
+            "in compression": "ends in the first compression: no measures; run it longer",
+            "in rebound": "ends in the first rebound: dissipated is not known; run it longer",
+            "complete": "",
+        }[self.state]
 
 
 def work_of(force: Array, stroke: Array) -> float:
@@ -107,9 +129,7 @@ def energy_discrepancy(energy: float, measured: float) -> float:
 
 
 def damper_work(time: Array, force: Array, stroke: Array, start: float) -> DamperWork:
-    """The first compression and rebound after the contact at `start`.
-
-    The windows are the paper's: 0.22 s for the largest stroke, 0.25 s after it for the smallest.
+    """The first compression and rebound after the contact at `start`, found in the curve.
 
     Args:
         time: Times of the samples [s], (n,).
@@ -118,30 +138,37 @@ def damper_work(time: Array, force: Array, stroke: Array, start: float) -> Dampe
         start: Time of contact [s].
 
     Raises:
-        LandingError: The strut is not compressed after `start`.
+        LandingError: There is no sample from `start` on.
     """
-    window = np.flatnonzero((time >= start) & (time <= start + STROKE_WINDOW))
-    if not len(window) or not stroke[window].max() > 0.0:
+    first = int(np.searchsorted(time, start))
+    if first == len(time):
         raise LandingError(
-            f"the strut is not compressed within {STROKE_WINDOW:g} s after t = {start:g} s; "
-            "it has no work to measure"
+            f"the contact at {start:g} s is after the last sample at {time[-1]:g} s; "
+            "give a time that the curves cover"
         )
-    first, top = int(window[0]), int(window[np.argmax(stroke[window])])
-    after = np.flatnonzero((time >= time[top]) & (time <= time[top] + REBOUND_WINDOW))
-    end = int(after[np.argmin(stroke[after])])
-    compression, period = slice(first, top + 1), slice(first, end + 1)
+    time, force, stroke = time[first:], force[first:], stroke[first:]
+    found, peak = first_stroke(stroke), int(np.argmax(stroke))
+    work = DamperWork(found.state, float(time[0]), float(stroke[peak]), float(time[peak]))
+    if found.top is None:
+        return work
+    compression = slice(0, found.top + 1)
     absorbed = work_of(force[compression], stroke[compression])
-    force_max, stroke_max = float(-force[compression].min()), float(stroke[top])
-    return DamperWork(
-        start=float(time[first]),
-        top=float(time[top]),
-        end=float(time[end]),
+    force_max, stroke_max = float(-force[compression].min()), float(stroke[found.top])
+    if not force_max > 0.0:
+        return replace(work, state="not compressed")
+    work = replace(
+        work,
+        top=float(time[found.top]),
         force_max=force_max,
         stroke_max=stroke_max,
         absorbed=absorbed,
-        dissipated=work_of(force[period], stroke[period]),
         efficiency=buffering_efficiency(absorbed, force_max, stroke_max),
     )
+    if found.end is None:
+        return work
+    period = slice(0, found.end + 1)
+    dissipated = work_of(force[period], stroke[period])
+    return replace(work, end=float(time[found.end]), dissipated=dissipated)
 
 
 def onset(time: Array, stroke: Array) -> float:
@@ -157,21 +184,41 @@ def onset(time: Array, stroke: Array) -> float:
     )
 
 
-def leg_work(history: History) -> dict[int, DamperWork]:
-    """The work of every damper that a landing compressed, by leg.
+def leg_work(history: History, legs: Iterable[int] = LEGS) -> dict[int, DamperWork]:
+    """The work of the dampers of those of `legs` that touch the ground, by leg.
 
-    Contact is the first sample at which the ground pushes on the footpad.
+    Contact is the first sample at which the ground pushes on the footpad. The motion after toppling
+    does not count.
     """
+    history = before_toppling(history)
     found: dict[int, DamperWork] = {}
-    for leg in LEGS:
-        touching = np.flatnonzero(history[f"leg[{leg}].contact.force_y"] > 0.0)
-        stroke = history[f"leg[{leg}].main_strut.stroke"]
-        if len(touching) and stroke[touching[0] :].max() > 0.0:
-            start = float(history.time[max(int(touching[0]) - 1, 0)])
+    for leg in legs:
+        first = first_push(history, leg)
+        if first is not None:
             found[leg] = damper_work(
-                history.time, history[f"leg[{leg}].main_strut.force"], stroke, start
+                history.time,
+                history[f"leg[{leg}].main_strut.force"],
+                history[f"leg[{leg}].main_strut.stroke"],
+                float(history.time[max(first - 1, 0)]),
             )
     return found
+
+
+def first_push(history: History, leg: int) -> int | None:
+    """The first sample with the ground pushing on the leg's footpad; None without any."""
+    pushed = history[f"leg[{leg}].contact.force_y"] > 0.0
+    first = int(np.argmax(pushed))
+    return first if pushed[first] else None
+
+
+def before_toppling(history: History) -> History:
+    """The landing until it topples for good; the whole where it does not or no phase is known."""
+    phase = history["status.phase"] if "status.phase" in history else np.zeros(1)
+    if phase[-1] != Phase.TOPPLED:
+        return history
+    other = np.flatnonzero(phase != Phase.TOPPLED)
+    end = int(other[-1]) + 2 if len(other) else 1
+    return History(history.time[:end], history.names, history.data[:end], history.parameters)
 
 
 def rrms(time: Array, values: Array, test_time: Array, test_values: Array) -> float:

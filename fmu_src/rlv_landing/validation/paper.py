@@ -17,6 +17,7 @@ from typing import Literal
 import numpy as np
 
 from ..history import History
+from ..parameters import PARAMETER_QUANTITIES, Parameters
 from .reading import RUN_AFTER_CONTACT, Reading
 
 __all__ = [
@@ -27,6 +28,7 @@ __all__ = [
     "Scalar",
     "compare",
     "counts",
+    "other_vehicle",
     "paper_counts_against_test",
     "printed_scalars",
 ]
@@ -198,6 +200,23 @@ def compare(history: History, mode: str) -> list[Comparison]:
             read, leg = MEANINGS[scalar.id]
             found.append(Comparison(scalar, read(reading, leg)))
     return found
+
+
+def other_vehicle(parameters: Parameters) -> list[str]:
+    """The masses and lengths of the paper's Table 1 that `parameters` have otherwise.
+
+    Where there are any, the comparison is of two vehicles. Each is a text such as
+    `vehicle.mass = 25000 kg for 178 kg`.
+    """
+    printed = Parameters()
+    return [
+        f"{name} = {value:g} {unit} for {printed[name]:g} {unit}"
+        for name, value in parameters.items()
+        if not isinstance(value, str)
+        and printed.source(name) == "paper"
+        and (unit := PARAMETER_QUANTITIES[name].unit) in ("kg", "m")
+        and value != printed[name]
+    ]
 
 
 def counts(

@@ -1,6 +1,7 @@
 """The readings of a landing that correspond to the scalars that the paper prints.
 
-Each method states how the paper's words are understood.
+Each method states how the paper's words are understood. Its windows of time are those of the
+paper's vehicle; `measures` has the measures of any vehicle.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ class Reading:
 
     The history needs at least 0.8 s after the first contact, sampled at 1 kHz or finer. A scalar
     that the landing does not have, such as the peak of a leg that never touches the ground, is NaN.
+    So is a turn of the stroke that comes after the paper's window.
 
     Raises:
         LandingError: No footpad touches, or the history is too short.
@@ -90,9 +92,15 @@ class Reading:
     def _auxiliary(self, leg: int) -> NDArray[np.float64]:
         return self.h[f"leg[{leg}].auxiliary_strut.force"]
 
+    def _turn(self, sign: float, leg: int, start: float, length: float) -> int | None:
+        """The sample at which the stroke turns, as `_peak`; None where it goes on after the end."""
+        stroke = sign * self._stroke(leg)
+        i = self._peak(1.0, stroke, start, start + length)
+        goes_on = i is not None and i + 1 < len(stroke) and stroke[i + 1] > stroke[i]
+        return None if goes_on else i
+
     def _maximum(self, leg: int) -> int | None:
-        t = self._contact[leg]
-        return self._peak(1.0, self._stroke(leg), t, t + STROKE_WINDOW)
+        return self._turn(1.0, leg, self._contact[leg], STROKE_WINDOW)
 
     def maximum_stroke(self, leg: int) -> float:
         """Largest stroke within 0.22 s after contact [mm]."""
@@ -119,8 +127,7 @@ class Reading:
         return self._first(self._force(leg) < UNLOADED, self.unloaded_from(leg) + 0.04)
 
     def _rebound(self, leg: int) -> int | None:
-        t = self.maximum_stroke_time(leg)
-        return self._peak(-1.0, self._stroke(leg), t, t + REBOUND_WINDOW)
+        return self._turn(-1.0, leg, self.maximum_stroke_time(leg), REBOUND_WINDOW)
 
     def rebound_stroke(self, leg: int) -> float:
         """Smallest stroke within 0.25 s after the maximum [mm]."""

@@ -17,8 +17,9 @@ from ..landing import DEFAULT_RTOL, Landing
 from ..parameters import Parameters
 from ..quantities import LEGS, MODES
 from .measures import DamperWork, damper_work, energy_discrepancy, leg_work, onset, rrms
-from .paper import LEVELS, RUN_AFTER_CONTACT, Comparison, compare, counts, paper_counts_against_test
-from .sensors import SAMPLING, Phase, even_step, through_sensors
+from .paper import LEVELS, Comparison, compare, counts, paper_counts_against_test
+from .sensors import Phase, even_step, through_sensors
+from .whole_strokes import whole_strokes
 
 Bounds = tuple[int, int, int]
 
@@ -68,6 +69,11 @@ class Validation:
         return tuple(self.histories)
 
     @property
+    def parameters(self) -> Parameters | None:
+        """The parameters of the first landing; masses and lengths are those of all."""
+        return next(iter(self.histories.values())).parameters
+
+    @property
     def all_comparisons(self) -> list[Comparison]:
         """The comparisons of all modes, in the paper's order."""
         return [c for mode in self.modes for c in self.comparisons[mode]]
@@ -87,17 +93,36 @@ class Validation:
         """The same numbers for the paper's own simulation."""
         return paper_counts_against_test(self.modes[0] if len(self.modes) == 1 else None)
 
-    def discrepancies(self, mode: str, leg: int) -> tuple[float, float] | None:
+    @property
+    def notes(self) -> list[str]:
+        """A line for every damper whose measures the landing or the measured curves cut off."""
+        return [
+            f"{mode}, leg {leg}: {what} {done.note}"
+            for what, by_mode in (
+                ("the landing", self.work),
+                ("the measured curve", self.measured_work),
+            )
+            for mode, work in by_mode.items()
+            for leg, done in work.items()
+            if done.note
+        ]
+
+    def discrepancies(self, mode: str, leg: int) -> tuple[float | None, float | None]:
         """Discrepancies [%] of the energies absorbed and dissipated from the measured ones.
 
-        None where the user did not give force and stroke.
+        None where the user did not give force and stroke, or either energy is not known.
         """
         ours, measured = self.work[mode].get(leg), self.measured_work.get(mode, {}).get(leg)
         if ours is None or measured is None:
-            return None
-        return energy_discrepancy(ours.absorbed, measured.absorbed), energy_discrepancy(
-            ours.dissipated, measured.dissipated
+            return None, None
+        absorbed, dissipated = (
+            None if a is None or b is None else energy_discrepancy(a, b)
+            for a, b in (
+                (ours.absorbed, measured.absorbed),
+                (ours.dissipated, measured.dissipated),
+            )
         )
+        return absorbed, dissipated
 
     def record(self) -> dict[str, Any]:
         """The results for JSON; missing values are null.
@@ -130,10 +155,11 @@ class Validation:
 
     def _leg_record(self, mode: str, leg: int) -> dict[str, Any]:
         found: dict[str, Any] = {"leg": leg, **self.work[mode][leg].record()}
-        discrepancies = self.discrepancies(mode, leg)
-        if discrepancies is not None:
+        if leg in self.measured_work.get(mode, {}):
             found["measured"] = self.measured_work[mode][leg].record()
-            found["discrepancy_absorbed"], found["discrepancy_dissipated"] = discrepancies
+            found["discrepancy_absorbed"], found["discrepancy_dissipated"] = self.discrepancies(
+                mode, leg
+            )
         return found
 
 
@@ -145,6 +171,9 @@ def validate(
     rtol: float = DEFAULT_RTOL,
 ) -> Validation:
     """Land in every mode and set the landings beside the paper and measured curves.
+
+    A landing lasts 1 s, or until 0.9 s after the first contact if that is later. It goes on, for
+    10 s at most, until every damper has ended its first rebound.
 
     Args:
         parameters: The parameters.
@@ -161,8 +190,7 @@ def validate(
     histories: dict[str, History] = {}
     for mode in modes:
         landing = Landing(parameters, mode, rtol)
-        until = max(1.0, landing.parameters.drop.contact_time + RUN_AFTER_CONTACT + 0.1)
-        histories[mode] = landing.run(until, 1.0 / SAMPLING)
+        histories[mode] = whole_strokes(landing)
     for curves in measured.values():
         even_step(curves)
     sensed = {mode: through_sensors(history, phase) for mode, history in histories.items()}
@@ -182,6 +210,11 @@ def validate(
 
 
 def _measured_work(curves: History) -> dict[int, DamperWork]:
+    """The dampers' work in measured curves, by leg.
+
+    Raises:
+        LandingError: A damper is compressed by a force that is never negative.
+    """
     found: dict[int, DamperWork] = {}
     for leg in LEGS:
         force, stroke = f"leg[{leg}].main_strut.force", f"leg[{leg}].main_strut.stroke"
@@ -189,6 +222,11 @@ def _measured_work(curves: History) -> dict[int, DamperWork]:
             found[leg] = damper_work(
                 curves.time, curves[force], curves[stroke], onset(curves.time, curves[stroke])
             )
+            if found[leg].state == "not compressed" and found[leg].largest > 0.0:
+                raise LandingError(
+                    f"{force} is never below 0 N while the stroke rises to "
+                    f"{found[leg].largest:g} m; forces are negative in compression, turn the sign"
+                )
     return found
 
 

@@ -180,7 +180,7 @@ def _print_summary(summary: RunSummary) -> None:
 
 def _print_report(folder: Path) -> None:
     from rlv_landing.figures.plots import save_overview
-    from rlv_landing.tables.landing import comparison_table
+    from rlv_landing.tables.landing import comparison_table, summary_table
 
     from ..logs.history import history_of
     from ..logs.reader import LogReader
@@ -188,7 +188,11 @@ def _print_report(folder: Path) -> None:
     reader = LogReader(folder)
     history = history_of(reader)
     mode = reader.metadata["mode"]
-    click.echo(comparison_table(history, mode))
+    click.echo(summary_table(history, f"{mode} landing"))
+    try:
+        click.echo(comparison_table(history, mode))
+    except LandingError as e:
+        click.echo(f"no comparison with the paper: {e}")
     picture = folder / "landing.png"
     save_overview(history, picture, f"{reader.metadata.get('preset', '')}, mode {mode}")
     click.echo(f"picture: {picture}")

@@ -10,7 +10,8 @@ from typing import Any
 from rlv_landing.core import Phase
 from rlv_landing.errors import LandingError
 from rlv_landing.history import History
-from rlv_landing.summary import OUTCOMES, summarise
+from rlv_landing.summary import OUTCOMES, summarise, unfinished
+from rlv_landing.tables.landing import decimals
 from rlv_landing.validation.reading import Reading
 
 from ..messages.topics import DIAGNOSTICS
@@ -107,9 +108,15 @@ class LogInfo:
         return "\n".join([*lines, *(self._peaks() if self.landing else [])])
 
     def _peaks(self) -> list[str]:
-        head = ("leg", "contact", "main strut", "stroke", "auxiliary strut", "acceleration")
-        widths = (3, 8, 10, 9, 20, 13)
-        second = ("", "", "lowest", "largest", "lowest, highest", "after contact")
+        head = (
+            *("leg", "contact", "main strut", "stroke", "auxiliary strut", "acceleration"),
+            *("damper", "damper", "damper"),
+        )
+        widths = (3, 8, 10, 9, 20, 13, 10, 12, 10)
+        second = (
+            *("", "", "lowest", "largest", "lowest, highest", "after contact"),
+            *("absorbed J", "dissipated J", "efficiency"),
+        )
         legs = [_leg_row(leg) for leg in self.landing["legs"]]
         rows: list[tuple[str, ...]] = [head, second, *legs]
         bottomed = ", ".join(map(str, self.landing.get("bottomed_out", [])))
@@ -117,6 +124,7 @@ class LogInfo:
         return [
             "",
             *("  ".join(cell.rjust(width) for cell, width in zip(row, widths)) for row in rows),
+            *unfinished(self.landing),
             f"largest axial acceleration at the top: {largest:.1f} m/s2",
             *([f"bottomed out: main strut of leg {bottomed}"] if bottomed else []),
         ]
@@ -132,6 +140,9 @@ def _leg_row(leg: Mapping[str, Any]) -> tuple[str, ...]:
         f"{leg['main_strut_stroke_max'] * 1e3:.1f} mm",
         f"{lowest / 1e3:.2f}, {highest / 1e3:.2f} kN",
         "-" if peak is None else f"{peak:.1f} m/s2",
+        decimals(leg["main_strut_absorbed"], 1),
+        decimals(leg["main_strut_dissipated"], 1),
+        decimals(leg["main_strut_efficiency"], 3),
     )
 
 

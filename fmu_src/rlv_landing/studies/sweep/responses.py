@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...errors import LandingError, unknown
 from ...history import History
 from ...quantities import LEG_QUANTITIES, LEGS, MODES, OUTPUT_NAMES, OUTPUT_QUANTITIES, Quantity
-from ...validation.measures import DamperWork, damper_work
+from ...validation.measures import first_push, leg_work
 from ..outcome import TOPPLED, Outcome, outcome
 
 Array = NDArray[np.float64]
@@ -68,6 +68,7 @@ DEFAULT = (
     "leg[*].main_strut.absorbed",
     "leg[*].main_strut.dissipated",
     "leg[*].main_strut.efficiency",
+    "leg[*].main_strut.first_stroke",
     "body.top_axial_acceleration.max",
     "body.pitch.abs_max",
     "body.pitch.final",
@@ -89,7 +90,9 @@ def known_responses() -> Mapping[str, Quantity]:
     - `OUTPUT.min`, `.max`, `.abs_max`, `.final`, `.min_time`, `.max_time` of every output; `legs.…`
       is the extreme over the four legs.
     - `leg[N].main_strut.absorbed`, `.dissipated`, `.efficiency` are of a damper's first compression
-      and rebound; `legs.…` is their sum over the legs.
+      and rebound, found in its stroke's curve; `legs.…` is their sum over the legs.
+    - `leg[N].main_strut.first_stroke` says how far the landing shows them: `complete`,
+      `in compression` or `in rebound` at its end, or `not compressed`.
     - `leg[N].contact.time` is the first time at which the ground pushes on a footpad.
     - `outcome`, `outcome.…` and `margin.…` are those of `Outcome`.
     """
@@ -117,6 +120,13 @@ def known_responses() -> Mapping[str, Quantity]:
                 unit, f"{what} by all dampers together", name=f"legs.main_strut.{what}"
             )
     for leg in LEGS:
+        full = f"leg[{leg}].main_strut.first_stroke"
+        found[full] = Quantity(
+            "",
+            f"leg {leg}'s damper: its first compression and rebound, how far they are known",
+            name=full,
+            kind="string",
+        )
         full = f"leg[{leg}].contact.time"
         found[full] = Quantity(
             "s", f"leg {leg}: first time at which the ground pushes on the footpad", name=full
@@ -169,7 +179,8 @@ class Measure:
         ]
         self._with_outcome = any(name.partition(".")[0] in ("outcome", "margin") for name in names)
         self._with_work = any(
-            name.rpartition(".")[2] in WORK and "main_strut" in name for name in names
+            name.rpartition(".")[2] in (*WORK, "first_stroke") and "main_strut" in name
+            for name in names
         )
 
     def _reduction_of(self, name: str) -> tuple[str, list[int]] | None:
@@ -201,8 +212,8 @@ class Measure:
             rhs_calls: Calls of the right-hand side that the landing took.
 
         Returns:
-            The values; None where a landing has none: an efficiency without compression, no limit
-            passed.
+            The values; None where a landing has none: an efficiency without compression, a
+            work that is not known when the landing ends, no limit passed.
         """
         others: dict[str, Any] = {"rhs_calls": rhs_calls}
         toppled = history["status.phase"][-1] == TOPPLED
@@ -244,45 +255,35 @@ def _outcome_values(found: Outcome) -> dict[str, Any]:
     }
 
 
-def _first_push(history: History, leg: int) -> int | None:
-    """The first sample with the ground pushing on the leg's footpad; None without any."""
-    pushed = history[f"leg[{leg}].contact.force_y"] > 0.0
-    first = int(pushed.argmax())
-    return first if pushed[first] else None
-
-
 def _contact_time(history: History, name: str) -> float | None:
     leg = int(name.removeprefix("leg[").partition("]")[0])
-    first = _first_push(history, leg)
+    first = first_push(history, leg)
     return None if first is None else float(history.time[first])
 
 
 def _work_values(history: History) -> dict[str, Any]:
-    """The dampers' work; it is calculated once for legs that are mirror images."""
+    """The dampers' work; it is calculated once for legs that are mirror images.
+
+    A sum over the legs is None where one of its terms is not known; a damper that was not
+    compressed takes up nothing.
+    """
     assert history.parameters is not None
     values: dict[str, Any] = {}
-    total = {f"legs.main_strut.{what}": 0.0 for what, unit in WORK.items() if unit}
-    for group in MODES[history.parameters.drop.mode]:
-        work = _work(history, group.legs[0][0])
+    groups = MODES[history.parameters.drop.mode]
+    found = leg_work(history, [group.legs[0][0] for group in groups])
+    for group in groups:
+        work = found.get(group.legs[0][0])
         for leg, _ in group.legs:
-            for what, unit in WORK.items():
-                value = None if work is None else getattr(work, what)
-                values[f"leg[{leg}].main_strut.{what}"] = value
-                if unit and value is not None:
-                    total[f"legs.main_strut.{what}"] += value
-    return {**values, **total}
-
-
-def _work(history: History, leg: int) -> DamperWork | None:
-    """The work of the leg's damper; None where it was not compressed."""
-    first = _first_push(history, leg)
-    if first is None:
-        return None
-    force, stroke = (
-        history[f"leg[{leg}].main_strut.force"],
-        history[f"leg[{leg}].main_strut.stroke"],
-    )
-    try:
-        return damper_work(history.time, force, stroke, float(history.time[max(first - 1, 0)]))
-    except LandingError:
-        return None
+            name = f"leg[{leg}].main_strut"
+            values[f"{name}.first_stroke"] = "not compressed" if work is None else work.state
+            for what in WORK:
+                values[f"{name}.{what}"] = None if work is None else getattr(work, what)
+    for what in (what for what, unit in WORK.items() if unit):
+        terms = [
+            0.0
+            if values[f"leg[{leg}].main_strut.first_stroke"] == "not compressed"
+            else values[f"leg[{leg}].main_strut.{what}"]
+            for leg in LEGS
+        ]
+        values[f"legs.main_strut.{what}"] = None if None in terms else sum(terms)
+    return values

@@ -25,6 +25,10 @@ from .study import Study
 LEVEL = 0.95
 RESAMPLES = 999
 LEAST_WHOLE = 0.9
+# an index lies between 0 and 1: an interval wider than half of that decides nothing
+WIDEST = 0.5
+# a response that varies by less than this part of its largest value varies by round-off
+ROUND_OFF = 1e-12
 
 
 @dataclass(frozen=True)
@@ -53,6 +57,25 @@ class Indices:
     used: int
     samples: int
 
+    @property
+    def reason(self) -> str:
+        """Why there are no indices; empty where there are."""
+        if not np.isnan(self.total).any():
+            return ""
+        if self.used < LEAST_WHOLE * self.samples:
+            return f"{self.used} of {self.samples} samples have it"
+        return "it does not vary"
+
+    def enough(self, factor: int) -> bool:
+        """Whether the samples suffice for the indices of the factor at this place.
+
+        They do not where an interval is wider than 0.5 or lies outside 0 to 1.
+        """
+        return all(
+            high - low <= WIDEST and low <= 1.0 and high >= 0.0
+            for _, low, high in (self.first[factor], self.total[factor])
+        )
+
     def record(self) -> dict[str, Any]:
         """The same for JSON; null for NaN."""
 
@@ -63,14 +86,15 @@ class Indices:
             }
 
         indices = [
-            {"factor": f, "first": plain(a), "total": plain(b)}
-            for f, a, b in zip(self.factors, self.first, self.total)
+            {"factor": f, "first": plain(a), "total": plain(b), "enough_samples": self.enough(k)}
+            for k, (f, a, b) in enumerate(zip(self.factors, self.first, self.total))
         ]
         return {
             "response": self.response,
             "mode": self.mode,
             "used": self.used,
             "samples": self.samples,
+            "reason": self.reason,
             "indices": indices,
         }
 
@@ -160,7 +184,8 @@ def sobol_indices(
     )
     interval = resampled.confidence_interval
     indices = np.stack([both(np.arange(n)), interval.low, interval.high], axis=-1)
-    indices[:, np.ptp(pages[:2], axis=(0, 2)) == 0.0] = np.nan
+    spread, largest = np.ptp(pages, axis=(0, 2)), np.abs(pages).max(axis=(0, 2))
+    indices[:, spread <= ROUND_OFF * largest] = np.nan
     return indices[0], indices[1]
 
 

@@ -19,6 +19,7 @@ from ...quantities import MODES, Quantity
 from .. import toml_keys
 from ..limits import LIMITS
 from ..outcome import DEFAULT_SLIDE
+from ..whole_landing import LATEST
 from .design import LARGEST, Design, drawn, grid
 from .factors import VARIABLES, Factor, read_factor
 from .responses import expand
@@ -26,12 +27,10 @@ from .states_table import read_states
 
 METHODS = ("grid", "lhs", "sobol", "table")
 TABLES = ("study", "set", "limits", "factor")
+UNTIL = Quantity("s", "end of each landing", 1e-6, 3600.0, name="until", display_unit="s")
 NUMBERS = {
     q.name: q
     for q in (
-        Quantity(
-            "s", "end of each landing", 1e-6, 3600.0, name="until", default=1.0, display_unit="s"
-        ),
         Quantity(
             "s", "time between samples", 1e-6, 3600.0, name="every", default=1e-3, display_unit="s"
         ),
@@ -59,6 +58,7 @@ KEYS = (
     "parameters",
     "modes",
     "responses",
+    "until",
     *NUMBERS,
 )
 
@@ -74,7 +74,7 @@ class Study:
         seed: Seed of the points.
         parameters: The parameters that are not varied.
         modes: Landing modes, each landed for every sample; empty where the mode is varied.
-        until: End of each landing [s].
+        until: End of each landing [s]; None: when it is decided.
         every: Time between samples [s].
         rtol: Relative tolerance of the integrator.
         slide: Largest distance that a footpad may move without having slid [m].
@@ -92,7 +92,7 @@ class Study:
     seed: int
     parameters: Parameters
     modes: tuple[str, ...]
-    until: float
+    until: float | None
     every: float
     rtol: float
     slide: float
@@ -184,9 +184,11 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
         grid(factors)
     parameters = _parameters(keys, path, fixed)
     numbers = {name: toml_keys.number(keys, q) for name, q in NUMBERS.items()}
-    if numbers["every"] > numbers["until"]:
+    until = toml_keys.number(keys, UNTIL) if "until" in keys else None
+    longest = LATEST if until is None else until
+    if numbers["every"] > longest:
         raise LandingError(
-            f"every = {numbers['every']:g} s is above until = {numbers['until']:g} s; "
+            f"every = {numbers['every']:g} s is above until = {longest:g} s; "
             "no landing would have a second sample"
         )
     limits = {
@@ -211,6 +213,7 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
         factors=factors,
         table=table,
         text=text,
+        until=until,
         **numbers,
     )
 

@@ -26,6 +26,11 @@ class Spread:
     count: int
     quantiles: tuple[float, float, float, float, float]
 
+    @property
+    def constant(self) -> bool:
+        """Whether all landings that have the response have the same value."""
+        return self.quantiles[0] == self.quantiles[-1]
+
 
 @dataclass
 class Summary:
@@ -36,7 +41,9 @@ class Summary:
         failed: Landings that could not be made.
         failures: Index and reason of the first of these.
         outcomes: Landings by the outcome's name.
-        spreads: The spread of each response that is a number.
+        spreads: The spread of each response that is a number and that a landing has.
+        texts: Landings by value, of each other response that is a text or a leg's number.
+        missing: Responses that no landing has.
     """
 
     landings: int
@@ -44,6 +51,8 @@ class Summary:
     failures: list[tuple[int, str]] = field(default_factory=list)
     outcomes: dict[str, int] = field(default_factory=dict)
     spreads: list[Spread] = field(default_factory=list)
+    texts: dict[str, dict[str, int]] = field(default_factory=dict)
+    missing: list[str] = field(default_factory=list)
 
     def record(self) -> dict[str, Any]:
         """The same for JSON."""
@@ -59,6 +68,9 @@ class Summary:
             "failures": failures,
             "outcomes": self.outcomes,
             "responses": spreads,
+            "texts": self.texts,
+            "missing": self.missing,
+            "constant": [s.name for s in self.spreads if s.constant],
         }
 
 
@@ -78,17 +90,25 @@ def summarise_results(path: Path) -> Summary:
             if len(summary.failures) < SHOWN_FAILURES:
                 summary.failures.append((index, reason))
     known = known_responses()
-    for name in file.schema_arrow.names:
-        if name == "outcome":
-            found = [v for v in values(name) if v is not None]
-            summary.outcomes = {v: found.count(v) for v in sorted(set(found))}
-        elif name in known and known[name].kind == "real":
-            numbers = np.array([v for v in values(name) if v is not None], dtype=float)
-            if len(numbers):
-                low, p5, median, p95, high = map(
-                    float, np.quantile(numbers, (0.0, 0.05, 0.5, 0.95, 1.0))
-                )
-                summary.spreads.append(
-                    Spread(name, known[name].unit, len(numbers), (low, p5, median, p95, high))
-                )
+    for name in (n for n in file.schema_arrow.names if n in known):
+        found = [v for v in values(name) if v is not None and v == v]
+        if not found:
+            summary.missing.append(name)
+        elif name == "outcome":
+            summary.outcomes = _counted(found)
+        elif known[name].kind == "string" or name == "outcome.leg":
+            summary.texts[name] = _counted(found)
+        else:
+            summary.spreads.append(_spread(name, known[name].unit, found))
     return summary
+
+
+def _counted(found: list[Any]) -> dict[str, int]:
+    """The number of landings by value."""
+    return {str(v): found.count(v) for v in sorted(set(found))}
+
+
+def _spread(name: str, unit: str, found: list[Any]) -> Spread:
+    numbers = np.array(found, dtype=float)
+    low, p5, median, p95, high = map(float, np.quantile(numbers, (0.0, 0.05, 0.5, 0.95, 1.0)))
+    return Spread(name, unit, len(numbers), (low, p5, median, p95, high))

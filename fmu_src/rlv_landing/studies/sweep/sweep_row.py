@@ -12,9 +12,11 @@ from typing import Any
 
 from ... import __version__
 from ...errors import LandingError
+from ...history import History
 from ...landing import Landing
 from ...parameters import PARAMETER_QUANTITIES, Parameters
 from ...quantities import MODES, Quantity
+from ..whole_landing import LATEST, whole_landing
 from .design import Design
 from .factors import VARIABLES
 from .responses import Measure, known_responses
@@ -30,7 +32,7 @@ class Plan:
     Attributes:
         parameters: The parameters that are not varied.
         inputs: Constant inputs by name [SI].
-        until: End of each landing [s].
+        until: End of each landing [s]; None: when it is decided, 10 s after contact at the latest.
         every: Time between samples [s].
         rtol: Relative tolerance of the integrator.
         responses: Names of the responses.
@@ -40,7 +42,7 @@ class Plan:
 
     parameters: Parameters
     inputs: Mapping[str, float]
-    until: float
+    until: float | None
     every: float
     rtol: float
     responses: tuple[str, ...]
@@ -85,6 +87,17 @@ class Plan:
             landing.set_inputs(inputs)
         return landing
 
+    def history(self, landing: Landing) -> History:
+        """Make a landing, until the study's end or until it is decided.
+
+        Raises:
+            LandingError: As `Landing.run`.
+        """
+        if self.until is not None:
+            return landing.run(self.until, self.every)
+        latest = landing.parameters.drop.contact_time + LATEST
+        return whole_landing(landing, latest, self.every)
+
     def sweep_row(self, values: Mapping[str, Any]) -> list[Any]:
         """Make the landing with these values and take its responses.
 
@@ -97,7 +110,7 @@ class Plan:
         """
         try:
             landing = self.landing(values)
-            history = landing.run(self.until, self.every)
+            history = self.history(landing)
             return [__version__, None, *self.measure(history, landing.statistics["rhs_calls"])]
         except Exception as e:
             error = str(e) if isinstance(e, LandingError) else f"{type(e).__name__}: {e}"

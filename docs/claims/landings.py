@@ -1,0 +1,202 @@
+"""Values that landings of the presets give: seconds at most."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import TypeVar
+
+import numpy as np
+from marks import Value
+
+from rlv_landing import Landing, load_preset
+from rlv_landing.history import History
+from rlv_landing.quantities import LEGS
+from rlv_landing.studies.envelope.tip_over import RigidBlock
+from rlv_landing.touchdown import footpad_at_rest
+from rlv_landing.validation.paper import paper_counts_against_test, printed_scalars
+from rlv_landing.validation.validate import Validation, validate
+
+Compute = TypeVar("Compute", bound=Callable[..., float | str])
+
+FIGURES = "yue2022-figures"
+QUICK: dict[str, Value] = {}
+# the strut that the auxiliary strut is compared with: aluminium of this cross-section
+ALUMINIUM, SECTION = 70e9, 5.91e-4
+
+
+def quick(compute: Compute) -> Compute:
+    """Register a quick value under its name."""
+    QUICK[compute.__name__] = Value(compute, slow=False)
+    return compute
+
+
+@lru_cache
+def found(preset: str = FIGURES, transverse: str = "") -> Validation:
+    """The validation of a preset, with `vehicle.transverse_load_at` changed if it is given."""
+    parameters = load_preset(preset)
+    if transverse:
+        parameters = parameters.with_values({"vehicle.transverse_load_at": transverse})
+    return validate(parameters)
+
+
+def landing(mode: str, preset: str = FIGURES) -> History:
+    """A preset's drop test of `mode` at 5 kHz."""
+    return found(preset).histories[mode]
+
+
+def largest(column: str) -> float:
+    """The largest value of a leg's column in both drop tests."""
+    return max(
+        float(landing(mode)[f"leg[{leg}].{column}"].max())
+        for mode in ("2-2", "1-2-1")
+        for leg in LEGS
+    )
+
+
+@quick
+def counts(against: str = "simulation", transverse: str = "") -> str:
+    """Printed scalars within 5 / 10 / 20 %: of the simulation, the test, or the paper's own."""
+    if against == "paper":
+        n = paper_counts_against_test()
+    else:
+        both = found(FIGURES, transverse)
+        n = both.counts if against == "simulation" else both.counts_against_test
+    return f"{n['within_5']} / {n['within_10']} / {n['within_20']}"
+
+
+@quick
+def scalars(against: str = "simulation") -> float:
+    """The number of printed scalars, or of those with a test."""
+    printed = printed_scalars()
+    return float(
+        len(printed) if against == "simulation" else sum(s.test == s.test for s in printed)
+    )
+
+
+@quick
+def scalar(name: str) -> float:
+    """Our value of a printed scalar, in its unit."""
+    return float(next(c.ours for c in found().all_comparisons if c.scalar.id == name))
+
+
+@quick
+def printed(name: str) -> float:
+    """The paper's simulation of a scalar, in its unit."""
+    return float(next(s.simulation for s in printed_scalars() if s.id == name))
+
+
+@quick
+def off(name: str) -> float:
+    """The magnitude of a scalar's error against the paper's simulation [%]."""
+    return next(100.0 * abs(c.error) for c in found().all_comparisons if c.scalar.id == name)
+
+
+@quick
+def early(name: str) -> float:
+    """By how much an event comes before the paper's [ms]."""
+    return 1e3 * (printed(name) - scalar(name))
+
+
+@quick
+def worse_than(percent: str) -> float:
+    """The number of scalars that deviate by more than so many per cent."""
+    return float(sum(100.0 * abs(c.error) > float(percent) for c in found().all_comparisons))
+
+
+@quick
+def created(mode: str) -> float:
+    """Energy that the transverse load at the joint creates in 1 s [J]."""
+    return float(landing(mode)["energy.work_transverse"][-1])
+
+
+@quick
+def dissipated(mode: str) -> float:
+    """Energy that is dissipated in 1 s [J]."""
+    return float(landing(mode)["energy.dissipated"][-1])
+
+
+@quick
+def auxiliary_load() -> float:
+    """The auxiliary struts' largest load [N]."""
+    return max(
+        float(np.abs(landing(mode)[f"leg[{leg}].auxiliary_strut.force"]).max())
+        for mode in ("2-2", "1-2-1")
+        for leg in LEGS
+    )
+
+
+@quick
+def auxiliary_yield() -> float:
+    """How far the spring of an auxiliary strut yields at the largest load [mm]."""
+    strut = load_preset(FIGURES).auxiliary_strut
+    return 1e3 * (auxiliary_load() / strut.stiffness) ** (1.0 / strut.exponent)
+
+
+@quick
+def auxiliary_secant() -> float:
+    """Load over yield of an auxiliary strut at the largest load [N/m]."""
+    return auxiliary_load() / (1e-3 * auxiliary_yield())
+
+
+@quick
+def softer_than_aluminium() -> float:
+    """How many times softer than an aluminium strut an auxiliary strut is at the largest load."""
+    return ALUMINIUM * SECTION / load_preset(FIGURES).auxiliary_strut.length / auxiliary_secant()
+
+
+@quick
+def largest_pressure() -> float:
+    """The largest pressure of any chamber [MPa]."""
+    return 1e-6 * max(largest(f"main_strut.pressure_{c}") for c in ("upper", "lower"))
+
+
+@quick
+def largest_penetration() -> float:
+    """The largest penetration of a footpad [mm]."""
+    return 1e3 * largest("contact.penetration")
+
+
+@quick
+def over_extension() -> float:
+    """The farthest that a damper over-extends [mm]."""
+    return -1e3 * min(
+        float(landing(mode)[f"leg[{leg}].main_strut.stroke"].min())
+        for mode in ("2-2", "1-2-1")
+        for leg in LEGS
+    )
+
+
+@quick
+def upright() -> float:
+    """The time from which on the pitch of both drop tests stays within 0.5 deg of its last [s]."""
+    return max(scalar(name) for name in ("22-rest", "121-rest"))
+
+
+@quick
+def interval(preset: str, mode: str, leg: str) -> float:
+    """Time from the first contact to that of a leg [ms]."""
+    h = landing(mode, preset)
+    first, later = (h.time[np.argmax(h[f"leg[{k}].contact.force_y"] > 0.0)] for k in (1, int(leg)))
+    return 1e3 * float(later - first)
+
+
+@quick
+def peak_force(mode: str) -> float:
+    """The main struts' most negative force, sampled each millisecond [N]."""
+    h = Landing(load_preset(FIGURES), mode).run(1.0, 1e-3)
+    return min(float(h[f"leg[{leg}].main_strut.force"].min()) for leg in LEGS)
+
+
+@quick
+def second_peak(samples: str) -> float:
+    """The largest axial acceleration at the top in 2-2, sampled each so many seconds [m/s2]."""
+    h = Landing(load_preset(FIGURES), "2-2").run(1.0, float(samples))
+    return float(h["body.top_axial_acceleration"].max())
+
+
+@quick
+def height(which: str) -> float:
+    """Height of the CG above the feet, of the whole vehicle or of the body alone [m]."""
+    p = load_preset(FIGURES)
+    return RigidBlock.of(p).height if which == "whole" else -footpad_at_rest(p)[1]

@@ -1,0 +1,46 @@
+"""A landing that lasts until every damper has ended its first compression and rebound."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..core import Phase
+from ..history import History
+from ..landing import Landing
+from ..quantities import LEGS
+from .measures import leg_work
+from .reading import RUN_AFTER_CONTACT
+from .sensors import SAMPLING
+
+# the shortest and the longest [s], and by how much a landing that is too short goes on
+SHORTEST, LONGEST, LONGER = 1.0, 10.0, 1.5
+
+
+def whole_strokes(landing: Landing) -> History:
+    """The landing at 5 kHz until the end of every damper's first rebound.
+
+    It lasts 1 s at least, 0.9 s from the first contact on, and 10 s at most.
+
+    Raises:
+        LandingError: As `Landing.run`.
+    """
+    until = max(SHORTEST, landing.parameters.drop.contact_time + RUN_AFTER_CONTACT + 0.1)
+    history = landing.run(until, 1.0 / SAMPLING)
+    while history.time[-1] < LONGEST and _goes_on(history):
+        until = min(LONGER * until, LONGEST)
+        more = landing.run(until, 1.0 / SAMPLING)
+        history = History(
+            np.concatenate([history.time, more.time[1:]]),
+            history.names,
+            np.concatenate([history.data, more.data[1:]]),
+            history.parameters,
+        )
+    return history
+
+
+def _goes_on(history: History) -> bool:
+    """Whether the landing is not decided and a damper has not ended its first rebound."""
+    if history["status.phase"][-1] in (Phase.SETTLED, Phase.TOPPLED):
+        return False
+    work = leg_work(history)
+    return len(work) < len(LEGS) or any(w.state != "complete" for w in work.values())
