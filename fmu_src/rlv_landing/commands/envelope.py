@@ -11,6 +11,7 @@ import click
 
 from ..choices import parse_pairs, split_pair
 from ..errors import LandingError
+from .number_types import Number, WholeNumber
 from .options import HELP_NAMES, check_writable, parameter_options
 from .printing import print_json
 
@@ -66,16 +67,18 @@ STUDY = click.Path(path_type=Path)
     metavar="NAME",
     help="What is lost: toppled (default), bottomed out, slid, or limit (any limit passed).",
 )
-@click.option("--cells", type=int, metavar="N", help="Coarse cells along each axis [default: 8].")
+@click.option(
+    "--cells", type=WholeNumber(), metavar="N", help="Coarse cells along each axis [default: 8]."
+)
 @click.option(
     "--levels",
-    type=int,
+    type=WholeNumber(),
     metavar="N",
     help="How often cells on the boundary are halved [default: 2].",
 )
 @click.option(
     "--until",
-    type=float,
+    type=Number("s"),
     metavar="S",
     help="End of a landing that neither rests nor topples [default: 6].",
 )
@@ -87,7 +90,7 @@ STUDY = click.Path(path_type=Path)
     help="Folder for landings and results.",
 )
 @click.option("--resume", is_flag=True, help="Continue with the landings in --work.")
-@click.option("--workers", type=click.IntRange(1), help="Threads [default: all cores].")
+@click.option("--workers", type=WholeNumber(1, 1024), help="Threads [default: all cores].")
 @click.option(
     "--plot",
     metavar="FILE.png|.svg",

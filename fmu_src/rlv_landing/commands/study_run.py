@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from ..errors import LandingError
+from .number_types import NumberRange, WholeNumber
 from .options import add_options
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ def run_options(command: F) -> F:
             is_flag=True,
             help="Continue with the study in --results; refused if the study has changed.",
         ),
-        click.option("--workers", type=click.IntRange(1), help="Threads [default: all cores]."),
+        click.option("--workers", type=WholeNumber(1, 1024), help="Threads [default: all cores]."),
         click.option(
             "--scheduler",
             metavar="ADDRESS",
@@ -65,7 +66,7 @@ def run_options(command: F) -> F:
             "--timeout",
             default=10.0,
             show_default=True,
-            type=click.FloatRange(0.1),
+            type=NumberRange(0.1, unit="s"),
             metavar="S",
             help="Longest wait for scheduler or workers [s].",
         ),

@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from rlv_landing.commands.number_types import Number
 from rlv_landing.commands.options import check_writable
 from rlv_landing.errors import LandingError
 
@@ -134,11 +135,11 @@ def recover(log: Path, output: Path | None, *, as_json: bool) -> None:
     metavar="NAME[,NAME...]",
     help="Columns of these topics only, full or relative names. Repeatable.",
 )
-@click.option("--start", type=float, metavar="SECONDS", help="From this simulation time on.")
-@click.option("--end", type=float, metavar="SECONDS", help="Up to this simulation time.")
+@click.option("--start", type=Number("s"), metavar="SECONDS", help="From this simulation time on.")
+@click.option("--end", type=Number("s"), metavar="SECONDS", help="Up to this simulation time.")
 @click.option(
     "--every",
-    type=float,
+    type=Number("s"),
     metavar="SECONDS",
     help="Only the first instant in each of these. Default: all.",
 )

@@ -19,8 +19,8 @@ from ...quantities import MODES, Quantity
 from .. import toml_keys
 from ..limits import LIMITS
 from ..outcome import DEFAULT_SLIDE
-from .design import LARGEST, Design, drawn, grid
-from .factors import VARIABLES, Factor, read_factor
+from .design import Design, drawn, grid
+from .factors import LARGEST, VARIABLES, Factor, read_factor
 from .responses import expand
 from .states_table import read_states
 
