@@ -25,6 +25,7 @@ LARGEST_TEXT = 4 * 1024**2
 LONGEST_LINE = 1024**2
 DEEPEST = 32
 LARGEST_INTEGER = 2**63
+_TOO_LARGE = "a whole number of more than 64 bits; write it as 1e19"
 _BYTE_ORDER_MARKS = {
     codecs.BOM_UTF32_LE: "UTF-32",
     codecs.BOM_UTF32_BE: "UTF-32",
@@ -89,8 +90,11 @@ def parse_document(text: str, name: str) -> dict[str, Any]:
         document = tomllib.loads(text)
     except RecursionError:
         raise LandingError(f"{name}: tables and lists are nested too deep; {DEEPEST} fit") from None
-    except ValueError as e:
+    except tomllib.TOMLDecodeError as e:
         raise LandingError(f"{name}: TOML syntax: {e}") from None
+    except ValueError:
+        # Python converts no whole number of more than 4300 digits
+        raise LandingError(f"{name} has {_TOO_LARGE}") from None
     _check_size(document, name)
     return document
 
@@ -104,9 +108,7 @@ def _check_size(document: dict[str, Any], name: str) -> None:
                 f"{name}: {key.split('.')[0]} is nested more than {DEEPEST} deep; write it flat"
             )
         if isinstance(value, int) and not -LARGEST_INTEGER <= value < LARGEST_INTEGER:
-            raise LandingError(
-                f"{name}: {key} is a whole number of more than 64 bits; write it as 1e19"
-            )
+            raise LandingError(f"{name}: {key} is {_TOO_LARGE}")
         if isinstance(value, dict):
             below += [(f"{key}.{k}" if key else k, v, depth + 1) for k, v in value.items()]
         elif isinstance(value, list):

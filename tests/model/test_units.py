@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from decimal import Decimal, localcontext
 from math import isclose
+from pathlib import Path
 
 import pint
 import pytest
@@ -35,6 +36,7 @@ from rlv_landing.units import (
 )
 from rlv_landing.values import check_together, example, parse_value, to_si
 
+ROOT = Path(__file__).parents[2]
 SYMBOLS = sorted(
     {*PLAIN, *PREFIXED, *(p + symbol for p in PREFIXES for symbol in PREFIXED)} - {*AMBIGUOUS}
 )
@@ -315,3 +317,23 @@ def test_values_given_together_all_have_a_unit_or_none(values):
 @pytest.mark.parametrize("values", [("0", "10 deg"), (0, "5 deg"), ("1", "2"), ("1 deg", "1 rad")])
 def test_a_zero_needs_no_unit(values):
     check_together(quantity("rad"), values)
+
+
+def rows_of(page: str, heading: str) -> list[tuple[str, str]]:
+    """The rows of the table below this heading on a page of the documentation."""
+    text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    table = text[text.index(heading) :].split("\n\n")[0].splitlines()[2:]
+    return [tuple(cell.strip() for cell in row.strip("|").split("|")) for row in table]
+
+
+@pytest.mark.parametrize(("texts", "si"), rows_of("units.md", "| text | in SI |"))
+def test_the_page_gives_right_values(texts, si):
+    value, _, unit = si.partition(" ")
+    for text in re.findall("`(.*?)`", texts):
+        assert to_si(quantity(unit), text) == float(value)
+
+
+@pytest.mark.parametrize(("text", "reason"), rows_of("units.md", "| text | reason |"))
+def test_the_page_gives_right_reasons(text, reason):
+    with pytest.raises(LandingError, match=re.escape(reason)):
+        to_si(quantity(""), text.strip("`"))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from ..errors import LandingError
+from ..errors import LandingError, one_line
 from .number_types import NumberRange, WholeNumber
 from .options import add_options
 
@@ -165,8 +165,10 @@ def _run_or_exit(task: Task, results: Results, engine: Engine, *, strict: bool) 
         except (LostError, LandingError) as e:
             reason, status = f"error: {e}", FAILED
     click.echo(
-        f"{reason}; {results.rows_done} of {len(task)} landings are kept in {results.folder}, "
-        "--resume continues",
+        one_line(
+            f"{reason}; {results.rows_done} of {len(task)} landings are kept in {results.folder}, "
+            "--resume continues"
+        ),
         err=True,
     )
     sys.exit(status)

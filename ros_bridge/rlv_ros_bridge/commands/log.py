@@ -11,7 +11,7 @@ import click
 
 from rlv_landing.commands.number_types import Number
 from rlv_landing.commands.options import check_writable
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, one_line
 
 from ..logs.libraries import require_log_readers
 
@@ -88,7 +88,9 @@ def verify(log: Path, fmu: Path | None, *, as_json: bool) -> None:
     found = compare(open_log(log), fmu)
     click.echo(json.dumps(found.as_dict(), indent=2) if as_json else found.text())
     if found.cut:
-        click.echo(f"warning: {log} is cut or damaged; what is there was compared", err=True)
+        click.echo(
+            one_line(f"warning: {log} is cut or damaged; what is there was compared"), err=True
+        )
     if not found.same:
         sys.exit(EXIT_DIFFERS)
 
@@ -204,7 +206,7 @@ def export(
             raise LandingError(f"{plot} cannot be written: {e.strerror or e}") from None
         click.echo(f"picture: {plot}")
     for note in notes:
-        click.echo(note, err=True)
+        click.echo(one_line(note), err=True)
     if reader.cut:
         warn_incomplete_and_exit(log, reader.damage)
 
@@ -223,13 +225,17 @@ def warn_incomplete_and_exit(log: Path, damage: list[str] | None = None) -> None
     """
     if damage:
         click.echo(
-            f"warning: {log} is damaged ({damage[0]}); what is whole was read, "
-            "`rlv-landing log recover` saves it",
+            one_line(
+                f"warning: {log} is damaged ({damage[0]}); what is whole was read, "
+                "`rlv-landing log recover` saves it"
+            ),
             err=True,
         )
     else:
         click.echo(
-            f"warning: {log} is cut: its writer did not finish it; all up to there was read",
+            one_line(
+                f"warning: {log} is cut: its writer did not finish it; all up to there was read"
+            ),
             err=True,
         )
     sys.exit(EXIT_CUT)

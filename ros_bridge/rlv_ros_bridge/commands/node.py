@@ -10,7 +10,7 @@ import click
 
 from rlv_landing.choices import parse_pairs
 from rlv_landing.commands.number_types import Number, WholeNumber
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, one_line
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 
 from ..node.run_summary import RunSummary
@@ -173,13 +173,15 @@ def _print_summary(summary: RunSummary) -> None:
     if not summary.acknowledged:
         warnings.append("not every reliable subscriber has acknowledged all samples")
     for text in warnings:
-        click.echo(f"warning: {text}", err=True)
+        click.echo(one_line(f"warning: {text}"), err=True)
     if summary.folder is not None:
         click.echo(f"log: {summary.folder}")
     if summary.recording_error:
         click.echo(
-            f"error: {summary.recording_error}; what was written can be read with "
-            f"`rlv-landing log info {summary.folder}`",
+            one_line(
+                f"error: {summary.recording_error}; what was written can be read with "
+                f"`rlv-landing log info {summary.folder}`"
+            ),
             err=True,
         )
 
