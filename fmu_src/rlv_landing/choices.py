@@ -11,8 +11,9 @@ from typing import Any
 
 from .errors import LandingError, unknown
 from .parameters import Parameters
-from .presets import DEFAULT_PRESET, load_preset, parse_value, read_toml
+from .presets import DEFAULT_PRESET, load_preset, read_toml
 from .quantities import Quantity
+from .values import parse_value
 
 
 def split_pair(pair: str, what: str) -> tuple[str, str]:

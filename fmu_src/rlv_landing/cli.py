@@ -21,8 +21,10 @@ from .commands.sensitivity import sensitivity
 from .commands.simulate import simulate
 from .commands.sweep import sweep
 from .commands.validate import validate
-from .errors import LandingError, nearest
+from .errors import LandingError, nearest, one_line
+from .terminal import make_legible
 
+FAILED = 1
 BAD_INPUT = 2
 INTERRUPTED = 130
 
@@ -94,17 +96,34 @@ for command in (simulate, parameters, validate, audit, identify, sweep, sensitiv
 
 def main() -> None:
     """Run the command line; an error of the user is one line on standard error."""
+    sys.exit(run(cli))
+
+
+def run(group: click.Group, name: str | None = None) -> int:
+    """Run a group of commands with the arguments of this process; the exit code.
+
+    Args:
+        group: The group.
+        name: The program's name in help texts [default: as it was called].
+    """
+    make_legible()
     try:
-        status = cli.main(standalone_mode=False)
+        status = group.main(prog_name=name, standalone_mode=False)
     except LandingError as e:
-        click.echo(f"error: {e}", err=True)
-        status = BAD_INPUT
+        return _refuse(str(e), BAD_INPUT)
     except click.ClickException as e:
-        click.echo(f"error: {e.format_message()}", err=True)
-        status = BAD_INPUT
+        return _refuse(e.format_message(), BAD_INPUT)
     except (click.Abort, KeyboardInterrupt):
         click.echo("interrupted", err=True)
-        status = INTERRUPTED
+        return INTERRUPTED
     except BrokenPipeError:
-        status = 0
-    sys.exit(status if isinstance(status, int) else 0)
+        return 0
+    except OSError as e:
+        name = f"{e.filename}: " if e.filename is not None else ""
+        return _refuse(f"{name}{e.strerror or e}", FAILED)
+    return status if isinstance(status, int) else 0
+
+
+def _refuse(message: str, status: int) -> int:
+    click.echo(one_line(f"error: {message}"), err=True)
+    return status

@@ -7,9 +7,41 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+LONGEST_LINE = 300
+_LONGEST_WORDS = (60, 40, 30)
+_PREFIX = "error: "
+
 
 class LandingError(ValueError):
-    """The user's input cannot be used; the message is one line and gives the remedy."""
+    """The user's input cannot be used; the message is one line and gives the remedy.
+
+    A message that is too long for a line of 300 characters is shortened.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(one_line(message, LONGEST_LINE - len(_PREFIX)))
+
+
+def one_line(text: str, longest: int = LONGEST_LINE) -> str:
+    """A text as one line of at most `longest` characters.
+
+    Control characters are escaped. Where the line is too long, long words are shortened first, then
+    its middle is left out, for the start says what is wrong and the end what to do.
+    """
+    line = "".join(
+        c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text.strip()
+    )
+    for length in _LONGEST_WORDS:
+        if len(line) > longest:
+            line = " ".join(_cut(word, length) for word in line.split(" "))
+    return _cut(line, longest)
+
+
+def _cut(text: str, longest: int) -> str:
+    if len(text) <= longest:
+        return text
+    end = (longest - 3) // 2
+    return f"{text[: longest - 3 - end]}...{text[-end:]}"
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

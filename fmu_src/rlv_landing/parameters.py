@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
-from math import cos, radians, sin
+from math import cos, isfinite, isinf, radians, sin
 from typing import Annotated, Any, Literal, get_args, get_type_hints
 
 from .errors import LandingError, unknown
@@ -150,12 +150,25 @@ def check_value(q: Quantity, value: Any) -> float | str:
         raise LandingError(
             f"{q.name} = {value!r} is not a number; give it in {q.unit or 'plain numbers'}"
         )
-    if not q.lo <= value <= q.hi:
+    number = _to_float(q, value)
+    if not (q.lo <= number <= q.hi and isfinite(number)):
+        bounds = f"is outside [{q.lo:g}, {q.hi:g}] {q.unit}".rstrip()
+        unbounded = isinf(q.lo) and isinf(q.hi)
         raise LandingError(
-            f"{q.name} = {value:g} {q.unit}".rstrip()
-            + f" is outside [{q.lo:g}, {q.hi:g}] {q.unit}".rstrip()
+            f"{q.name} = {number:g} {q.unit}".rstrip()
+            + (" must be finite" if unbounded else f" {bounds}")
         )
-    return float(value)
+    return number
+
+
+def _to_float(q: Quantity, value: float) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        raise LandingError(
+            f"{q.name} is beyond the largest number, 1.8e308; it is outside "
+            + f"[{q.lo:g}, {q.hi:g}] {q.unit}".rstrip()
+        ) from None
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import sys
 
 import click
 
-from rlv_landing.errors import LandingError
+from rlv_landing.cli import run as run_group
 
 from .commands.animate import animate
 from .commands.log import log
@@ -28,13 +28,8 @@ main.add_command(view)
 
 
 def run() -> int:
-    """Runs a command; a LandingError becomes one line on stderr and exit code 2."""
-    try:
-        main.main(prog_name="rlv_ros_bridge", standalone_mode=True)
-    except LandingError as e:
-        print(f"error: {e}", file=sys.stderr)
-        return 2
-    return 0
+    """Runs a command; an error of the user is one line on standard error. The exit code."""
+    return run_group(main, "rlv_ros_bridge")
 
 
 if __name__ == "__main__":

@@ -45,6 +45,14 @@ NODE_CASES: dict[str, tuple[tuple[str, ...], str]] = {
         ("--ros-args", "-p", "vehicle.mass:=heavy"),
         "vehicle.mass = 'heavy' is not a number",
     ),
+    "ROS parameter in another unit": (
+        ("--ros-args", "-p", "drop.tilt:='-2 m'"),
+        "drop.tilt = '-2 m' has the wrong unit",
+    ),
+    "ROS parameter with a decimal comma": (
+        ("--ros-args", "-p", "drop.tilt:='-1,5 deg'"),
+        "write a point instead of the comma: -1.5 deg",
+    ),
     "report without a record": (("--no-record", "--report"), "contradict each other"),
     "no subscribers in time": (
         ("--wait-for-subscribers", "1", "--wait-timeout", "0.1"),

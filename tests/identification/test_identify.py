@@ -196,10 +196,26 @@ def test_a_curve_of_the_landing_itself_is_no_misfit(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        (b"id,value,unit\n22-fm1-td,-2710,N\n", -2710.0),
+        (b"id,value,unit\n22-fm1-td,-2.71,kN\n", -2710.0),
+        (b"\xef\xbb\xbfid,value,unit\r\n22-s3-max,24.17,mm\r\n", 24.17),
+        (b"id,value,unit\n22-s3-max,2.417,cm\n", 24.17),
+    ],
+)
+def test_targets_may_have_any_unit_of_their_dimension(tmp_path, text, value):
+    (tmp_path / "t.csv").write_bytes(text)
+    assert [t.value for t in read_targets(tmp_path / "t.csv")] == [value]
+
+
+@pytest.mark.parametrize(
     ("text", "message"),
     [
         ("id,value,unit\n22-fm1-tdd,-2000,N\n", "did you mean 22-fm1-td"),
-        ("id,value,unit\n22-fm1-td,-2,kN\n", "is in 'kN'; give it in N"),
+        ("id,value,unit\n22-fm1-td,-2,m\n", "has the wrong unit; give it in N"),
+        ('id,value,unit\n22-fm1-td,"-2,5",kN\n', "write a point instead of the comma"),
+        ("id;value;unit\n22-fm1-td;-2,5;kN\n", "is separated by semicolons"),
         ("id,value,unit\n22-fm1-td,nan,N\n", "must be finite"),
         ("id,value,unit\n22-fm1-td,much,N\n", "not a number"),
         ("id,value\n22-fm1-td,-2000\n", "no unit"),

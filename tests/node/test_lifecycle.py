@@ -122,6 +122,8 @@ def test_a_reset_applies_the_parameters_that_were_set_before_it(
     assert remote.change(CONFIGURE)
     assert remote.set(step_count=100)[0].successful
     assert remote.trigger("step") == (True, "at 0.1 s")
+    assert remote.set(vehicle__mass="0.3 t")[0].successful
+    assert remote.get("vehicle.mass") == [300.0]
     assert remote.set(vehicle__mass=200)[0].successful
     assert remote.trigger("reset") == (True, "back to 0 s")
     assert remote.set(step_count=2000)[0].successful
@@ -156,7 +158,7 @@ def test_parameters_are_described_checked_and_kept_while_landing(
     for name, value, reason in (
         ("vehicle__mass", -1.0, "vehicle.mass = -1 kg is outside [1, 1e+06] kg"),
         ("vehicle__mass", float("nan"), "vehicle.mass = nan kg is outside [1, 1e+06] kg"),
-        ("vehicle__mass", "heavy", "vehicle.mass = 'heavy' is not a number; give it in kg"),
+        ("vehicle__mass", "heavy", "vehicle.mass = 'heavy' is not a number with a unit"),
         (
             "vehicle__transverse_load_at",
             "knee",

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..choices import parse_pairs, split_pair
-from ..errors import LandingError
+from ..errors import LandingError, one_line
+from .number_types import Number, WholeNumber
 from .options import HELP_NAMES, check_writable, parameter_options
 from .printing import print_json
 
@@ -66,16 +67,18 @@ STUDY = click.Path(path_type=Path)
     metavar="NAME",
     help="What is lost: toppled (default), bottomed out, slid, or limit (any limit passed).",
 )
-@click.option("--cells", type=int, metavar="N", help="Coarse cells along each axis [default: 8].")
+@click.option(
+    "--cells", type=WholeNumber(), metavar="N", help="Coarse cells along each axis [default: 8]."
+)
 @click.option(
     "--levels",
-    type=int,
+    type=WholeNumber(),
     metavar="N",
     help="How often cells on the boundary are halved [default: 2].",
 )
 @click.option(
     "--until",
-    type=float,
+    type=Number("s"),
     metavar="S",
     help="End of a landing that neither rests nor topples [default: 6].",
 )
@@ -87,7 +90,7 @@ STUDY = click.Path(path_type=Path)
     help="Folder for landings and results.",
 )
 @click.option("--resume", is_flag=True, help="Continue with the landings in --work.")
-@click.option("--workers", type=click.IntRange(1), help="Threads [default: all cores].")
+@click.option("--workers", type=WholeNumber(1, 1024), help="Threads [default: all cores].")
 @click.option(
     "--plot",
     metavar="FILE.png|.svg",
@@ -134,7 +137,9 @@ def envelope(
         found = _search(asked, store, options["workers"] or default_workers())
     except KeyboardInterrupt:
         click.echo(
-            f"interrupted; {len(store.found)} landings are kept in {work}, --resume continues",
+            one_line(
+                f"interrupted; {len(store.found)} landings are kept in {work}, --resume continues"
+            ),
             err=True,
         )
         sys.exit(INTERRUPTED)
@@ -162,10 +167,13 @@ def _study(path: Path | None, options: dict[str, Any]) -> EnvelopeStudy:
 
 def _override(document: dict[str, Any], options: dict[str, Any]) -> None:
     """Let the options replace what the study's document gives."""
+    from ..studies import toml_keys
     from ..studies.limits import LIMITS
     from ..studies.sweep.factors import VARIABLES
 
-    keys = document.setdefault("envelope", {})
+    for key in ("envelope", "set", "limits", *(axis for axis in ("x", "y") if axis in document)):
+        document[key] = toml_keys.table(document, key)
+    keys = document["envelope"]
     file = options["file"]
     if options["preset"] is not None or file is not None:
         keys.pop("preset", None)
@@ -178,8 +186,8 @@ def _override(document: dict[str, Any], options: dict[str, Any]) -> None:
     }
     keys.update({key: value for key, value in top.items() if value is not None})
     fixed = parse_pairs((*options["pairs"], *options["inputs"]), VARIABLES, "quantity")
-    document.setdefault("set", {}).update(fixed)
-    document.setdefault("limits", {}).update(parse_pairs(options["limits"], LIMITS, "limit"))
+    document["set"].update(fixed)
+    document["limits"].update(parse_pairs(options["limits"], LIMITS, "limit"))
     if options["families"]:
         pairs = [split_pair(pair, "--family") for pair in options["families"]]
         document["families"] = {

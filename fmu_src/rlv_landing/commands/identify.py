@@ -11,6 +11,7 @@ import click
 
 from ..choices import split_pair
 from ..errors import LandingError
+from .number_types import NumberRange, WholeNumber
 from .options import HELP_NAMES, choose, parameter_options
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ NOTHING_BETTER, INTERRUPTED = 1, 130
     "bounds",
     metavar="NAME=LO..HI",
     multiple=True,
-    help="Bounds for a parameter, SI. Repeat.",
+    help='Bounds for a parameter, SI or with units: "30 mm..60 mm". Repeat.',
 )
 @click.option(
     "--targets",
@@ -62,7 +63,7 @@ NOTHING_BETTER, INTERRUPTED = 1, 130
     "--evaluations",
     default=20000,
     show_default=True,
-    type=click.IntRange(1),
+    type=WholeNumber(1, 10**9),
     metavar="N",
     help="Landings of both modes to try at most.",
 )
@@ -70,27 +71,31 @@ NOTHING_BETTER, INTERRUPTED = 1, 130
     "--polish",
     default=2000,
     show_default=True,
-    type=click.IntRange(0),
+    type=WholeNumber(0, 10**9),
     help="Landings for the least squares after the search.",
 )
 @click.option(
     "--sigma",
     default=0.1,
     show_default=True,
-    type=click.FloatRange(1e-4, 1.0),
+    type=NumberRange(1e-4, 1.0),
     help="First spread of the search, as a part of the bounds.",
 )
 @click.option(
     "--population",
     default=32,
     show_default=True,
-    type=click.IntRange(4),
+    type=WholeNumber(4, 100_000),
     help="Points a generation.",
 )
 @click.option(
-    "--seed", default=1, show_default=True, type=click.IntRange(1), help="Seed of the search."
+    "--seed",
+    default=1,
+    show_default=True,
+    type=WholeNumber(1, 2**31 - 1),
+    help="Seed of the search.",
 )
-@click.option("--workers", type=click.IntRange(1), help="Processes [default: all cores].")
+@click.option("--workers", type=WholeNumber(1, 1024), help="Processes [default: all cores].")
 @click.option("--resume", is_flag=True, help="Continue with the search in --work.")
 @click.option(
     "--priors",
@@ -223,12 +228,17 @@ def _search(search: Search, options: dict[str, Any]) -> bool:
 
 
 def _bound(text: str) -> tuple[str, tuple[float, float]]:
+    from ..identification.priors import quantity
+    from ..values import check_together, to_si
+
     name, value = split_pair(text, "--bound")
-    lo, dots, hi = value.partition("..")
-    try:
-        return name, (float(lo), float(hi if dots else "x"))
-    except ValueError:
+    lo, dots, hi = (part.strip() for part in value.partition(".."))
+    if not dots:
         raise LandingError(
-            f"--bound {text}: write NAME=LO..HI with two numbers in SI, "
-            "for example ground.friction=0.1..0.5"
-        ) from None
+            f"--bound {text}: write NAME=LO..HI, for example ground.friction=0.1..0.5, "
+            'or with units, main_strut.stroke_max="30 mm..60 mm"'
+        )
+    q = quantity(name)
+    bounds = to_si(q, lo), to_si(q, hi)
+    check_together(q, (lo, hi))
+    return name, bounds

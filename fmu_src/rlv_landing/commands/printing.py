@@ -8,6 +8,8 @@ from typing import Any
 
 import click
 
+from ..errors import one_line
+
 FAILED = 1
 
 
@@ -35,5 +37,5 @@ def print_checked(
     else:
         click.echo(tables(), nl=False)
     for line in missed:
-        click.echo(f"missed: {line}", err=True)
+        click.echo(one_line(f"missed: {line}"), err=True)
     return FAILED if missed else 0

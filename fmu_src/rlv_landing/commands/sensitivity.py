@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from .number_types import NumberRange, WholeNumber
 from .options import HELP_NAMES, check_writable
 from .printing import print_json
 from .study_run import RunOptions, run_options, run_task
@@ -27,14 +28,14 @@ from .sweep import show_plan
     "--level",
     default=0.95,
     show_default=True,
-    type=click.FloatRange(0.5, 0.999),
+    type=NumberRange(0.5, 0.999),
     help="Confidence of the intervals.",
 )
 @click.option(
     "--resamples",
     default=999,
     show_default=True,
-    type=click.IntRange(99, 100_000),
+    type=WholeNumber(99, 100_000),
     help="Bootstrap resamples.",
 )
 def sensitivity(

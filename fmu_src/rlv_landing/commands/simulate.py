@@ -10,6 +10,7 @@ import click
 
 from ..errors import LandingError
 from ..landing import DEFAULT_RTOL, METHODS, Landing
+from .number_types import Number
 from .options import HELP_NAMES, check_writable, chosen_parameters, parameter_options
 from .printing import print_json
 
@@ -26,12 +27,23 @@ if TYPE_CHECKING:
     multiple=True,
     help="A constant input: external.force_x=500, ground.tilt='2 deg'. Repeat.",
 )
-@click.option("--until", default=1.0, show_default=True, metavar="S", help="End time [s].")
 @click.option(
-    "--every", default=1e-3, show_default=True, metavar="S", help="Time between samples [s]."
+    "--until", type=Number("s"), default=1.0, show_default=True, metavar="S", help="End time [s]."
 )
 @click.option(
-    "--rtol", default=DEFAULT_RTOL, show_default=True, help="Relative tolerance of the integrator."
+    "--every",
+    type=Number("s"),
+    default=1e-3,
+    show_default=True,
+    metavar="S",
+    help="Time between samples [s].",
+)
+@click.option(
+    "--rtol",
+    type=Number(),
+    default=DEFAULT_RTOL,
+    show_default=True,
+    help="Relative tolerance of the integrator.",
 )
 @click.option(
     "--method",

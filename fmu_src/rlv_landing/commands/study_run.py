@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from ..errors import LandingError
+from ..errors import LandingError, one_line
+from .number_types import NumberRange, WholeNumber
 from .options import add_options
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ def run_options(command: F) -> F:
             is_flag=True,
             help="Continue with the study in --results; refused if the study has changed.",
         ),
-        click.option("--workers", type=click.IntRange(1), help="Threads [default: all cores]."),
+        click.option("--workers", type=WholeNumber(1, 1024), help="Threads [default: all cores]."),
         click.option(
             "--scheduler",
             metavar="ADDRESS",
@@ -65,7 +66,7 @@ def run_options(command: F) -> F:
             "--timeout",
             default=10.0,
             show_default=True,
-            type=click.FloatRange(0.1),
+            type=NumberRange(0.1, unit="s"),
             metavar="S",
             help="Longest wait for scheduler or workers [s].",
         ),
@@ -164,8 +165,10 @@ def _run_or_exit(task: Task, results: Results, engine: Engine, *, strict: bool) 
         except (LostError, LandingError) as e:
             reason, status = f"error: {e}", FAILED
     click.echo(
-        f"{reason}; {results.rows_done} of {len(task)} landings are kept in {results.folder}, "
-        "--resume continues",
+        one_line(
+            f"{reason}; {results.rows_done} of {len(task)} landings are kept in {results.folder}, "
+            "--resume continues"
+        ),
         err=True,
     )
     sys.exit(status)

@@ -4,7 +4,6 @@ sense.
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,8 +15,11 @@ from ..errors import LandingError, unknown
 from ..history import History
 from ..landing import Landing
 from ..parameters import Parameters
-from ..quantities import MODES
+from ..quantities import MODES, Quantity
+from ..text_files import read_csv
+from ..units import parse_unit
 from ..validation.paper import MEANINGS, RUN_AFTER_CONTACT, Reading, compare, printed_scalars
+from ..values import parse_value
 from .priors import FreeNumbers
 
 # a misfit of this size counts as one: below it, scalars are as good as reached
@@ -26,6 +28,8 @@ LARGEST_MISFIT = 2.0
 CURVE_SAMPLES = 100
 EVERY = 1e-3
 RTOL = 1e-5
+# units of the paper's numbers
+SI_UNITS = {"N": "N", "s": "s", "mm": "m", "m/s2": "m/s2"}
 FIELDS = ("id", "value", "unit")
 
 
@@ -126,9 +130,9 @@ def paper_targets() -> list[Wanted]:
 
 def read_targets(path: Path) -> list[Wanted]:
     """Targets from a CSV file `id,value,unit`: the paper's ids (`rlv-landing validate`), measured
-    values, in the ids' own units.
+    values, in any unit of the ids' dimension.
 
-    Raises LandingError: missing file or columns, unknown id, another unit, a value that is not a
+    Raises LandingError: missing file or columns, unknown id, a wrong unit, a value that is not a
         finite number.
     """
     known = {s.id: s for s in printed_scalars()}
@@ -142,11 +146,11 @@ def read_targets(path: Path) -> list[Wanted]:
         if row["id"] not in known:
             raise unknown(f"scalar in {path}, line {line},", row["id"], known)
         s = known[row["id"]]
-        if row["unit"] != s.unit:
-            raise LandingError(
-                f"{path}, line {line}: {s.id} is in {row['unit']!r}; give it in {s.unit}"
-            )
-        value = _finite(row["value"], f"{path}, line {line}: {s.id}", s.unit)
+        q = Quantity(SI_UNITS[s.unit], s.quantity, name=s.id, display_unit=s.unit)
+        try:
+            value = parse_unit(s.unit).from_si(float(parse_value(q, row["value"], row["unit"])))
+        except LandingError as e:
+            raise LandingError(f"{path}, line {line}: {e}") from None
         targets.append(
             Wanted(
                 s.id, s.mode, value, max(abs(value), s.scale if abs(value) < 0.1 * s.scale else 0.0)
@@ -158,21 +162,15 @@ def read_targets(path: Path) -> list[Wanted]:
 
 
 def _rows(path: Path) -> Iterable[tuple[int, dict[str, str]]]:
-    try:
-        with path.open(newline="", encoding="utf-8") as f:
-            return [(i + 2, row) for i, row in enumerate(csv.DictReader(f))]
-    except OSError as e:
-        raise LandingError(f"{path} cannot be read: {e.strerror or e}") from None
-
-
-def _finite(text: str, what: str, unit: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        raise LandingError(f"{what} = {text!r} is not a number; give it in {unit}") from None
-    if not np.isfinite(value):
-        raise LandingError(f"{what} = {value:g} {unit} must be finite")
-    return value
+    names: list[str] = []
+    for line, row in read_csv(
+        path, "targets", f"targets {path} cannot be read: there is no such file"
+    ):
+        cells = [cell.strip() for cell in row]
+        if names:
+            yield line, dict(zip(names, cells))
+        else:
+            names = cells
 
 
 @dataclass(frozen=True)

@@ -8,13 +8,13 @@ annulus, so that a bore below the annulus cannot come up.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import exp, log
 from typing import Any
 
 from ..errors import LandingError, unknown
 from ..parameters import PARAMETER_QUANTITIES, Parameters
-from ..quantities import MODES
+from ..quantities import MODES, Quantity
 
 ROD_AREA = "main_strut.rod_area"
 BORE, ANNULUS = "main_strut.area_lower", "main_strut.area_upper"
@@ -178,17 +178,26 @@ def _fold(x: float) -> float:
     return 2.0 - x if x > 1.0 else x
 
 
-def _with_bounds(name: str, lo: float, hi: float, prior: Prior | None) -> Prior:
-    q = PARAMETER_QUANTITIES.get(name)
-    if q is None and name != ROD_AREA:
+def quantity(name: str) -> Quantity:
+    """The quantity that can be identified by this name: a parameter with numbers, or the rod's area.
+
+    Raises LandingError where there is none.
+    """
+    if name != ROD_AREA and name not in PARAMETER_QUANTITIES:
         raise unknown("parameter", name, [*PARAMETER_QUANTITIES, ROD_AREA])
-    if q is not None and q.choices:
+    q = PARAMETER_QUANTITIES[BORE if name == ROD_AREA else name]
+    if q.choices:
         raise LandingError(
             f"{name} is a choice ({', '.join(q.choices)}); only numbers can be identified"
         )
+    return replace(q, name=name)
+
+
+def _with_bounds(name: str, lo: float, hi: float, prior: Prior | None) -> Prior:
+    q = quantity(name)
     if not lo < hi:
         raise LandingError(f"bounds of {name} are empty: {lo:g} is not below {hi:g}")
-    if q is not None and not (q.lo <= lo and hi <= q.hi):
+    if name != ROD_AREA and not (q.lo <= lo and hi <= q.hi):
         raise LandingError(
             f"bounds of {name}, {lo:g} to {hi:g} {q.unit}, are outside [{q.lo:g}, {q.hi:g}] {q.unit}"
         )

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from ..errors import LandingError, unknown
-from ..parameters import GROUPS, PARAMETER_QUANTITIES, Parameters, check_value
-from ..quantities import DISPLAY_UNITS, MODES, Quantity
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
+from ..parameters import GROUPS, PARAMETER_QUANTITIES, Parameters
+from ..quantities import MODES
+from ..text_files import parse_document, read_text, toml_text
+from ..values import parse_value
 
 FOLDER = Path(__file__).parent
 DEFAULT_PRESET = "yue2022-figures"
@@ -50,23 +46,15 @@ def read_toml(path: str | Path) -> Parameters:
             are.
     """
     path = Path(path)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise LandingError(
-            f"there is no parameter file {path}; presets are {', '.join(preset_names())}"
-        ) from None
-    except (OSError, UnicodeDecodeError) as e:
-        raise LandingError(f"parameter file {path} cannot be read: {e}") from None
-    return parse_toml(text, str(path))
+    missing = f"there is no parameter file {path}; presets are {', '.join(preset_names())}"
+    return parse_toml(read_text(path, "parameter file", missing), str(path))
 
 
 def parse_toml(text: str, name: str) -> Parameters:
     """Parameters from a TOML text, as `read_toml`; errors name it `name`."""
+    document = parse_document(text, name)
     try:
-        return _from_document(tomllib.loads(text))
-    except tomllib.TOMLDecodeError as e:
-        raise LandingError(f"{name}: TOML syntax: {e}") from None
+        return _from_document(document)
     except LandingError as e:
         raise LandingError(f"{name}: {e}") from None
 
@@ -121,81 +109,11 @@ def _flat(tables: Mapping[str, Any]) -> tuple[dict[str, float | str], dict[str, 
     return values, sources
 
 
-def parse_value(q: Quantity, value: Any) -> float | str:
-    """The value of the quantity `q` in SI, from a number or a text with a unit.
-
-    Texts are such as "-2 deg" or "36 mm".
-
-    Raises:
-        LandingError: No number, an unknown unit, a unit of another dimension, or out of bounds.
-    """
-    if isinstance(value, str) and not q.choices:
-        try:
-            value = float(value)
-        except ValueError:
-            value = _with_unit(q, value)
-    return check_value(q, value)
-
-
-def unit_scale(q: Quantity, unit: str) -> float:
-    """The size of `unit` in the unit of `q`: value_SI = scale * value.
-
-    An empty unit is SI.
-
-    Raises:
-        LandingError: The unit is unknown or of another dimension.
-    """
-    if unit in ("", q.unit):
-        return 1.0
-    return _with_unit(q, f"1 {unit.replace('.', '*')}")
-
-
-def _with_unit(q: Quantity, text: str) -> float:
-    import pint
-
-    registry = _registry()
-    try:
-        return float(
-            registry.Quantity(text).to(q.unit.replace(".", "*") or "dimensionless").magnitude
-        )
-    except pint.DimensionalityError:
-        example = q.display_unit or q.unit or "a plain number"
-        raise LandingError(
-            f"{q.name} = {text!r} has the wrong unit; "
-            f"give it in {q.unit or 'plain numbers'}, or as text in {example}"
-        ) from None
-    except Exception:
-        raise LandingError(
-            f"{q.name} = {text!r} is not a number with a unit; write for example {_example(q)}"
-        ) from None
-
-
-def _registry() -> Any:
-    global _REGISTRY
-    if _REGISTRY is None:
-        import pint
-
-        _REGISTRY = pint.UnitRegistry()
-        for area, length in (("m2", "m"), ("mm2", "mm")):
-            _REGISTRY.define(f"{area} = {length}**2")
-        _REGISTRY.define("m3 = m**3")
-        _REGISTRY.define("cm3 = cm**3")
-    return _REGISTRY
-
-
-_REGISTRY: Any = None
-
-
-def _example(q: Quantity) -> str:
-    unit = q.display_unit or q.unit
-    value = float(q.default) / DISPLAY_UNITS[unit][1] if unit in DISPLAY_UNITS else float(q.default)
-    return f'"{value:g} {unit}"' if unit else f"{value:g}"
-
-
 def to_toml(parameters: Parameters, *, comments: bool = True) -> str:
     """The parameters as a TOML text that `read_toml` reads back to the same digits.
 
-    Values that belong to one landing mode (of the drop) follow in tables of their own.
+    Values that belong to one landing mode (of the drop) follow in tables of their own. The text
+    is ASCII: other characters of a source are escaped.
 
     Args:
         parameters: The parameters.
@@ -211,13 +129,12 @@ def to_toml(parameters: Parameters, *, comments: bool = True) -> str:
             group = owner
         written = f'"{value}"' if isinstance(value, str) else repr(value)
         about = " or ".join(q.choices) if q.choices else f"[{q.lo:g}, {q.hi:g}] {q.unit}".rstrip()
-        comment = f"  # {q.meaning}; {about}; {parameters.source(name)}" if comments else ""
-        lines.append(
-            f'{what} = {{ value = {written}, source = "{parameters.source(name)}" }}{comment}'
-        )
+        source = toml_text(parameters.source(name))
+        comment = f"  # {q.meaning}; {about}; {source[1:-1]}" if comments else ""
+        lines.append(f"{what} = {{ value = {written}, source = {source} }}{comment}")
     for mode, own in parameters.by_mode.items():
         lines += ["", f"[mode.{mode}.drop]"] if own else []
         for name, value in own.items():
-            source = parameters.source(name)
-            lines.append(f'{name.split(".")[1]} = {{ value = {value!r}, source = "{source}" }}')
+            source = toml_text(parameters.source(name))
+            lines.append(f"{name.split('.')[1]} = {{ value = {value!r}, source = {source} }}")
     return "\n".join(lines) + "\n"

@@ -5,20 +5,15 @@ Every function raises LandingError, which names key, value, unit, limit and reme
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from ..errors import LandingError, unknown
 from ..parameters import check_value
-from ..presets import parse_value
 from ..quantities import Quantity
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
+from ..text_files import parse_document, read_text
+from ..values import parse_value
 
 
 def read(path: Path) -> tuple[dict[str, Any], str]:
@@ -27,15 +22,8 @@ def read(path: Path) -> tuple[dict[str, Any], str]:
     Raises:
         LandingError: The file is missing or cannot be read, or its TOML syntax is wrong.
     """
-    try:
-        text = path.read_text(encoding="utf-8")
-        return tomllib.loads(text), text
-    except FileNotFoundError:
-        raise LandingError(f"there is no study {path}") from None
-    except (OSError, UnicodeDecodeError) as e:
-        raise LandingError(f"study {path} cannot be read: {e}") from None
-    except tomllib.TOMLDecodeError as e:
-        raise LandingError(f"{path}: TOML syntax: {e}") from None
+    text = read_text(path, "study")
+    return parse_document(text, str(path)), text
 
 
 def table(document: Mapping[str, Any], key: str) -> dict[str, Any]:

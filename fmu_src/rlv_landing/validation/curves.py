@@ -1,11 +1,11 @@
 """Measured curves from a CSV file.
 
-Its first column is `time` [s]; the others are named as our outputs, in SI units.
+Its first column is `time`; the others are named as our outputs. A heading may have a unit in
+brackets, `leg[1].main_strut.force [kN]`; without one the column is in SI.
 """
 
 from __future__ import annotations
 
-import csv
 from math import isfinite
 from pathlib import Path
 
@@ -13,7 +13,12 @@ import numpy as np
 
 from ..errors import LandingError, unknown
 from ..history import History
-from ..quantities import OUTPUT_NAMES
+from ..quantities import OUTPUT_NAMES, OUTPUT_QUANTITIES, Quantity
+from ..text_files import read_csv
+from ..units import Unit, UnitError, parse_number
+from ..values import number_in_si, split_heading, unit_of
+
+QUANTITIES = {"time": Quantity("s", "time", name="time"), **{q.name: q for q in OUTPUT_QUANTITIES}}
 
 
 def read_curves(path: str | Path) -> History:
@@ -21,48 +26,47 @@ def read_curves(path: str | Path) -> History:
 
     Raises:
         LandingError: The file is missing, `time` is not its first column, a name is no output or
-            comes twice, a value is not a finite number, a row has another length, times do not
-            rise, or there are fewer than two rows. The message names line and column.
+            comes twice, a unit is wrong, a value is not a finite number, a row has another length,
+            times do not rise, or there are fewer than two rows. The message names line and column.
     """
     path = Path(path)
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as f:
-            rows = [row for row in csv.reader(f) if any(cell.strip() for cell in row)]
-    except FileNotFoundError:
-        raise LandingError(f"there is no file {path} of measured curves") from None
-    except (OSError, UnicodeDecodeError, csv.Error) as e:
-        raise LandingError(f"measured curves {path} cannot be read: {e}") from None
-    names = _names(path, rows[0] if rows else [])
+    missing = f"there is no file {path} of measured curves"
+    rows = list(read_csv(path, "measured curves", missing))
+    columns = _columns(path, rows[0][1] if rows else [])
+    names = [name for name, _ in columns]
     if len(rows) < 3:
         raise LandingError(
             f"{path} has {max(len(rows) - 1, 0)} rows of numbers below its names; "
             "measured curves need at least two"
         )
-    values = np.array([_numbers(path, row, names, line) for line, row in enumerate(rows[1:], 2)])
+    values = np.array([_numbers(path, row, columns, line) for line, row in rows[1:]])
     back = np.flatnonzero(np.diff(values[:, 0]) <= 0.0)
     if len(back):
-        line = int(back[0]) + 3
+        at = int(back[0])
         raise LandingError(
-            f"{path}, row {line}: time = {values[line - 2, 0]:g} s does not come after "
-            f"{values[line - 3, 0]:g} s; sort the rows by time"
+            f"{path}, row {rows[at + 2][0]}: time = {values[at + 1, 0]:g} s does not come after "
+            f"{values[at, 0]:g} s; sort the rows by time"
         )
     return History(values[:, 0].copy(), names[1:], values[:, 1:].copy())
 
 
-def _names(path: Path, header: list[str]) -> list[str]:
-    names = [name.strip() for name in header]
-    if not names or names[0] not in ("time", "time [s]"):
+def _columns(path: Path, header: list[str]) -> list[tuple[str, Unit]]:
+    """Name and unit of every column."""
+    if not header or split_heading(header[0])[0] != "time":
         raise LandingError(
-            f"{path} starts with column {names[0] if names else ''!r}; "
+            f"{path} starts with column {header[0].strip() if header else ''!r}; "
             "its first column must be time, in seconds"
         )
-    if len(names) < 2:
+    if len(header) < 2:
         raise LandingError(
             f"{path} has no column beside time; name one as an output, "
             "for example leg[1].main_strut.force"
         )
-    for name in names[1:]:
-        if name not in OUTPUT_NAMES:
+    columns: list[tuple[str, Unit]] = []
+    split = [split_heading(heading) for heading in header]
+    names = [name for name, _ in split]
+    for heading, (name, unit) in zip(header, split):
+        if name not in QUANTITIES:
             raise LandingError(
                 f"{path}: {unknown('column', name, OUTPUT_NAMES)}; "
                 "`rlv-landing parameters --outputs` lists the names"
@@ -71,20 +75,24 @@ def _names(path: Path, header: list[str]) -> list[str]:
             raise LandingError(
                 f"{path}: column {name!r} is there {names.count(name)} times; leave one"
             )
-    return names
+        try:
+            columns.append((name, unit_of(QUANTITIES[name], unit)))
+        except LandingError as e:
+            raise LandingError(f"{path}, column {heading!r}: {e}") from None
+    return columns
 
 
-def _numbers(path: Path, row: list[str], names: list[str], line: int) -> list[float]:
-    if len(row) != len(names):
+def _numbers(path: Path, row: list[str], columns: list[tuple[str, Unit]], line: int) -> list[float]:
+    if len(row) != len(columns):
         raise LandingError(
-            f"{path}, row {line}: {len(row)} values for {len(names)} columns; "
-            "give every column a value in every row"
+            f"{path}, row {line}: {len(row)} values for {len(columns)} columns; "
+            "give every column a value in every row, with a point and no comma in it"
         )
     numbers = []
-    for name, text in zip(names, row):
+    for (name, unit), text in zip(columns, row):
         try:
-            value = float(text)
-        except ValueError:
+            value = number_in_si(QUANTITIES[name], parse_number(text), unit)
+        except UnitError:
             value = float("nan")
         if not isfinite(value):
             raise LandingError(

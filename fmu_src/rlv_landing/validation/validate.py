@@ -251,7 +251,7 @@ def parse_bounds(text: str) -> Bounds:
     Raises:
         LandingError: The text is anything else, or the counts fall.
     """
-    match = re.fullmatch(r"\s*(\d+)\s*/\s*(\d+)\s*/\s*(\d+)\s*", text)
+    match = re.fullmatch(r" *([0-9]{1,6}) */ *([0-9]{1,6}) */ *([0-9]{1,6}) *", text)
     if match is None:
         raise LandingError(
             f"--require {text!r} is not three counts; "

@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from rlv_landing.commands.number_types import Number, WholeNumber
 from rlv_landing.commands.options import check_writable, parameter_options
 from rlv_landing.errors import LandingError
 
@@ -20,20 +21,20 @@ from .log import COMMAND_SETTINGS, EXIT_CUT
 @click.argument("files", metavar="[LOG] OUTPUT", nargs=-1, type=click.Path(path_type=Path))
 @parameter_options
 @click.option(
-    "--fps", type=float, default=25.0, show_default=True, metavar="N", help="Frames a second."
+    "--fps", type=Number(), default=25.0, show_default=True, metavar="N", help="Frames a second."
 )
 @click.option(
     "--slow-motion",
-    type=float,
+    type=Number(),
     default=5.0,
     show_default=True,
     metavar="X",
     help="Times slower than it was.",
 )
-@click.option("--start", type=float, metavar="SECONDS", help="From this simulation time on.")
+@click.option("--start", type=Number("s"), metavar="SECONDS", help="From this simulation time on.")
 @click.option(
     "--end",
-    type=float,
+    type=Number("s"),
     metavar="SECONDS",
     help="Up to this simulation time.  [default: the log's, or 1 s]",
 )
@@ -45,7 +46,12 @@ from .log import COMMAND_SETTINGS, EXIT_CUT
     help="The symmetric plane, or space.",
 )
 @click.option(
-    "--width", type=int, default=960, show_default=True, metavar="PIXELS", help="Of the picture."
+    "--width",
+    type=WholeNumber(),
+    default=960,
+    show_default=True,
+    metavar="PIXELS",
+    help="Of the picture.",
 )
 @click.option("--force", is_flag=True, help="Overwrite a file that exists.")
 def animate(files: tuple[Path, ...], *, force: bool, **options: Any) -> None:

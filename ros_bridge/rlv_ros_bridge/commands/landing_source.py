@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from rlv_landing.commands.options import chosen_parameters
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, one_line
 
 from ..logs.libraries import require_log_readers
 
@@ -108,7 +108,9 @@ def read_landing(path: Path, vehicle: VehicleOptions) -> tuple[History, Paramete
 def warn_incomplete(log: Path) -> None:
     """Warns that the log is incomplete, and says how to save the rest."""
     click.echo(
-        f"warning: {log} is cut or damaged; what is whole was drawn, "
-        "`rlv-landing log recover` saves it",
+        one_line(
+            f"warning: {log} is cut or damaged; what is whole was drawn, "
+            "`rlv-landing log recover` saves it"
+        ),
         err=True,
     )

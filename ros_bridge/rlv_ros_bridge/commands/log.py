@@ -9,8 +9,9 @@ from typing import Any
 
 import click
 
+from rlv_landing.commands.number_types import Number
 from rlv_landing.commands.options import check_writable
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, one_line
 
 from ..logs.libraries import require_log_readers
 
@@ -87,7 +88,9 @@ def verify(log: Path, fmu: Path | None, *, as_json: bool) -> None:
     found = compare(open_log(log), fmu)
     click.echo(json.dumps(found.as_dict(), indent=2) if as_json else found.text())
     if found.cut:
-        click.echo(f"warning: {log} is cut or damaged; what is there was compared", err=True)
+        click.echo(
+            one_line(f"warning: {log} is cut or damaged; what is there was compared"), err=True
+        )
     if not found.same:
         sys.exit(EXIT_DIFFERS)
 
@@ -134,11 +137,11 @@ def recover(log: Path, output: Path | None, *, as_json: bool) -> None:
     metavar="NAME[,NAME...]",
     help="Columns of these topics only, full or relative names. Repeatable.",
 )
-@click.option("--start", type=float, metavar="SECONDS", help="From this simulation time on.")
-@click.option("--end", type=float, metavar="SECONDS", help="Up to this simulation time.")
+@click.option("--start", type=Number("s"), metavar="SECONDS", help="From this simulation time on.")
+@click.option("--end", type=Number("s"), metavar="SECONDS", help="Up to this simulation time.")
 @click.option(
     "--every",
-    type=float,
+    type=Number("s"),
     metavar="SECONDS",
     help="Only the first instant in each of these. Default: all.",
 )
@@ -203,7 +206,7 @@ def export(
             raise LandingError(f"{plot} cannot be written: {e.strerror or e}") from None
         click.echo(f"picture: {plot}")
     for note in notes:
-        click.echo(note, err=True)
+        click.echo(one_line(note), err=True)
     if reader.cut:
         warn_incomplete_and_exit(log, reader.damage)
 
@@ -222,13 +225,17 @@ def warn_incomplete_and_exit(log: Path, damage: list[str] | None = None) -> None
     """
     if damage:
         click.echo(
-            f"warning: {log} is damaged ({damage[0]}); what is whole was read, "
-            "`rlv-landing log recover` saves it",
+            one_line(
+                f"warning: {log} is damaged ({damage[0]}); what is whole was read, "
+                "`rlv-landing log recover` saves it"
+            ),
             err=True,
         )
     else:
         click.echo(
-            f"warning: {log} is cut: its writer did not finish it; all up to there was read",
+            one_line(
+                f"warning: {log} is cut: its writer did not finish it; all up to there was read"
+            ),
             err=True,
         )
     sys.exit(EXIT_CUT)

@@ -9,7 +9,8 @@ from typing import Any
 import click
 
 from rlv_landing.choices import parse_pairs
-from rlv_landing.errors import LandingError
+from rlv_landing.commands.number_types import Number, WholeNumber
+from rlv_landing.errors import LandingError, one_line
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 
 from ..node.run_summary import RunSummary
@@ -39,18 +40,20 @@ EXIT_RECORDING_FAILED = 1
 @click.option("--fmu", metavar="FILE", help="The FMU to step. Default: build/RlvLanding.fmu.")
 @click.option(
     "--realtime-factor",
-    type=float,
+    type=Number(),
     metavar="X",
     help="1: real time (default); 0: as fast as possible.",
 )
 @click.option(
     "--step",
     "step_size",
-    type=float,
+    type=Number("s"),
     metavar="SECONDS",
     help="Communication step and publishing period. Default: 0.001.",
 )
-@click.option("--stop-time", type=float, metavar="SECONDS", help="End of the landing. Default: 1.")
+@click.option(
+    "--stop-time", type=Number("s"), metavar="SECONDS", help="End of the landing. Default: 1."
+)
 @click.option("--record", metavar="FOLDER", help="Record to this folder, which must not exist yet.")
 @click.option(
     "--log-root",
@@ -69,12 +72,15 @@ EXIT_RECORDING_FAILED = 1
 )
 @click.option(
     "--wait-for-subscribers",
-    type=int,
+    type=WholeNumber(),
     metavar="N",
     help="Start when N subscriptions on `struts` are matched. Default: 0.",
 )
 @click.option(
-    "--wait-timeout", type=float, metavar="SECONDS", help="Longest wait for them. Default: 30."
+    "--wait-timeout",
+    type=Number("s"),
+    metavar="SECONDS",
+    help="Longest wait for them. Default: 30.",
 )
 @click.option(
     "--managed",
@@ -167,13 +173,15 @@ def _print_summary(summary: RunSummary) -> None:
     if not summary.acknowledged:
         warnings.append("not every reliable subscriber has acknowledged all samples")
     for text in warnings:
-        click.echo(f"warning: {text}", err=True)
+        click.echo(one_line(f"warning: {text}"), err=True)
     if summary.folder is not None:
         click.echo(f"log: {summary.folder}")
     if summary.recording_error:
         click.echo(
-            f"error: {summary.recording_error}; what was written can be read with "
-            f"`rlv-landing log info {summary.folder}`",
+            one_line(
+                f"error: {summary.recording_error}; what was written can be read with "
+                f"`rlv-landing log info {summary.folder}`"
+            ),
             err=True,
         )
 

@@ -9,6 +9,8 @@ from typing import Any
 
 import click
 
+from rlv_landing.commands.number_types import Number, WholeNumber
+
 from ..ros.arguments import ROS_COMMAND_SETTINGS, split_ros_args
 from .log import split_names, warn_incomplete_and_exit
 
@@ -17,7 +19,7 @@ from .log import split_names, warn_incomplete_and_exit
 @click.argument("log", type=click.Path(path_type=Path))
 @click.option(
     "--rate",
-    type=float,
+    type=Number(),
     default=1.0,
     show_default=True,
     metavar="X",
@@ -30,7 +32,7 @@ from .log import split_names, warn_incomplete_and_exit
 )
 @click.option(
     "--start",
-    type=float,
+    type=Number("s"),
     default=0.0,
     show_default=True,
     metavar="SECONDS",
@@ -38,7 +40,7 @@ from .log import split_names, warn_incomplete_and_exit
 )
 @click.option(
     "--duration",
-    type=float,
+    type=Number("s"),
     default=math.inf,
     metavar="SECONDS",
     help="Play this much of the log. Default: to its end.",
@@ -60,7 +62,7 @@ from .log import split_names, warn_incomplete_and_exit
 )
 @click.option(
     "--clock",
-    type=float,
+    type=Number("Hz"),
     is_flag=False,
     flag_value=100.0,
     default=0.0,
@@ -69,7 +71,7 @@ from .log import split_names, warn_incomplete_and_exit
 )
 @click.option(
     "--wait-for-subscribers",
-    type=int,
+    type=WholeNumber(),
     default=0,
     show_default=True,
     metavar="N",
@@ -77,7 +79,7 @@ from .log import split_names, warn_incomplete_and_exit
 )
 @click.option(
     "--wait-timeout",
-    type=float,
+    type=Number("s"),
     default=30.0,
     show_default=True,
     metavar="SECONDS",

@@ -11,6 +11,7 @@ from typing import Any
 
 import click
 
+from rlv_landing.commands.number_types import WholeNumber
 from rlv_landing.commands.options import check_writable, parameter_options
 from rlv_landing.errors import LandingError
 
@@ -44,7 +45,7 @@ class ServerOptions:
 )
 @click.option(
     "--port",
-    type=int,
+    type=WholeNumber(),
     metavar="N",
     default=PORT,
     show_default=True,

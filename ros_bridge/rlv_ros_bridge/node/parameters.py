@@ -1,6 +1,7 @@
 """The node's ROS parameters: one for each setting and each quantity of the model.
 
-Each has a description, a unit and a range, and is checked when it is set.
+Each has a description, a unit and a range, and is checked when it is set. A quantity may be set to
+a text with a unit, such as "-2 deg".
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ from rclpy.parameter import Parameter
 from rlv_landing import Parameters
 from rlv_landing.choices import choose_parameters
 from rlv_landing.errors import LandingError, unknown
-from rlv_landing.parameters import PARAMETER_QUANTITIES, check_value
+from rlv_landing.parameters import PARAMETER_QUANTITIES
+from rlv_landing.values import parse_value
 
 from ..ros.rclpy_internals import parameter_overrides
 from .settings import SETTINGS, Settings, check_setting, make_settings
@@ -65,7 +67,11 @@ class NodeParameters:
             self._values["preset"] or None,
             self._values["parameters_file"] or None,
             self._values["mode"] or None,
-            {n: v for n, v in given.items() if n in PARAMETER_QUANTITIES},
+            {
+                n: parse_value(PARAMETER_QUANTITIES[n], v)
+                for n, v in given.items()
+                if n in PARAMETER_QUANTITIES
+            },
         )
         self._values["mode"] = self.parameters.drop.mode
         self.settings()
@@ -154,7 +160,7 @@ class NodeParameters:
         return (
             check_setting(p.name, p.value)
             if p.name in SETTINGS
-            else check_value(PARAMETER_QUANTITIES[p.name], p.value)
+            else parse_value(PARAMETER_QUANTITIES[p.name], p.value)
         )
 
     def _current(self, name: str) -> Any:

@@ -15,8 +15,9 @@ from typing import Any
 from ...choices import choose_parameters
 from ...errors import LandingError, unknown
 from ...parameters import PARAMETER_QUANTITIES, Parameters, check_value
-from ...presets import parse_value, to_toml
+from ...presets import to_toml
 from ...quantities import Quantity
+from ...values import check_together, parse_value, parse_values
 from .. import toml_keys
 from ..limits import LIMITS
 from ..outcome import DEFAULT_SLIDE
@@ -78,9 +79,7 @@ class Axis:
     def __post_init__(self) -> None:
         q = variable(self.name, "quantity for an axis")
         if q.choices:
-            raise LandingError(
-                f"{q.name} is one of {', '.join(q.choices)} and cannot be an axis; make it a family"
-            )
+            raise _no_axis(q)
         for value in (self.low, self.high):
             check_value(q, value)
         if not self.low < self.high:
@@ -242,7 +241,7 @@ def read_families(keys: Mapping[str, Any]) -> tuple[dict[str, float | str], ...]
                 f"families: {name} = {values!r} must be a list of one value or more, "
                 'for example ["0 deg", "5 deg"]'
             )
-        column = [parse_value(VARIABLES[name], v) for v in values]
+        column = parse_values(VARIABLES[name], values)
         if len(set(column)) < len(column):
             raise LandingError(f"families: {name} = {values} names a value twice")
         columns.append(column)
@@ -259,21 +258,17 @@ def _axis(document: Mapping[str, Any], key: str) -> Axis:
                 'high = "10 deg", tolerance = "0.5 deg"'
             )
     q = variable(toml_keys.text(keys, "name", ""), "quantity for an axis")
-    low, high = (_number(q, keys[bound]) for bound in ("low", "high"))
-    default = (high - low) / 128.0
-    return Axis(
-        q.name,
-        low,
-        high,
-        _number(replace(q, lo=0.0, hi=float("inf")), keys["tolerance"])
-        if "tolerance" in keys
-        else default,
-    )
-
-
-def _number(q: Quantity, value: Any) -> float:
     if q.choices:
-        raise LandingError(
-            f"{q.name} is one of {', '.join(q.choices)} and cannot be an axis; make it a family"
-        )
-    return float(parse_value(q, value))
+        raise _no_axis(q)
+    low, high = (float(parse_value(q, keys[bound])) for bound in ("low", "high"))
+    tolerance = (high - low) / 128.0
+    if "tolerance" in keys:
+        tolerance = float(parse_value(replace(q, lo=0.0, hi=float("inf")), keys["tolerance"]))
+    check_together(q, [keys[key] for key in ("low", "high", "tolerance") if key in keys])
+    return Axis(q.name, low, high, tolerance)
+
+
+def _no_axis(q: Quantity) -> LandingError:
+    return LandingError(
+        f"{q.name} is one of {', '.join(q.choices)} and cannot be an axis; make it a family"
+    )

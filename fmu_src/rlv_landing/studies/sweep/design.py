@@ -8,15 +8,14 @@ from __future__ import annotations
 import hashlib
 import warnings
 from collections.abc import Mapping, Sequence
+from math import prod
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import LandingError
-from .factors import Array, Factor
-
-LARGEST = 100_000_000
+from .factors import LARGEST, Array, Factor
 
 
 class Design:
@@ -61,15 +60,13 @@ def grid(factors: Sequence[Factor]) -> Design:
     Raises:
         LandingError: A factor has no levels, or there are too many points.
     """
-    levels = [f.levels() for f in factors]
-    count = 1
-    for values in levels:
-        count *= len(values)
+    count = prod(f.level_count() for f in factors)
     if count > LARGEST:
         raise LandingError(
             f"this grid has {count} points, more than {LARGEST}; take fewer levels, "
             'or method = "sobol" or "lhs"'
         )
+    levels = [f.levels() for f in factors]
     indices = (
         np.unravel_index(np.arange(count), [len(values) for values in levels]) if levels else ()
     )

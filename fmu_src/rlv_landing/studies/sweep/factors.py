@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
 from typing import Any
@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 
 from ...errors import LandingError, unknown
 from ...parameters import PARAMETER_QUANTITIES, check_value
-from ...presets import parse_value, unit_scale
 from ...quantities import INPUT_QUANTITIES, Quantity, shown
+from ...values import check_together, to_si, unit_of
 from .. import toml_keys
 
 Array = NDArray[np.float64]
+# most points of a study
+LARGEST = 100_000_000
 # quantities that a study may vary or set: every parameter, and every input as a constant
 VARIABLES: dict[str, Quantity] = {**PARAMETER_QUANTITIES, **{q.name: q for q in INPUT_QUANTITIES}}
 DISTRIBUTIONS = {
@@ -74,10 +76,21 @@ class Factor:
         Raises:
             LandingError: The factor has no levels.
         """
+        count = self.level_count()
         if self.distribution == "choice":
             return column(self.values)
+        return np.linspace(self.low, self.high, count)
+
+    def level_count(self) -> int:
+        """The number of values of a grid.
+
+        Raises:
+            LandingError: The factor has no levels.
+        """
+        if self.distribution == "choice":
+            return len(self.values)
         if self.distribution == "uniform" and self.count:
-            return np.linspace(self.low, self.high, self.count)
+            return self.count
         raise LandingError(
             f"factor {self.name}: a grid needs values = [...], or low, high and count"
         )
@@ -125,14 +138,14 @@ def read_factor(entry: Mapping[str, Any]) -> Factor:
     q = variable(entry["name"], "factor")
     where = f"factor {q.name}"
     toml_keys.refuse_unknown(entry, ALL_KEYS, f"key of {where}")
-    unit = entry.get("unit", q.unit)
+    unit = entry.get("unit", "")
     if not isinstance(unit, str):
         raise LandingError(
             f"{where}: unit = {unit!r} must be a text, "
             f'for example unit = "{q.display_unit or q.unit}"'
         )
     distribution = entry.get("distribution", "choice" if "values" in entry else "uniform")
-    if distribution not in DISTRIBUTIONS:
+    if not isinstance(distribution, str) or distribution not in DISTRIBUTIONS:
         raise unknown(f"distribution of {where}", distribution, DISTRIBUTIONS)
     for key in entry:
         if key not in ("name", "unit", "distribution", *DISTRIBUTIONS[distribution]):
@@ -142,53 +155,79 @@ def read_factor(entry: Mapping[str, Any]) -> Factor:
             )
     if q.choices and distribution != "choice":
         raise LandingError(f"{where} is one of {', '.join(q.choices)}; give values = [...]")
-    scale = 1.0 if q.choices else unit_scale(q, unit)
-
-    def in_si(key: str, value: Any) -> float | str:
-        if isinstance(value, str):
-            return parse_value(q, value)
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise LandingError(
-                f"{where}: {key} = {value!r} is not a number; give it in {unit or 'plain numbers'}"
-            )
-        return scale * value
-
-    def number(key: str) -> float:
-        if key not in entry:
-            raise LandingError(f"{where} has no {key}, which {distribution} needs")
-        return float(in_si(key, entry[key]))
-
+    if not q.choices:
+        unit_of(q, unit)
+    count = _count(where, entry.get("count", 0))
+    numbers = _Numbers(q, entry, unit)
+    unit = unit or q.unit
     if distribution == "choice":
-        return Factor(
-            q,
-            unit,
-            distribution,
-            values=_choices(q, [in_si("values", v) for v in _values(where, entry.get("values"))]),
-        )
+        values = _values(where, entry.get("values"))
+        return Factor(q, unit, distribution, values=_choices(q, numbers.all_of(values)))
+    mean = deviation = 0.0
+    low, high = q.lo, q.hi
     if distribution == "normal":
-        mean, deviation = number("mean"), number("deviation")
-        low, high = (
-            number(key) if key in entry else bound for key, bound in (("low", q.lo), ("high", q.hi))
+        mean, deviation = (
+            numbers.needed("mean", distribution),
+            numbers.needed("deviation", "normal"),
         )
         if not (isfinite(mean) and 0.0 < deviation < float("inf")):
             raise LandingError(
                 f"{where}: mean = {mean:g} and deviation = {deviation:g} {q.unit} must be finite, "
                 "the deviation above 0"
             )
-    else:
-        mean = deviation = 0.0
-        low, high = number("low"), number("high")
+    if distribution == "uniform" or "low" in entry:
+        low = numbers.needed("low", distribution)
+    if distribution == "uniform" or "high" in entry:
+        high = numbers.needed("high", distribution)
+    _check_range(q, low, high, distribution)
+    return Factor(q, unit, distribution, low, high, mean, deviation, count)
+
+
+class _Numbers:
+    """The numbers of a `[[factor]]` table, in SI; without `unit`, all have a unit or none."""
+
+    def __init__(self, q: Quantity, entry: Mapping[str, Any], unit: str) -> None:
+        self._q, self._entry, self._unit = q, entry, unit
+        keys = ("low", "high", "mean", "deviation")
+        given = [entry[key] for key in keys if key in entry]
+        values = entry.get("values")
+        given += values if isinstance(values, list) else []
+        numbers = [v for v in given if _is_number(v)]
+        if not unit:
+            check_together(q, numbers)
+
+    def needed(self, key: str, distribution: str) -> float:
+        """The number at `key`, whose bounds are not checked."""
+        if key not in self._entry:
+            raise LandingError(f"factor {self._q.name} has no {key}, which {distribution} needs")
+        return self._in_si(key, self._entry[key])
+
+    def all_of(self, values: Sequence[Any]) -> list[float | str]:
+        """The values of a choice, whose bounds are not checked."""
+        return [v if self._q.choices else self._in_si("values", v) for v in values]
+
+    def _in_si(self, key: str, value: Any) -> float:
+        if not _is_number(value):
+            raise LandingError(
+                f"factor {self._q.name}: {key} = {value!r} is not a number; "
+                f"give it in {self._unit or self._q.unit or 'plain numbers'}"
+            )
+        return to_si(self._q, value, self._unit)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float, str)) and not isinstance(value, bool)
+
+
+def _check_range(q: Quantity, low: float, high: float, distribution: str) -> None:
     if not low < high:
         raise LandingError(
-            f"{where}: the range from low = {low:g} to high = {high:g} {q.unit}".rstrip()
+            f"factor {q.name}: the range from low = {low:g} to high = {high:g} {q.unit}".rstrip()
             + " is empty; low must be below high"
         )
     for bound in (low, high):
         if isfinite(bound) or distribution == "uniform":
             check_value(q, bound)
-    return Factor(
-        q, unit, distribution, low, high, mean, deviation, _count(where, entry.get("count", 0))
-    )
 
 
 def _values(where: str, values: Any) -> list[Any]:
@@ -205,8 +244,8 @@ def _choices(q: Quantity, values: list[float | str]) -> tuple[float | str, ...]:
 
 
 def _count(where: str, count: Any) -> int:
-    if isinstance(count, bool) or not isinstance(count, int) or count == 1 or count < 0:
-        raise LandingError(f"{where}: count = {count!r} must be a whole number of 2 or more")
+    if isinstance(count, bool) or not isinstance(count, int) or not 2 <= (count or 2) <= LARGEST:
+        raise LandingError(f"{where}: count = {count!r} must be a whole number from 2 to {LARGEST}")
     return count
 
 

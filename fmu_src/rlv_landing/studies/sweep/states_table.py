@@ -5,24 +5,22 @@ Columns have our names, and units in brackets.
 
 from __future__ import annotations
 
-import csv
-import re
 from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import LandingError
-from ...presets import unit_scale
+from ...text_files import read_csv
+from ...units import UnitError, parse_number
+from ...values import number_in_si, split_heading, unit_of
 from .design import Design
 from .extras import arrow
 from .factors import column, variable
 
 # the quantities of a touchdown state: a table has all of them, or the study sets the others
 STATE = ("drop.tilt", "drop.pitch_rate", "drop.horizontal_velocity", "drop.vertical_velocity")
-HEADING = re.compile(r"\s*(\S+?)\s*(?:\[([^\]]*)\])?\s*")
 
 
 def read_states(path: Path, ignored: Collection[str], given: Collection[str]) -> Design:
@@ -52,11 +50,10 @@ def read_states(path: Path, ignored: Collection[str], given: Collection[str]) ->
     for heading, unit, values in zip(headings, units, cells):
         if heading in ignored:
             continue
-        found = HEADING.fullmatch(heading)
+        name, own_unit = split_heading(heading)
         try:
-            q = variable(found[1] if found else heading, "column")
-            unit = (found[2] if found else None) or unit
-            scale = 1.0 if q.choices else unit_scale(q, unit)
+            q = variable(name, "column")
+            found = None if q.choices else unit_of(q, own_unit or unit)
         except LandingError as e:
             raise LandingError(
                 f"{path}, column {heading!r}: {e}; columns that are not ours go to ignore = [...]"
@@ -67,7 +64,9 @@ def read_states(path: Path, ignored: Collection[str], given: Collection[str]) ->
             raise LandingError(
                 f"{path} has a column of {q.name}, which the study gives, too; leave one"
             )
-        columns[q.name] = column(v if isinstance(v, str) else scale * v for v in values)
+        columns[q.name] = column(
+            v if found is None or isinstance(v, str) else number_in_si(q, v, found) for v in values
+        )
     missing = [name for name in STATE if name not in columns and name not in given]
     if missing:
         raise LandingError(
@@ -81,30 +80,30 @@ def read_states(path: Path, ignored: Collection[str], given: Collection[str]) ->
 
 
 def _csv(path: Path) -> tuple[list[str], list[str], list[list[float | str]]]:
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as f:
-            rows = csv.reader(f)
-            headings = [h.strip() for h in next(rows, [])]
-            cells: list[list[float | str]] = [[] for _ in headings]
-            for line, row in enumerate(rows, 2):
-                if not row:
-                    continue
-                if len(row) != len(headings):
-                    raise LandingError(
-                        f"{path}, line {line}: {len(row)} values under {len(headings)} headings"
-                    )
-                for values, text in zip(cells, row):
-                    values.append(_cell(text))
-    except (OSError, UnicodeDecodeError, csv.Error) as e:
-        raise LandingError(f"table {path} cannot be read: {e}") from None
+    headings: list[str] = []
+    cells: list[list[float | str]] = []
+    for line, row in read_csv(path, "table"):
+        if not headings:
+            headings = [h.strip() for h in row]
+            cells = [[] for _ in headings]
+            continue
+        if len(row) != len(headings):
+            raise LandingError(
+                f"{path}, line {line}: {len(row)} values under {len(headings)} headings; "
+                "give every column a value, with a point and no comma in it"
+            )
+        for values, text in zip(cells, row):
+            values.append(_cell(text))
     return headings, [""] * len(headings), cells
 
 
 def _cell(text: str) -> float | str:
     text = text.strip()
+    if not text:
+        return float("nan")
     try:
-        return float(text) if text else float("nan")
-    except ValueError:
+        return parse_number(text)
+    except UnitError:
         return text
 
 
@@ -112,11 +111,20 @@ def _parquet(path: Path) -> tuple[list[str], list[str], list[list[float | str]]]
     _, parquet = arrow()
     try:
         table = parquet.read_table(path)
+        units = [
+            ((field.metadata or {}).get(b"unit") or b"").decode("utf-8", "replace")
+            for field in table.schema
+        ]
+        columns = [c.to_pylist() for c in table.columns]
     except Exception as e:
         raise LandingError(f"table {path} cannot be read: {e}") from None
-    units = [((field.metadata or {}).get(b"unit") or b"").decode() for field in table.schema]
-    cells = [
-        [np.nan if v is None else v if isinstance(v, str) else float(v) for v in c.to_pylist()]
-        for c in table.columns
-    ]
-    return list(table.column_names), units, cells
+    return list(table.column_names), units, [[_number(v) for v in values] for values in columns]
+
+
+def _number(value: Any) -> float | str:
+    """A Parquet value; what is no number becomes text."""
+    if value is None:
+        return float("nan")
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return str(value)
+    return float(value)

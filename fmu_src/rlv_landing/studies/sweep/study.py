@@ -20,8 +20,8 @@ from .. import toml_keys
 from ..limits import LIMITS
 from ..outcome import DEFAULT_SLIDE
 from ..whole_landing import LATEST
-from .design import LARGEST, Design, drawn, grid
-from .factors import VARIABLES, Factor, read_factor
+from .design import Design, drawn, grid
+from .factors import LARGEST, VARIABLES, Factor, read_factor
 from .responses import expand
 from .states_table import read_states
 

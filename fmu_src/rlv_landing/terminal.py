@@ -1,0 +1,34 @@
+"""Output on terminals and pipes whose encoding does not have every character."""
+
+from __future__ import annotations
+
+import codecs
+import sys
+import unicodedata
+
+ERRORS = "rlv_landing.legible"
+
+
+def legible(error: UnicodeError) -> tuple[str, int]:
+    """A handler of encoding errors: frames of tables in ASCII, and others as their escape."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return "".join(map(_in_ascii, error.object[error.start : error.end])), error.end
+
+
+def _in_ascii(character: str) -> str:
+    name = unicodedata.name(character, "")
+    if not name.startswith("BOX DRAWINGS"):
+        return character.encode("ascii", "backslashreplace").decode("ascii")
+    upright = any(word in name for word in ("VERTICAL", "UP", "DOWN"))
+    level = any(word in name for word in ("HORIZONTAL", "LEFT", "RIGHT"))
+    return "+" if upright and level else "|" if upright else "-"
+
+
+def make_legible() -> None:
+    """Let standard output and error take every character, whatever their encoding."""
+    codecs.register_error(ERRORS, legible)
+    for stream in (sys.stdout, sys.stderr):
+        reconfigure = getattr(stream, "reconfigure", None)
+        if reconfigure is not None:
+            reconfigure(errors=ERRORS)

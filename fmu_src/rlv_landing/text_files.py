@@ -1,0 +1,187 @@
+"""Text files as users have them: UTF-8 with or without a byte order mark, TOML, and CSV.
+
+What is in another encoding or has other separators is refused with the remedy, for a guess may
+change numbers.
+"""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import re
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, TextIO
+
+from .errors import LandingError
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+LARGEST_TEXT = 4 * 1024**2
+LONGEST_LINE = 1024**2
+DEEPEST = 32
+LARGEST_INTEGER = 2**63
+_TOO_LARGE = "a whole number of more than 64 bits; write it as 1e19"
+_BYTE_ORDER_MARKS = {
+    codecs.BOM_UTF32_LE: "UTF-32",
+    codecs.BOM_UTF32_BE: "UTF-32",
+    codecs.BOM_UTF16_LE: "UTF-16",
+    codecs.BOM_UTF16_BE: "UTF-16",
+}
+_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "strokes"}
+
+
+def read_text(path: Path, what: str, missing: str = "") -> str:
+    """The text of a file, with or without a byte order mark.
+
+    Args:
+        path: The file.
+        what: The word for it in errors.
+        missing: The error where it is missing [default: there is no `what` `path`].
+
+    Raises:
+        LandingError: The file is missing, cannot be read, is larger than 4 MiB or is not UTF-8.
+    """
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST_TEXT + 1)
+    except FileNotFoundError:
+        raise LandingError(missing or f"there is no {what} {path}") from None
+    except (OSError, ValueError) as e:
+        raise unreadable(what, path, e) from None
+    if len(data) > LARGEST_TEXT:
+        raise LandingError(f"{what} {path} is larger than 4 MiB, more than such a file can need")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as e:
+        raise unreadable(what, path, e, data) from None
+
+
+def unreadable(what: str, path: Path, error: Exception, start: bytes = b"") -> LandingError:
+    """The error for a file that cannot be read; `start` are its first bytes."""
+    if isinstance(error, UnicodeDecodeError):
+        name = next((n for mark, n in _BYTE_ORDER_MARKS.items() if start.startswith(mark)), "")
+        found = f"it is {name}" if name else "it is not UTF-8"
+        return LandingError(f"{what} {path} cannot be read: {found}; save it as UTF-8")
+    reason = error.strerror if isinstance(error, OSError) and error.strerror else error
+    return LandingError(f"{what} {path} cannot be read: {reason}")
+
+
+def parse_document(text: str, name: str) -> dict[str, Any]:
+    """The document of a TOML text.
+
+    Args:
+        text: The text.
+        name: The word for it in errors.
+
+    Raises:
+        LandingError: The syntax is wrong, tables or lists are nested more than 32 deep, or a whole
+            number has more than 64 bits.
+    """
+    # the library takes a time that grows with the square of the parts of a key
+    plain = re.sub(r"\.{2,}", "", text)
+    if max(part.count(".") for part in re.split(r"[\n,=\[\]{}#]", plain)) > DEEPEST:
+        raise LandingError(f"{name}: TOML syntax: a key has more than {DEEPEST} parts")
+    try:
+        document = tomllib.loads(text)
+    except RecursionError:
+        raise LandingError(f"{name}: tables and lists are nested too deep; {DEEPEST} fit") from None
+    except tomllib.TOMLDecodeError as e:
+        raise LandingError(f"{name}: TOML syntax: {e}") from None
+    except ValueError:
+        # Python converts no whole number of more than 4300 digits
+        raise LandingError(f"{name} has {_TOO_LARGE}") from None
+    _check_size(document, name)
+    return document
+
+
+def _check_size(document: dict[str, Any], name: str) -> None:
+    below: list[tuple[str, Any, int]] = [("", document, 0)]
+    while below:
+        key, value, depth = below.pop()
+        if depth > DEEPEST:
+            raise LandingError(
+                f"{name}: {key.split('.')[0]} is nested more than {DEEPEST} deep; write it flat"
+            )
+        if isinstance(value, int) and not -LARGEST_INTEGER <= value < LARGEST_INTEGER:
+            raise LandingError(f"{name}: {key} is {_TOO_LARGE}")
+        if isinstance(value, dict):
+            below += [(f"{key}.{k}" if key else k, v, depth + 1) for k, v in value.items()]
+        elif isinstance(value, list):
+            below += [(key, v, depth + 1) for v in value]
+
+
+def toml_text(text: str) -> str:
+    """A text as a TOML string in ASCII, quotes included."""
+    short = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
+
+    def escaped(c: str) -> str:
+        if c in short:
+            return short[c]
+        if " " <= c <= "~":
+            return c
+        if 0xD800 <= ord(c) <= 0xDFFF:
+            # half a character cannot be written
+            return "?"
+        return f"\\u{ord(c):04x}" if ord(c) <= 0xFFFF else f"\\U{ord(c):08x}"
+
+    return '"' + "".join(map(escaped, text)) + '"'
+
+
+def read_csv(path: Path, what: str, missing: str = "") -> Iterator[tuple[int, list[str]]]:
+    """The rows of a CSV file that are not blank, each with the number of its last line, from 1.
+
+    Args:
+        path: The file.
+        what: The word for it in errors.
+        missing: The error where it is missing [default: there is no `what` `path`].
+
+    Raises:
+        LandingError: The file is missing or cannot be read, is not UTF-8, or its first row is
+            separated by semicolons, tabs or strokes.
+    """
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            rows = csv.reader(_lines(file, what, path))
+            first = True
+            for row in rows:
+                if not any(cell.strip() for cell in row):
+                    continue
+                if first:
+                    _check_separator(path, row)
+                    first = False
+                yield rows.line_num, row
+    except LandingError:
+        raise
+    except FileNotFoundError:
+        raise LandingError(missing or f"there is no {what} {path}") from None
+    except (OSError, ValueError, csv.Error) as e:
+        raise unreadable(what, path, e, _start(path)) from None
+
+
+def _lines(file: TextIO, what: str, path: Path) -> Iterator[str]:
+    while line := file.readline(LONGEST_LINE + 1):
+        if len(line) > LONGEST_LINE:
+            raise LandingError(f"{what} {path} has a line of more than {LONGEST_LINE} characters")
+        yield line
+
+
+def _start(path: Path) -> bytes:
+    try:
+        with path.open("rb") as file:
+            return file.read(4)
+    except (OSError, ValueError):
+        return b""
+
+
+def _check_separator(path: Path, headings: Sequence[str]) -> None:
+    for separator, name in _SEPARATORS.items():
+        if any(separator in heading for heading in headings):
+            raise LandingError(
+                f"{path} is separated by {name}; separate it by commas, "
+                "and write numbers with a point"
+            )
