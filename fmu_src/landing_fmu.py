@@ -72,10 +72,17 @@ def logs_faults(method: Callable[..., Any]) -> Callable[..., Any]:
     return wrapped
 
 
-def new_landing(values: dict[str, Any], rtol: float) -> Landing:
-    """A landing with the parameters `values`, the others being the defaults."""
+def new_landing(
+    values: dict[str, Any],
+    rtol: float,
+    inputs: dict[str, float],
+    rates: dict[str, float],
+) -> Landing:
+    """A landing with the parameters `values`, the others being the defaults, that begins with the
+    `inputs` and their `rates`.
+    """
     checked = {name: check_value(PARAMETER_QUANTITIES[name], v) for name, v in values.items()}
-    return Landing(Parameters().with_values(checked), rtol=rtol)
+    return Landing(Parameters().with_values(checked), rtol=rtol, inputs=inputs, rates=rates)
 
 
 class RlvLanding(Fmi2Slave):
@@ -103,6 +110,8 @@ class RlvLanding(Fmi2Slave):
         self._inputs: dict[str, float] = {}
         self._rates: dict[str, float] = {}
         self._refused_rates: set[str] = set()
+        # inputs and rates that the landing was made with
+        self._first: tuple[dict[str, float], dict[str, float]] = {}, {}
         self._landing: Landing | None = None
         self._broken = ""
         # once they were asked for at this time
@@ -213,7 +222,9 @@ class RlvLanding(Fmi2Slave):
         if self._broken:
             raise LandingError(self._broken)
         if self._landing is None:
-            self._landing = new_landing(self._parameters, self._rtol)
+            first = dict(self._inputs), dict(self._rates)
+            self._landing = new_landing(self._parameters, self._rtol, *first)
+            self._first = first
             self._outputs = []
         return self._landing
 
@@ -298,6 +309,7 @@ class RlvLanding(Fmi2Slave):
             "inputs": dict(self._inputs),
             "rates": dict(self._rates),
             "refused_rates": sorted(self._refused_rates),
+            "first": [dict(kind) for kind in self._first],
             "broken": self._broken,
             "landing": None if self._landing is None else list(self._landing.state()),
         }
@@ -319,12 +331,13 @@ class RlvLanding(Fmi2Slave):
             dict(state["rates"]),
         )
         refused_rates, numbers = set(state["refused_rates"]), state["landing"]
+        first_inputs, first_rates = map(dict, state["first"])
         landing = self._landing
         if numbers is None:
             landing = None
         else:
             if landing is None or parameters != self._parameters or rtol != self._rtol:
-                landing = new_landing(parameters, rtol)
+                landing = new_landing(parameters, rtol, first_inputs, first_rates)
             landing.restore(array("d", numbers))
         self._landing, self._start_time, self._rtol, self._values, self._broken = (
             landing,
@@ -339,6 +352,7 @@ class RlvLanding(Fmi2Slave):
             rates,
             refused_rates,
         )
+        self._first = first_inputs, first_rates
         self._outputs = []
 
     @staticmethod

@@ -36,6 +36,7 @@ MODULES = (
     "quantities.py",
     "parameters.py",
     "touchdown.py",
+    "driven.py",
     "assembly.py",
     "landing.py",
 )

@@ -1,16 +1,46 @@
 """The state at first contact, and before it: the free flight of the vehicle with its legs fully
-extended.
+extended, above the ground as it moves.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import cos, sin
+from typing import NamedTuple
 
+from .errors import LandingError
 from .parameters import Parameters, azimuth
 from .quantities import MODES
 
 # parts of the free flight, before the first contact, at which the footpads must be above the ground
 FLIGHT_CHECKS = tuple(i / 64.0 for i in range(65))
+# how far below the ground they may be there, which rounding needs [m]
+LEEWAY = 1e-6
+# slope and tilt together up to which the ground is one to land on [rad]
+STEEPEST = 1.5
+
+
+class GroundMotion(NamedTuple):
+    """The ground from some time on: heave [m] and tilt [rad] then, their rates [m/s, rad/s], and
+    the rates' own [m/s2, rad/s2], which are constant.
+    """
+
+    heave: float = 0.0
+    heave_rate: float = 0.0
+    heave_acceleration: float = 0.0
+    tilt: float = 0.0
+    tilt_rate: float = 0.0
+    tilt_acceleration: float = 0.0
+
+    def at(self, t: float) -> tuple[float, float]:
+        """Heave [m] and tilt [rad] `t` [s] later, as the kernels have them."""
+        return (
+            self.heave + (self.heave_rate + 0.5 * self.heave_acceleration * t) * t,
+            self.tilt + (self.tilt_rate + 0.5 * self.tilt_acceleration * t) * t,
+        )
+
+
+AT_REST = GroundMotion()
 
 
 def footpad_at_rest(parameters: Parameters) -> tuple[float, float]:
@@ -41,36 +71,39 @@ def footpad_between(parameters: Parameters, main: float, auxiliary: float) -> tu
 
 class FreeFlight:
     """The flight of the vehicle with its legs fully extended, and where it ends: at the first
-    contact. [derived]
+    contact, `drop.contact_time` after time 0. [derived]
 
-    The whole vehicle's CG flies a parabola and the pitch rate is constant. At contact the body's CG
-    is above the ground's origin.
+    The whole vehicle's CG flies a parabola and the pitch rate is constant, both in the inertial
+    frame. The contact is meant on the ground as it lies then: the lowest footpad touches it, and the
+    body's CG is above its origin. `ground` is its motion from time 0 on.
     """
 
-    def __init__(self, parameters: Parameters) -> None:
+    def __init__(self, parameters: Parameters, ground: GroundMotion = AT_REST) -> None:
         drop = parameters.drop
         groups = MODES[drop.mode]
         self.footpad = footpad_at_rest(parameters)
         radius, self._height = self.footpad
         self._along = [radius * azimuth(g.azimuth)[1] for g in groups]
-        self._normal = sin(parameters.ground.slope), cos(parameters.ground.slope)
+        self._duration = drop.contact_time
+        self._plane = _planes(parameters.ground.slope, ground)
         feet = sum(len(g.legs) for g in groups) * parameters.vehicle.footpad_mass
         self._arm = arm = self._height * feet / (feet + parameters.vehicle.mass)
         self._end, self._rate, self._gravity = drop.tilt, drop.pitch_rate, parameters.ground.gravity
-        self._contact_y = -self.clearance(0.0, 0.0, self._end) / self._normal[1]
+        up = self._plane(self._duration)[2]
+        self._contact_y = -self.clearance(0.0, 0.0, self._end, self._duration) / up
         self._vx = drop.horizontal_velocity + self._rate * arm * cos(self._end)
         self._vy = drop.vertical_velocity - self._rate * arm * sin(self._end)
 
-    def clearance(self, x: float, y: float, pitch: float) -> float:
-        """Height [m] of the lowest footpad above the ground at rest, along its normal, with the CG
-        at (`x`, `y`).
+    def clearance(self, x: float, y: float, pitch: float, t: float) -> float:
+        """Height [m] of the lowest footpad above the ground as it lies at time `t` [s], along its
+        normal, with the CG at (`x`, `y`).
         """
         s, c = sin(pitch), cos(pitch)
-        across, up = self._normal
+        heave, across, up = self._plane(t)
         height = self._height
         return min(
             [
-                (x + along * c + height * s) * across + (y + height * c - along * s) * up
+                (x + along * c + height * s) * across + (y - heave + height * c - along * s) * up
                 for along in self._along
             ]
         )
@@ -90,7 +123,42 @@ class FreeFlight:
         y = self._contact_y + arm * cos(end) - vy * t - 0.5 * g * t * t - arm * cos(pitch)
         return x, y, pitch, vx - rate * arm * cos(pitch), vy + g * t + rate * arm * sin(pitch), rate
 
-    def lowest(self, duration: float) -> float:
-        """The smallest clearance [m] during the last `duration` [s] of the flight, at 65 times."""
-        parts = FLIGHT_CHECKS if duration > 0.0 else FLIGHT_CHECKS[:1]
-        return min([self.clearance(*self.before_contact(part * duration)[:3]) for part in parts])
+    def start(self) -> tuple[float, float, float, float, float, float]:
+        """Body state at time 0.
+
+        Raises LandingError where a footpad would pass below the ground on the way to the contact,
+        or the ground stand on its edge; 65 times are looked at.
+        """
+        end = self._duration
+        parts = FLIGHT_CHECKS if end > 0.0 else FLIGHT_CHECKS[:1]
+        lowest = min(
+            [
+                self.clearance(*self.before_contact(part * end)[:3], end - part * end)
+                for part in parts
+            ]
+        )
+        if lowest < -LEEWAY:
+            raise LandingError(
+                f"drop.contact_time = {end:g} s of free flight would pass {-lowest:.3g} m below the ground, "
+                f"the limit is {LEEWAY:g} m; shorten it, or touch down with less pitch rate or faster towards the ground"
+            )
+        return self.before_contact(end)
+
+
+def _planes(slope: float, ground: GroundMotion) -> Callable[[float], tuple[float, float, float]]:
+    """Heave [m] of the ground at a time [s], and sine and cosine of its whole slope [rad]."""
+
+    def plane(t: float) -> tuple[float, float, float]:
+        heave, tilt = ground.at(t)
+        steep = slope + tilt
+        if not -STEEPEST <= steep <= STEEPEST:
+            raise LandingError(
+                f"ground.slope + ground.tilt = {steep:g} rad at {t:g} s, up to the first contact, is outside "
+                f"[-{STEEPEST:g}, {STEEPEST:g}] rad; tilt the ground less, or more slowly"
+            )
+        return heave, sin(steep), cos(steep)
+
+    if ground == AT_REST._replace(heave=ground.heave, tilt=ground.tilt):
+        still = plane(0.0)
+        return lambda t: still
+    return plane

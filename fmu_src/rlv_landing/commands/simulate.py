@@ -73,8 +73,8 @@ def simulate(
     parameters = choose_parameters(
         preset, file, mode, parse_pairs(pairs, PARAMETER_QUANTITIES, "parameter")
     )
-    landing = Landing(parameters, rtol=rtol, method=method)
-    landing.set_inputs(parse_pairs(inputs, {q.name: q for q in INPUT_QUANTITIES}, "input"))
+    driven = parse_pairs(inputs, {q.name: q for q in INPUT_QUANTITIES}, "input")
+    landing = Landing(parameters, rtol=rtol, method=method, inputs=driven)
     with tqdm(
         total=until,
         unit="s",

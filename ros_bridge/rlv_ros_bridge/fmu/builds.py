@@ -15,7 +15,7 @@ import rlv_landing
 
 # The files that decide the digits, as the FMU carries them, too.
 MODEL_FILE = re.compile(
-    r"(?:^|/)rlv_landing[^/]*/((?:core/(?:\w+/)*\w+|assembly|landing|parameters|quantities|touchdown)\.py)$"
+    r"(?:^|/)rlv_landing[^/]*/((?:core/(?:\w+/)*\w+|assembly|driven|landing|parameters|quantities|touchdown)\.py)$"
 )
 
 

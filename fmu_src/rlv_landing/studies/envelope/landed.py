@@ -75,11 +75,9 @@ def land(study: EnvelopeStudy, values: Mapping[str, float | str]) -> Landed:
     Raises LandingError where the values make no landing (out of bounds, the flight starts below the
     ground).
     """
-    landing = Landing(study.parameters_with(values), rtol=study.rtol)
-    inputs = {
-        name: float(value) for name, value in values.items() if name not in PARAMETER_QUANTITIES
-    }
-    landing.set_inputs({**study.inputs, **inputs})
+    own = {name: float(value) for name, value in values.items() if name not in PARAMETER_QUANTITIES}
+    inputs = {**study.inputs, **own}
+    landing = Landing(study.parameters_with(values), rtol=study.rtol, inputs=inputs)
     try:
         history = whole_landing(landing, study.until, study.every)
     except LandingError as e:

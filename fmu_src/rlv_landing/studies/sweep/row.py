@@ -61,14 +61,11 @@ class Plan:
             for name, value in values.items()
             if name in PARAMETER_QUANTITIES and name != MODE
         }
-        landing = Landing(base.with_values(changes), rtol=self.rtol)
         inputs = {
             **self.inputs,
             **{name: value for name, value in values.items() if name not in PARAMETER_QUANTITIES},
         }
-        if inputs:
-            landing.set_inputs(inputs)
-        return landing
+        return Landing(base.with_values(changes), rtol=self.rtol, inputs=inputs)
 
     def row(self, values: Mapping[str, Any]) -> list[Any]:
         """Version, error text (None where there is none), then the responses (None with an error)
