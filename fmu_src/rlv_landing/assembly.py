@@ -83,6 +83,18 @@ def build_system(parameters: Parameters, kind: type[Planar] = Planar) -> Planar:
     return kind(body_model(parameters), legs, leg_places(parameters), scale, relative)
 
 
+def ground_motion(inputs: Inputs, rates: Inputs) -> GroundMotion:
+    """How the ground moves from the time on at which the inputs are `inputs`, going on at `rates`."""
+    return GroundMotion(
+        inputs.heave,
+        inputs.heave_rate,
+        rates.heave_rate,
+        inputs.tilt,
+        inputs.tilt_rate,
+        rates.tilt_rate,
+    )
+
+
 def start_state(parameters: Parameters, ground: GroundMotion = AT_REST) -> array[float]:
     """The state at time 0: the state at first contact taken back along the free flight of the rigid
     vehicle, above the `ground` that moves from time 0 on.
@@ -120,16 +132,8 @@ def begin(
 
     Raises LandingError as `start_state`; nothing is changed then.
     """
-    ground = GroundMotion(
-        inputs.heave,
-        inputs.heave_rate,
-        rates.heave_rate,
-        inputs.tilt,
-        inputs.tilt_rate,
-        rates.tilt_rate,
-    )
     for target, numbers in (
-        (solver.y, start_state(parameters, ground)),
+        (solver.y, start_state(parameters, ground_motion(inputs, rates))),
         (solver.u, inputs),
         (solver.u_rate, rates),
     ):

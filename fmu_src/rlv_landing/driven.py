@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from math import isfinite
 from typing import Any
 
+from .assembly import ground_motion
 from .core import Inputs, Solver
 from .errors import LandingError, unknown
 from .parameters import check_value
@@ -46,15 +47,18 @@ class DrivenInputs:
         self.goal = goal
         self.on_the_way = any(u[i] != told or rate[i] != 0.0 for i, told in zip(PLACE, goal))
 
+    def ground(self, t: float) -> GroundMotion:
+        """How the ground moves from time `t` [s] on, as it was told to."""
+        return ground_motion(*self.told(t))
+
     def told(self, t: float) -> Told:
         """The inputs as they were told, at time `t` [s], and their rates [unit/s]."""
         solver = self._solver
         solver.inputs_at(t)
         u, rate = Inputs(*solver.u), Inputs(*solver.u_rate)
         passed = t - solver.t_input
-        heave, tilt = GroundMotion(
-            self.goal[0], u.heave_rate, rate.heave_rate, self.goal[1], u.tilt_rate, rate.tilt_rate
-        ).at(passed)
+        told = u._replace(heave=self.goal[0], tilt=self.goal[1])
+        heave, tilt = ground_motion(told, rate).at(passed)
         now = Inputs(*solver.u_now)._replace(
             heave=heave,
             heave_rate=u.heave_rate + rate.heave_rate * passed,

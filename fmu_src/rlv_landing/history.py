@@ -12,13 +12,15 @@ from numpy.typing import NDArray
 
 from .errors import LandingError, unknown
 from .parameters import Parameters
+from .touchdown import AT_REST, GroundMotion
 
 
 class History:
     """Columns named as the FMU's variables, in SI units, over `time` [s]:
     `history["leg[1].main_strut.force"]` is an array (n,).
 
-    `parameters` are those of the landing, where they are known.
+    `parameters` are those of the landing, where they are known; `ground` is how the ground has moved
+    since the first of the times, at rest where nothing says otherwise.
     """
 
     def __init__(
@@ -27,6 +29,7 @@ class History:
         names: Sequence[str],
         data: NDArray[np.float64],
         parameters: Parameters | None = None,
+        ground: GroundMotion = AT_REST,
     ) -> None:
         if data.shape != (len(time), len(names)):
             raise LandingError(
@@ -36,6 +39,7 @@ class History:
         self.names = tuple(names)
         self.data = data
         self.parameters = parameters
+        self.ground = ground
         self._index = {name: i for i, name in enumerate(self.names)}
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:

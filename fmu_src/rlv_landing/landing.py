@@ -305,7 +305,7 @@ class Landing:
             raise LandingError(
                 f"until = {until:g} s must be finite and after the present time, {self._time:g} s"
             )
-        start, solver = self._time, self._solver
+        start, solver, ground = self._time, self._solver, self._inputs.ground(self._time)
         samples = int((until - start) / every * (1.0 + 1e-12) + 1e-9) + 1
         rows = np.empty((samples, self._system.row))
         flat = rows.reshape(-1)
@@ -328,7 +328,7 @@ class Landing:
         columns = np.ascontiguousarray(rows.T)[[i for i, _ in self._order]]
         columns[self._turned] *= -1.0
         time: NDArray[float64] = np.array([start + k * every for k in range(samples)])
-        return History(time, OUTPUT_NAMES, columns.T, self.parameters)
+        return History(time, OUTPUT_NAMES, columns.T, self.parameters, ground)
 
     def _collapsed(self) -> LandingError:
         return LandingError(

@@ -85,9 +85,8 @@ def land(study: EnvelopeStudy, values: Mapping[str, float | str]) -> Landed:
     found = outcome(history, study.limits, study.slide)
     towards = ""
     if found.name == "toppled":
-        towards = (
-            "+x" if history["body.pitch"][-1] > study.parameters_with(values).ground.slope else "-x"
-        )
+        slope = landing.parameters.ground.slope + history.ground.at(history.time[-1])[1]
+        towards = "+x" if history["body.pitch"][-1] > slope else "-x"
     margins = found.margins
     return Landed(
         found.name,
