@@ -23,7 +23,7 @@ every = 1e-3
 responses = ["body.y.final", "energy.work_ground.final", "margin.slid"]
 
 [set]
-ground.heave_rate = 0.2
+ground.tilt_rate = 0.1
 ground.heave = 0.3
 
 [[factor]]
@@ -32,8 +32,8 @@ unit = "deg"
 values = [-4.0, 0.0, 4.0]
 
 [[factor]]
-name = "ground.tilt_rate"
-values = [0.0, 0.1, -8.0]
+name = "ground.heave_rate"
+values = [0.0, 0.2, -20.0]
 """
 
 
@@ -43,9 +43,9 @@ def test_rows_over_ground_inputs_are_those_landings_and_refused_ones_say_why(tmp
     found = rows(tmp_path / "r" / "results.parquet")
     assert len(found) == 9, done.stderr
     for row in found:
-        inputs = {"ground.heave_rate": 0.2, "ground.heave": 0.3}
-        inputs |= {name: row[name] for name in ("ground.tilt", "ground.tilt_rate")}
-        if row["ground.tilt_rate"] == -8.0:
+        inputs = {"ground.tilt_rate": 0.1, "ground.heave": 0.3}
+        inputs |= {name: row[name] for name in ("ground.tilt", "ground.heave_rate")}
+        if row["ground.heave_rate"] == -20.0:
             assert "below the ground" in row["error"]
             continue
         history = Landing(load_preset(FIGURES), rtol=1e-4, inputs=inputs).run(0.5, 1e-3)
