@@ -25,6 +25,9 @@ setup(
         (f"share/{NAME}/config", sorted(map(str, Path("config").iterdir()))),
     ],
     entry_points={
-        "console_scripts": [f"landing_node = {NAME}.node.land:main", f"bridge = {NAME}.__main__:run"]
+        "console_scripts": [
+            f"landing_node = {NAME}.node.land:main",
+            f"bridge = {NAME}.__main__:run",
+        ]
     },
 )

@@ -223,7 +223,7 @@ def test_what_cannot_be_repeated_is_refused_with_what_is_missing(
 
 def steer(whole: Path, folder: Path) -> LogReader:
     """A log as the node writes it, of the parameters of the log `whole` and inputs at random times
-    and sizes.
+    and of random sizes, those of time 0 before the first sample.
     """
     reader = LogReader(whole)
     reader.read_through()
@@ -235,25 +235,28 @@ def steer(whole: Path, folder: Path) -> LogReader:
     ]
     recorder = Recorder(folder, entries, reader.metadata, reader.attachments)
     recorded = [(t, place) for t, place in zip(packer.topics, packer.places) if t in SAMPLED]
+
+    def set_some(k: int) -> None:
+        for topic, names, sizes in (
+            (APPLIED_WRENCH, WRENCH, (900.0, 400.0, 60.0)),
+            (APPLIED_GROUND, GROUND, (1e-3, 0.1, 1e-3, 0.02)),
+        ):
+            if k == 0 or random.random() < 0.1:
+                values = {name: random.uniform(-s, s) for name, s in zip(names, sizes)}
+                applied = Applied(topic, k * 1_000_000, values)
+                landing.set_inputs(applied.values)
+                recorder.write(
+                    f"/landing/{topic.name}", k * 1_000_000, serialize_message(applied.message())
+                )
+
+    set_some(0)
     for k in range(1001):
         landing.advance_to(k * 1e-3)
         messages = packer.pack(k * 1_000_000, tuple(landing.outputs().values()))
         for topic, place in recorded:
             recorder.write(f"/landing/{topic.name}", k * 1_000_000, messages[place])
-        for topic, names, sizes in (
-            (APPLIED_WRENCH, WRENCH, (900.0, 400.0, 60.0)),
-            (APPLIED_GROUND, GROUND, (1e-3, 0.1, 1e-3, 0.02)),
-        ):
-            if random.random() < 0.1:
-                applied = Applied(
-                    topic,
-                    k * 1_000_000,
-                    {name: random.uniform(-s, s) for name, s in zip(names, sizes)},
-                )
-                landing.set_inputs(applied.values)
-                recorder.write(
-                    f"/landing/{topic.name}", k * 1_000_000, serialize_message(applied.message())
-                )
+        if k:
+            set_some(k)
     recorder.close()
     return LogReader(folder)
 

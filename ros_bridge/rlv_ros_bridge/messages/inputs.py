@@ -52,8 +52,8 @@ def out_of_plane(message: Any) -> bool:
 
 
 def read_ground(message: Any) -> dict[str, float]:
-    """The inputs that a JointState of `ground` asks for; a joint that it does not name stays as it
-    is, no velocity is standstill.
+    """The inputs that a JointState of `ground` asks for; without velocities, positions alone. A
+    joint that it does not name stays as it is.
 
     Raises LandingError: an unknown joint, positions or velocities that do not fit the names, not
         finite, out of bounds.
@@ -76,8 +76,17 @@ def read_ground(message: Any) -> dict[str, float]:
             )
         position, rate = JOINTS[name]
         values[position] = positions[i]
-        values[rate] = velocities[i] if velocities else 0.0
+        if velocities:
+            values[rate] = velocities[i]
     return _checked(values)
+
+
+def merged(ground: Mapping[str, float], later: Mapping[str, float]) -> dict[str, float]:
+    """What two messages of `ground` ask for together: of a joint that both name, what the later one
+    says of it.
+    """
+    named = {own for pair in JOINTS.values() if pair[0] in later for own in pair}
+    return {**{name: value for name, value in ground.items() if name not in named}, **later}
 
 
 def _checked(values: Mapping[str, float]) -> dict[str, float]:

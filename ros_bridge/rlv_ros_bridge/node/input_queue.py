@@ -16,10 +16,9 @@ from sensor_msgs.msg import JointState
 from rlv_landing.errors import LandingError
 
 from ..messages.inputs import (
-    HEAVE,
     JOINTS,
-    TILT,
     WRENCH,
+    merged,
     out_of_plane,
     read_ground,
     read_wrench,
@@ -27,9 +26,9 @@ from ..messages.inputs import (
 )
 from ..messages.samples import set_stamp, set_vector
 from ..messages.topics import APPLIED_GROUND, APPLIED_WRENCH, WORLD_FRAME, Topic
+from .deck import Deck
 
 NO_WRENCH = dict.fromkeys(WRENCH, 0.0)
-NO_MOTION = dict.fromkeys((*HEAVE, *TILT), 0.0)
 # Waiting messages while the landing is paused; of more than these the newest are kept.
 LONGEST_QUEUE = 1000
 
@@ -65,7 +64,8 @@ class InputQueue:
     out in the landing's.
 
     `timeout` [s of wall time] after the last message the wrench is taken back to 0, and a moving
-    ground stands still where it is; 0: never. `received` and `refused` count messages; `warn` is
+    ground stands still where it is; 0: never. How a ground moves of which only positions are told
+    is `Deck`'s. `received` and `refused` count messages; `warn` is
     told why one cannot be used.
     """
 
@@ -75,13 +75,15 @@ class InputQueue:
         self.refused = 0
         self._warn = warn
         self._arrived: deque[tuple[Topic, dict[str, float]]] = deque(maxlen=LONGEST_QUEUE)
-        self.clear()
+        self.clear(1, lambda values: None)
 
-    def clear(self) -> None:
-        """For a new landing: nothing acts, nothing waits."""
+    def clear(self, step_ns: int, check_start: Callable[[Mapping[str, float]], object]) -> None:
+        """For a new landing in steps of `step_ns` [ns]: nothing acts, nothing waits. `check_start`
+        raises LandingError for a ground that it cannot start above.
+        """
         self._arrived.clear()
         self._wrench = dict(NO_WRENCH)
-        self._ground, self._ground_since = dict(NO_MOTION), 0
+        self._deck, self._check_start = Deck(step_ns), check_start
         # When the last message came, of those topics that will be given up [s].
         self._heard: dict[Topic, float] = {}
 
@@ -101,8 +103,7 @@ class InputQueue:
         try:
             values = read(message)
         except LandingError as e:
-            self.refused += 1
-            self._warn(f"input refused, what acted goes on: {e}")
+            self._refuse(e)
             return
         self.received += 1
         self._arrived.append((topic, values))
@@ -112,36 +113,48 @@ class InputQueue:
 
         Of several messages the last one counts.
         """
-        if not self._arrived and not self._heard:
-            return []
         changed: dict[Topic, None] = {}
+        if self._deck.arrive(nanoseconds):
+            changed[APPLIED_GROUND] = None
         now = time.monotonic()
+        ground: dict[str, float] = {}
         while self._arrived:
             topic, values = self._arrived.popleft()
-            changed[topic] = None
             self._heard[topic] = now
             if topic is APPLIED_WRENCH:
                 self._wrench = values
+                changed[topic] = None
             else:
-                self._ground = {**self._ground_at(nanoseconds), **values}
-                self._ground_since = nanoseconds
+                ground = merged(ground, values)
+        if ground and (nanoseconds > 0 or self._may_start(ground)):
+            self._deck.tell(nanoseconds, ground)
+            changed[APPLIED_GROUND] = None
         for topic, heard in list(self._heard.items()):
             if self.timeout and now - heard > self.timeout:
                 del self._heard[topic]
                 if self._give_up(topic, nanoseconds):
                     changed[topic] = None
         return [
-            Applied(topic, nanoseconds, self._wrench if topic is APPLIED_WRENCH else self._ground)
+            Applied(
+                topic,
+                nanoseconds,
+                self._wrench if topic is APPLIED_WRENCH else self._deck.values(nanoseconds),
+            )
             for topic in changed
         ]
 
-    def _ground_at(self, nanoseconds: int) -> dict[str, float]:
-        """The ground's motion at the simulation time `nanoseconds`: it goes on at its rates."""
-        passed = 1e-9 * (nanoseconds - self._ground_since)
-        moved = {
-            name: self._ground[name] + passed * self._ground[rate] for name, rate in JOINTS.values()
-        }
-        return {**self._ground, **moved}
+    def _may_start(self, values: Mapping[str, float]) -> bool:
+        """Whether the landing can start above the ground that lies and moves as messages say."""
+        try:
+            self._check_start({**self._deck.values(0), **values})
+        except LandingError as e:
+            self._refuse(e)
+            return False
+        return True
+
+    def _refuse(self, reason: LandingError) -> None:
+        self.refused += 1
+        self._warn(f"input refused, what acted goes on: {reason}")
 
     def _give_up(self, topic: Topic, nanoseconds: int) -> bool:
         """Whether the silence on `topic` changes anything."""
@@ -151,9 +164,7 @@ class InputQueue:
             self._wrench = dict(NO_WRENCH)
             self._warn(f"no external_wrench for {self.timeout:g} s: it is taken back to 0")
             return True
-        if not (self._ground[HEAVE[1]] or self._ground[TILT[1]]):
+        if not self._deck.stand(nanoseconds):
             return False
-        self._ground = {**self._ground_at(nanoseconds), HEAVE[1]: 0.0, TILT[1]: 0.0}
-        self._ground_since = nanoseconds
         self._warn(f"no ground for {self.timeout:g} s: it stands still where it is")
         return True

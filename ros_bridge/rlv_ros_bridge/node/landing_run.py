@@ -13,6 +13,7 @@ from typing import Any
 
 from rclpy.serialization import serialize_message
 
+from rlv_landing import Landing
 from rlv_landing.presets import to_toml
 from rlv_landing.quantities import OUTPUT_NAMES
 
@@ -101,7 +102,9 @@ class LandingRun:
         # The vehicle's description, serialised; the log begins with it.
         self.description = b""
         self.fmu = FmuRunner(settings.fmu, dict(settings.parameters.items()))
-        inputs.clear()
+        inputs.clear(
+            settings.step_ns, lambda values: Landing(settings.parameters, inputs=dict(values))
+        )
         live.on_published(self._note_published)
 
     def open_log(self) -> None:
@@ -204,11 +207,10 @@ class LandingRun:
     def _next(self, k: int) -> tuple[list[float], bytes]:
         """Sample k and its messages, recorded."""
         s, recorder = self.settings, self.recorder
+        # what has come before sample 0 lays the start down
+        if k != 1:
+            self._take_inputs(max(0, k - 1) * s.step_ns)
         if k:
-            before = (k - 1) * s.step_ns
-            for change in self._inputs.take(before):
-                self.fmu.set_inputs(change.values)
-                self._say(change.topic, before, padded(serialize_message(change.message())))
             self.fmu.step(k - 1, s.step_size)
         values = self.fmu.values()
         toppled = values[PHASE] == TOPPLED
@@ -222,6 +224,12 @@ class LandingRun:
                 self._told = True
                 self._tell(f"{recorder.error}; the landing goes on unrecorded")
         return values, messages
+
+    def _take_inputs(self, now: int) -> None:
+        """What has arrived acts from the simulation time `now` [ns] on."""
+        for change in self._inputs.take(now):
+            self.fmu.set_inputs(change.values)
+            self._say(change.topic, now, padded(serialize_message(change.message())))
 
     def _occasional(self, k: int, values: Sequence[float]) -> bool:
         """What is not said at each sample; whether anything was."""
