@@ -76,14 +76,11 @@ class Plan:
             for name, value in values.items()
             if name in PARAMETER_QUANTITIES and name != MODE
         }
-        landing = Landing(base.with_values(changes), rtol=self.rtol)
         inputs = {
             **self.inputs,
             **{name: value for name, value in values.items() if name not in PARAMETER_QUANTITIES},
         }
-        if inputs:
-            landing.set_inputs(inputs)
-        return landing
+        return Landing(base.with_values(changes), rtol=self.rtol, inputs=inputs)
 
     def sweep_row(self, values: Mapping[str, Any]) -> list[Any]:
         """Make the landing with these values and take its responses.
