@@ -72,18 +72,26 @@ def log_exceptions(method: Callable[..., Any]) -> Callable[..., Any]:
     return wrapped
 
 
-def new_landing(values: dict[str, Any], rtol: float) -> Landing:
+def new_landing(
+    values: dict[str, Any],
+    rtol: float,
+    inputs: dict[str, float],
+    rates: dict[str, float],
+) -> Landing:
     """A landing with some parameters set, in SI units, and defaults for the others.
 
     Args:
         values: Parameter values by name.
         rtol: Relative tolerance of the integrator.
+        inputs: Inputs at the start by name; the others are 0.
+        rates: Rates of inputs at the start by name; the others are 0.
 
     Raises:
-        LandingError: A value is out of bounds, or values contradict each other.
+        LandingError: A value is out of bounds, values contradict each other, or the free flight
+            would pass below the ground.
     """
     checked = {name: check_value(PARAMETER_QUANTITIES[name], v) for name, v in values.items()}
-    return Landing(Parameters().with_values(checked), rtol=rtol)
+    return Landing(Parameters().with_values(checked), rtol=rtol, inputs=inputs, rates=rates)
 
 
 class RlvLanding(Fmi2Slave):
@@ -115,6 +123,8 @@ class RlvLanding(Fmi2Slave):
         self._inputs: dict[str, float] = {}
         self._rates: dict[str, float] = {}
         self._refused_rates: set[str] = set()
+        # inputs and rates with which the landing was made
+        self._first: tuple[dict[str, float], dict[str, float]] = {}, {}
         self._landing: Landing | None = None
         # the reason why the landing has ended; empty while it runs
         self._failure = ""
@@ -230,7 +240,9 @@ class RlvLanding(Fmi2Slave):
         if self._failure:
             raise LandingError(self._failure)
         if self._landing is None:
-            self._landing = new_landing(self._parameters, self._rtol)
+            first = dict(self._inputs), dict(self._rates)
+            self._landing = new_landing(self._parameters, self._rtol, *first)
+            self._first = first
             self._outputs = []
         return self._landing
 
@@ -322,6 +334,7 @@ class RlvLanding(Fmi2Slave):
             "inputs": dict(self._inputs),
             "rates": dict(self._rates),
             "refused_rates": sorted(self._refused_rates),
+            "first": [dict(kind) for kind in self._first],
             "broken": self._failure,
             "landing": None if self._landing is None else list(self._landing.state()),
         }
@@ -336,17 +349,19 @@ class RlvLanding(Fmi2Slave):
         values, failure = list(state["values"]), str(state["broken"])
         parameters, inputs = dict(state["parameters"]), dict(state["inputs"])
         rates, refused_rates = dict(state["rates"]), set(state["refused_rates"])
+        first_inputs, first_rates = map(dict, state["first"])
         landing = None
         if state["landing"] is not None:
             landing = self._landing
             if landing is None or parameters != self._parameters or rtol != self._rtol:
-                landing = new_landing(parameters, rtol)
+                landing = new_landing(parameters, rtol, first_inputs, first_rates)
             landing.restore(array("d", state["landing"]))
         self._landing, self._outputs = landing, []
         self._start_time, self._rtol = start_time, rtol
         self._values, self._failure = values, failure
         self._parameters, self._inputs = parameters, inputs
         self._rates, self._refused_rates = rates, refused_rates
+        self._first = first_inputs, first_rates
 
     @staticmethod
     def _fmu_state_to_bytes(state: dict[str, Any]) -> bytes:

@@ -37,6 +37,7 @@ MODULES = (
     "quantities.py",
     "parameters.py",
     "touchdown.py",
+    "driven_inputs.py",
     "assembly.py",
     "landing.py",
 )

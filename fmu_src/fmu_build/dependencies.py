@@ -1,9 +1,11 @@
 """Dependencies of each output for the FMU's ModelStructure: on inputs and on parameters.
 
-An output depends on an input if the input changes it at the same instant, and on a parameter if
-that changes its initial value. The sets are derived from the equations.
-`tests/fmu/test_description.py` finds the same ones by changing every input and parameter. Outputs
-that are not named here are states, or follow from states alone: no input changes them at once.
+An output depends on an input if the input changes it at the same instant. Its initial value depends
+on the parameters that change it, and on the inputs that do: these place the vehicle at the start.
+The sets are derived from the equations. `tests/fmu/test_dependencies.py` finds the same ones by
+changing every input and parameter. Outputs that are not named here are states, or follow from
+states alone: no input changes them at once. Heave and tilt of the ground change no output at once
+either: the ground moves to a new position over the next step.
 """
 
 from __future__ import annotations
@@ -11,8 +13,8 @@ from __future__ import annotations
 import re
 
 LOADS = frozenset({"external.force_x", "external.force_y", "external.moment"})
-PLACE = frozenset({"ground.heave", "ground.tilt"})
-GROUND = PLACE | {"ground.heave_rate", "ground.tilt_rate"}
+RATES = frozenset({"ground.heave_rate", "ground.tilt_rate"})
+GROUND = RATES | {"ground.heave", "ground.tilt"}
 
 # parameters that set the footpads' place on the body, and those of the free flight before contact
 LEG = frozenset(
@@ -25,10 +27,6 @@ FLIGHT = PITCH | LEG | {"vehicle.mass", "vehicle.footpad_mass"}
 VX = FLIGHT | {"drop.horizontal_velocity"}
 VY = FLIGHT | {"drop.vertical_velocity", "ground.gravity"}
 HEIGHT = VY | {"ground.slope", "drop.mode"}
-FOOT = VX | HEIGHT
-PENALTY = FOOT | {"ground.stiffness", "ground.exponent"}
-# the friction displacement starts at 0: only friction's damping acts at once
-CONTACT = PENALTY | {"ground.damping", "ground.damping_depth", "ground.stick_damping"}
 CHARGE = frozenset(
     f"main_strut.{what}"
     for what in ("charge_pressure", "ambient_pressure", "area_upper", "area_lower")
@@ -42,22 +40,29 @@ LIQUID = VOLUMES | {
     for what in ("air_fraction", "air_exponent", "bulk_modulus", "bulk_modulus_slope")
 }
 # the forces of all legs' struts are equal at the start, so they give the body no moment
-TURN = CONTACT | {"vehicle.inertia", "vehicle.transverse_load_at"}
+TURN = FLIGHT | {"vehicle.inertia", "vehicle.transverse_load_at"}
 MARGIN = PITCH | LEG | {"vehicle.mass", "vehicle.footpad_mass", "drop.mode"}
 
 INPUTS: dict[str, frozenset[str]] = {
-    "body.ax": LOADS | GROUND,
-    "body.ay": LOADS | GROUND,
-    "body.pitch_acceleration": LOADS | GROUND,
+    "body.ax": LOADS | RATES,
+    "body.ay": LOADS | RATES,
+    "body.pitch_acceleration": LOADS | RATES,
     "body.top_axial_acceleration": frozenset({"external.force_x", "external.force_y"}),
-    "energy.contact": PLACE,
-    "energy.work_ground": PLACE,
-    "status.phase": LOADS | GROUND,
-    "contact.force_x": GROUND,
-    "contact.force_y": GROUND,
-    "contact.force_z": GROUND,
-    "contact.penetration": PLACE,
-    "contact.active": PLACE,
+    "status.phase": LOADS | RATES,
+    "contact.force_x": RATES,
+    "contact.force_y": RATES,
+    "contact.force_z": RATES,
+}
+
+START_INPUTS: dict[str, frozenset[str]] = {
+    "body.y": GROUND,
+    "body.ax": LOADS,
+    "body.ay": LOADS,
+    "body.pitch_acceleration": LOADS,
+    "body.top_axial_acceleration": INPUTS["body.top_axial_acceleration"],
+    "energy.potential": GROUND,
+    "footpad.y": GROUND,
+    "contact.penetration": GROUND - {"ground.heave"},
 }
 
 PARAMETERS: dict[str, frozenset[str]] = {
@@ -68,7 +73,7 @@ PARAMETERS: dict[str, frozenset[str]] = {
     "body.vy": VY,
     "body.pitch_rate": frozenset({"drop.pitch_rate"}),
     "body.ax": TURN | CHARGE,
-    "body.ay": TURN | CHARGE,
+    "body.ay": TURN | CHARGE | {"ground.gravity"},
     "body.pitch_acceleration": TURN,
     "body.top_axial_acceleration": PITCH
     | LEG
@@ -77,9 +82,7 @@ PARAMETERS: dict[str, frozenset[str]] = {
     "energy.kinetic": VX | VY | {"vehicle.inertia"},
     "energy.potential": HEIGHT,
     "energy.liquid": LIQUID,
-    "energy.contact": PENALTY,
-    "energy.work_ground": PENALTY,
-    "status.phase": TURN | CHARGE,
+    "status.phase": MARGIN,
     "status.stability_margin": MARGIN,
     "main_strut.force": CHARGE,
     "main_strut.pressure_upper": frozenset({"main_strut.charge_pressure"}),
@@ -88,10 +91,7 @@ PARAMETERS: dict[str, frozenset[str]] = {
     "footpad.x": VX | {"drop.mode"},
     "footpad.y": HEIGHT,
     "footpad.z": LEG | {"drop.mode"},
-    "contact.force_x": CONTACT,
-    "contact.force_y": CONTACT,
-    "contact.penetration": FOOT,
-    "contact.active": FOOT,
+    "contact.penetration": VX | HEIGHT,
 }
 
 
@@ -107,11 +107,7 @@ def inputs_of(output: str) -> frozenset[str]:
 def known_at_start(output: str) -> frozenset[str]:
     """The inputs and parameters that the initial value of `output` depends on.
 
-    The transverse contact force depends on none: no footpad moves along z at the start.
+    No footpad is in the ground at the start, so contact forces depend on none.
     """
     name = _of_any_leg(output)
-    return (
-        frozenset()
-        if name == "contact.force_z"
-        else inputs_of(output) | PARAMETERS.get(name, frozenset())
-    )
+    return START_INPUTS.get(name, frozenset()) | PARAMETERS.get(name, frozenset())

@@ -14,22 +14,23 @@ from .core import (
     BodyModel,
     BodyState,
     Exponential,
+    Inputs,
     LegModel,
     LegPlace,
     LegState,
     Planar,
     Solver,
 )
-from .errors import LandingError
 from .parameters import PARAMETER_QUANTITIES, Parameters, azimuth
 from .quantities import MODES
-from .touchdown import FreeFlight
+from .touchdown import AT_REST, FreeFlight, GroundMotion
 
 # Typical size of each state: the absolute part of the error that is allowed is rtol times this.
 # Accounts count in no error.
 BODY_SCALE = BodyState(x=0.1, y=0.1, pitch=0.1, vx=1.0, vy=1.0, pitch_rate=1.0)
 LEG_SCALE = LegState(r=0.1, h=0.1, vr=1.0, vh=1.0, z1=1e5, z2=1e5, q1=1e-3, q2=1e-3)
 NO_ENERGY = Accounts(*(0.0 for _ in Accounts._fields))
+NO_INPUTS = Inputs(*(0.0 for _ in Inputs._fields))
 # the states whose error is relative to their own size as well: the liquid's pressures
 BODY_RELATIVE = BodyState(x=0.0, y=0.0, pitch=0.0, vx=0.0, vy=0.0, pitch_rate=0.0)
 LEG_RELATIVE = LegState(r=0.0, h=0.0, vr=0.0, vh=0.0, z1=1.0, z2=1.0, q1=0.0, q2=0.0)
@@ -86,29 +87,31 @@ def build_system(parameters: Parameters, kind: type[Planar] = Planar) -> Planar:
     return kind(body_model(parameters), legs, leg_places(parameters), scale, relative)
 
 
-def start_state(parameters: Parameters) -> array[float]:
-    """The state at time 0: the state at first contact taken back along the free flight of the rigid
-    vehicle.
+def ground_motion(inputs: Inputs, rates: Inputs) -> GroundMotion:
+    """The motion of the ground from the time on at which the inputs have these values and rates."""
+    return GroundMotion(
+        inputs.heave,
+        inputs.heave_rate,
+        rates.heave_rate,
+        inputs.tilt,
+        inputs.tilt_rate,
+        rates.tilt_rate,
+    )
 
-    The ground's origin lies below the CG at first contact, where the lowest footpad just touches.
-    Raises LandingError where the free flight would pass below the ground.
+
+def start_state(parameters: Parameters, ground: GroundMotion = AT_REST) -> array[float]:
+    """The state at time 0: the state at first contact taken back along the free flight of the rigid
+    vehicle. `ground` is the motion of the ground from time 0 on.
+
+    At first contact the ground's origin lies below the CG, and the lowest footpad just touches.
+    Raises LandingError as `FreeFlight.start`.
     """
-    drop = parameters.drop
-    flight = FreeFlight(parameters)
-    lowest = flight.lowest(drop.contact_time)
-    if lowest < -1e-6:
-        raise LandingError(
-            f"drop.contact_time = {drop.contact_time:g} s of free flight would pass {-lowest:.3g} m below the ground; "
-            "shorten it, or touch down with less pitch rate or a faster descent"
-        )
+    flight = FreeFlight(parameters, ground)
+    body = BodyState(*flight.start())
     radius, height = flight.footpad
     charge = parameters.main_strut.charge_pressure
     leg = LegState(r=radius, h=height, vr=0.0, vh=0.0, z1=charge, z2=charge, q1=0.0, q2=0.0)
-    return flat_state(
-        BodyState(*flight.before_contact(drop.contact_time)),
-        [leg] * len(MODES[drop.mode]),
-        NO_ENERGY,
-    )
+    return flat_state(body, [leg] * len(MODES[parameters.drop.mode]), NO_ENERGY)
 
 
 def new_solver(
@@ -125,15 +128,21 @@ def new_solver(
     return solver
 
 
-def begin(solver: Solver, parameters: Parameters) -> None:
-    """Take a solver to the start of the parameters' landing: time 0, inputs 0, counts 0.
+def begin(
+    solver: Solver, parameters: Parameters, inputs: Inputs = NO_INPUTS, rates: Inputs = NO_INPUTS
+) -> None:
+    """Take a solver to the start of the parameters' landing: time 0, counts 0, the `inputs` and
+    their `rates`.
 
-    Raises LandingError as `start_state`.
+    Raises LandingError as `start_state`; nothing is changed then.
     """
-    for i, value in enumerate(start_state(parameters)):
-        solver.y[i] = value
-    for i in range(solver.system.inputs):
-        solver.u[i] = solver.u_rate[i] = 0.0
+    for target, numbers in (
+        (solver.y, start_state(parameters, ground_motion(inputs, rates))),
+        (solver.u, inputs),
+        (solver.u_rate, rates),
+    ):
+        for i, value in enumerate(numbers):
+            target[i] = value
     solver.steps = solver.rejected = solver.rhs_calls = 0.0
     solver.h = inf
     solver.restart(0.0)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from .errors import LandingError, unknown
 from .parameters import Parameters
+from .touchdown import AT_REST, GroundMotion
 
 
 class History:
@@ -24,6 +25,7 @@ class History:
         names: The columns' names.
         data: The columns, (n, names).
         parameters: The landing's parameters, where they are known.
+        ground: Motion of the ground from the first of the times on; by default it is at rest.
 
     Raises:
         LandingError: `data` has another shape, or a column is unknown.
@@ -35,6 +37,7 @@ class History:
         names: Sequence[str],
         data: NDArray[np.float64],
         parameters: Parameters | None = None,
+        ground: GroundMotion = AT_REST,
     ) -> None:
         if data.shape != (len(time), len(names)):
             raise LandingError(
@@ -45,6 +48,7 @@ class History:
         self.names = tuple(names)
         self.data = data
         self.parameters = parameters
+        self.ground = ground
         self._index = {name: i for i, name in enumerate(self.names)}
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:

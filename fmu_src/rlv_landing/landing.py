@@ -8,13 +8,12 @@ from math import inf, isfinite
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from .assembly import begin, build_system
-from .core import DormandPrince, Exponential, Solver
+from .assembly import NO_INPUTS, begin, build_system
+from .core import DormandPrince, Exponential, Inputs, Solver
+from .driven_inputs import DrivenInputs, changed_setting
 from .errors import LandingError, unknown
-from .parameters import Parameters, check_value
+from .parameters import Parameters
 from .quantities import (
-    INPUT_NAMES,
-    INPUT_QUANTITIES,
     LEG_QUANTITIES,
     MIRRORED,
     MODES,
@@ -33,8 +32,6 @@ DEFAULT_RTOL = 1e-5
 METHODS: dict[str, type[Solver]] = {"exponential": Exponential, "dormand-prince": DormandPrince}
 # samples between two looks at signals and two calls of `progress` in a run
 SLICE = 250
-# where a ground motion's rate is an input of its own
-RATE_INPUTS = {"ground.heave": "ground.heave_rate", "ground.tilt": "ground.tilt_rate"}
 
 
 class StateHeader(NamedTuple):
@@ -52,6 +49,8 @@ class StateHeader(NamedTuple):
     steps: float
     rejected: float
     rhs_calls: float
+    heave: float  # of the ground at t_input, as it was set [m]
+    tilt: float  # of the ground at t_input, as it was set [rad]
 
 
 def output_order(mode: str) -> list[tuple[int, float]]:
@@ -73,12 +72,6 @@ def output_order(mode: str) -> list[tuple[int, float]]:
     return order
 
 
-def _input_index(name: str) -> int:
-    if name not in INPUT_NAMES:
-        raise unknown("input", name, INPUT_NAMES)
-    return INPUT_NAMES.index(name)
-
-
 class Landing:
     """One landing: a vehicle, its ground, its drop, and the present state. SI units throughout.
 
@@ -89,10 +82,11 @@ class Landing:
             strokes to 0.05 %.
         method: `exponential`, or `dormand-prince`, the paper's ode45: slower, but not below rtol =
             1e-7.
+        inputs, rates: inputs at the start, and their rates, as for `set_inputs`; default is 0.
 
     Raises:
         LandingError: a value is out of bounds, not finite or of the wrong type, or the mode or
-            method is unknown.
+            method is unknown, or a footpad would pass below the ground in the free flight.
     """
 
     def __init__(
@@ -101,6 +95,8 @@ class Landing:
         mode: str | None = None,
         rtol: float = DEFAULT_RTOL,
         method: str = "exponential",
+        inputs: Mapping[str, Any] | None = None,
+        rates: Mapping[str, Any] | None = None,
     ) -> None:
         parameters = parameters if parameters is not None else Parameters()
         self.parameters = parameters.for_mode(mode if mode is not None else parameters.drop.mode)
@@ -117,6 +113,8 @@ class Landing:
         self._order = output_order(self.parameters.drop.mode)
         self._pick = itemgetter(*(i for i, _ in self._order))
         self._turned = [k for k, (_, factor) in enumerate(self._order) if factor < 0.0]
+        self._inputs = DrivenInputs(self._solver)
+        self._first = changed_setting((NO_INPUTS, NO_INPUTS), inputs or {}, rates or {})
         self.reset()
 
     @classmethod
@@ -138,10 +136,18 @@ class Landing:
         return {"steps": int(s.steps), "rejected": int(s.rejected), "rhs_calls": int(s.rhs_calls)}
 
     def reset(self) -> None:
-        """Go back to the start: time 0, inputs 0, the flight before the first contact."""
-        self._system.energy_start = 0.0
-        begin(self._solver, self.parameters)
+        """Go back to the start: time 0, the first inputs, the flight before the first contact.
+
+        The first inputs are those that the landing was made with.
+        """
+        self._begin(*self._first)
+
+    def _begin(self, inputs: Inputs, rates: Inputs) -> None:
+        """Place the vehicle above the ground of the inputs, at time 0."""
+        begin(self._solver, self.parameters, inputs, rates)
+        self._inputs.adopt((inputs.heave, inputs.tilt))
         self._time = 0.0
+        self._system.energy_start = 0.0
         self._out_time = inf
         self._system.energy_start = self.get("energy.balance")
         self._out_time = inf
@@ -153,39 +159,25 @@ class Landing:
         tilt of the ground always go on at `ground.heave_rate` and `ground.tilt_rate`, and a rate
         given for them is taken for these.
 
-        Raises LandingError for an unknown name, NaN, or a value out of bounds; nothing is changed
-        then.
+        At time 0 they set the ground of the first contact: the vehicle is placed so that its lowest
+        footpad touches the moving ground at `drop.contact_time`, with the drop's pitch and
+        velocities in the inertial frame. Later the ground does not jump: if heave or tilt is set to
+        another value than the ground has, it moves there at a constant rate over the next step (of
+        `step`, `advance_to`, or the first `every` of `run`), on top of its own rates. So positions
+        that are set at each step, without rates, are a motion that is linear between them, one step
+        late.
+
+        Raises LandingError for an unknown name, NaN, a value out of bounds, or, at time 0, a flight
+        in which a footpad would pass below the ground; nothing is changed then.
         """
-        solver = self._solver
-        solver.inputs_at(self._time)
-        new, new_rates = list(solver.u_now), list(solver.u_rate)
-        for name, value in values.items():
-            i = _input_index(name)
-            new[i], new_rates[i] = float(check_value(INPUT_QUANTITIES[i], value)), 0.0
-        for name, rate in (rates or {}).items():
-            i = _input_index(name)
-            if not isfinite(rate):
-                raise LandingError(
-                    f"rate of {name} = {rate:g} {INPUT_QUANTITIES[i].unit}/s must be finite"
-                )
-            if name in RATE_INPUTS:
-                own = _input_index(RATE_INPUTS[name])
-                new[own] = float(check_value(INPUT_QUANTITIES[own], rate))
-            else:
-                new_rates[i] = float(rate)
-        if new == list(solver.u_now) and new_rates == list(solver.u_rate):
+        present = self._inputs.setting(self._time)
+        new = changed_setting(present, values, rates or {})
+        if new == present:
             return
-        before = self.get("energy.contact")
-        solver.interpolate(self._time, self._y)
-        for target, numbers in ((solver.y, self._y), (solver.u, new), (solver.u_rate, new_rates)):
-            for i, v in enumerate(numbers):
-                target[i] = v
-        solver.restart(self._time)
-        self._out_time = inf
-        jump = self.get("energy.contact") - before
-        if jump != 0.0:
-            self._system.add_ground_work(solver.y, jump)
-            solver.restart(self._time)
+        if self._time == 0.0:
+            self._begin(*new)
+        else:
+            self._inputs.set(self._time, new)
             self._out_time = inf
 
     def step(self, dt: float) -> None:
@@ -197,12 +189,15 @@ class Landing:
     def advance_to(self, time: float) -> None:
         """Go on to `time` [s], not before the present time.
 
-        Results do not depend on the steps by which one gets there.
+        Results do not depend on the steps by which one gets there. The exception is a ground whose
+        position was set anew: it is there at the end of the next step.
         """
         if not (isfinite(time) and time >= self._time):
             raise LandingError(
                 f"time = {time:g} s is not a time from {self._time:g} s on; reset() starts again"
             )
+        if self._inputs.pending and time > self._time:
+            self._inputs.begin_step(self._time, time - self._time)
         if not self._solver.advance(time):
             raise self._collapsed()
         self._time = time
@@ -244,6 +239,7 @@ class Landing:
             s.steps,
             s.rejected,
             s.rhs_calls,
+            *self._inputs.goal,
         )
         return array("d", [*header, *s.u, *s.u_rate, *s.y, *s.dense])
 
@@ -285,6 +281,7 @@ class Landing:
             header.rejected,
             header.rhs_calls,
         )
+        self._inputs.adopt((header.heave, header.tilt))
         self._out_time = inf
 
     def run(
@@ -310,13 +307,18 @@ class Landing:
             raise LandingError(
                 f"until = {until:g} s must be finite and after the present time, {self._time:g} s"
             )
-        start, solver = self._time, self._solver
+        start, solver, ground = self._time, self._solver, self._inputs.ground(self._time)
         samples = int((until - start) / every * (1.0 + 1e-12) + 1e-9) + 1
         rows = np.empty((samples, self._system.row))
         flat = rows.reshape(-1)
         reached = 0
         while reached < samples:
             goal = min(reached + SLICE, samples)
+            if self._inputs.pending:
+                # a motion to a new ground position begins at the first sample, ends at the second
+                goal = reached + 1
+                if reached > 0:
+                    self._inputs.begin_step(self._time, start + reached * every - self._time)
             reached = solver.record(start, every, reached, goal, flat)
             if reached < goal:
                 raise self._collapsed()
@@ -328,7 +330,7 @@ class Landing:
         columns = np.ascontiguousarray(rows.T)[[i for i, _ in self._order]]
         columns[self._turned] *= -1.0
         time: NDArray[float64] = np.array([start + k * every for k in range(samples)])
-        return History(time, OUTPUT_NAMES, columns.T, self.parameters)
+        return History(time, OUTPUT_NAMES, columns.T, self.parameters, ground)
 
     def _collapsed(self) -> LandingError:
         return LandingError(

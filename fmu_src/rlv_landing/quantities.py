@@ -132,7 +132,13 @@ INPUT_QUANTITIES: tuple[Quantity, ...] = (
         1e7,
         name="external.moment",
     ),
-    Quantity("m", "lift of the ground along inertial y", -100.0, 100.0, name="ground.heave"),
+    Quantity(
+        "m",
+        "lift of the ground along inertial y; after the start it is reached over the next step",
+        -100.0,
+        100.0,
+        name="ground.heave",
+    ),
     Quantity(
         "m/s",
         "rate of the lift; the ground goes on at it until inputs are set again",
@@ -142,7 +148,8 @@ INPUT_QUANTITIES: tuple[Quantity, ...] = (
     ),
     Quantity(
         "rad",
-        "tilt of the ground about the inertial origin, on top of ground.slope, clockwise positive",
+        "tilt of the ground about its origin, on top of ground.slope, clockwise positive; "
+        "after the start it is reached over the next step",
         -1.0,
         1.0,
         name="ground.tilt",

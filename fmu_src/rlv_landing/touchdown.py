@@ -1,14 +1,46 @@
-"""The state at first contact, and the free flight before it with the legs fully extended."""
+"""The state at first contact, and the free flight before it above the ground as it moves."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import cos, sin
+from typing import NamedTuple
 
+from .errors import LandingError
 from .parameters import Parameters, azimuth
 from .quantities import MODES
 
 # parts of the free flight's duration at which the footpads are checked to be above the ground
 FLIGHT_CHECKS = tuple(i / 64.0 for i in range(65))
+# largest depth of a footpad below the ground in the free flight, for rounding [m]
+DEPTH_LIMIT = 1e-6
+# largest slope and tilt of the ground together [rad]
+STEEPEST = 1.5
+
+
+class GroundMotion(NamedTuple):
+    """The motion of the ground from some time on, at constant accelerations.
+
+    Heave [m], its rate [m/s] and acceleration [m/s2]; tilt [rad], its rate [rad/s] and acceleration
+    [rad/s2].
+    """
+
+    heave: float = 0.0
+    heave_rate: float = 0.0
+    heave_acceleration: float = 0.0
+    tilt: float = 0.0
+    tilt_rate: float = 0.0
+    tilt_acceleration: float = 0.0
+
+    def at(self, t: float) -> tuple[float, float]:
+        """Heave [m] and tilt [rad] `t` [s] later, by the same expressions as in the kernels."""
+        return (
+            self.heave + (self.heave_rate + 0.5 * self.heave_acceleration * t) * t,
+            self.tilt + (self.tilt_rate + 0.5 * self.tilt_acceleration * t) * t,
+        )
+
+
+AT_REST = GroundMotion()
 
 
 def footpad_at_rest(parameters: Parameters) -> tuple[float, float]:
@@ -47,38 +79,49 @@ def footpad_between(parameters: Parameters, main: float, auxiliary: float) -> tu
 class FreeFlight:
     """The free flight with the legs fully extended, up to the first contact.
 
-    The whole vehicle's CG flies a parabola and the pitch rate is constant. At contact the body's CG
-    is above the ground's origin. [derived]
+    The whole vehicle's CG flies a parabola and the pitch rate is constant, both in the inertial
+    frame. The first contact is `drop.contact_time` after time 0: the lowest footpad touches the
+    ground as it is then, and the body's CG is above the ground's origin. [derived]
+
+    Args:
+        parameters: The vehicle, its drop and its ground.
+        ground: Motion of the ground from time 0 on.
+
+    Raises:
+        LandingError: The ground is too steep at the contact.
     """
 
-    def __init__(self, parameters: Parameters) -> None:
+    def __init__(self, parameters: Parameters, ground: GroundMotion = AT_REST) -> None:
         drop = parameters.drop
         groups = MODES[drop.mode]
         self.footpad = footpad_at_rest(parameters)
         radius, self._height = self.footpad
         self._along = [radius * azimuth(g.azimuth)[1] for g in groups]
-        self._normal = sin(parameters.ground.slope), cos(parameters.ground.slope)
+        self._duration = drop.contact_time
+        self._plane = _planes(parameters.ground.slope, ground)
         feet = sum(len(g.legs) for g in groups) * parameters.vehicle.footpad_mass
         self._arm = arm = self._height * feet / (feet + parameters.vehicle.mass)
         self._end, self._rate, self._gravity = drop.tilt, drop.pitch_rate, parameters.ground.gravity
-        self._contact_y = -self.clearance(0.0, 0.0, self._end) / self._normal[1]
+        up = self._plane(self._duration)[2]
+        self._contact_y = -self.clearance(0.0, 0.0, self._end, self._duration) / up
         self._vx = drop.horizontal_velocity + self._rate * arm * cos(self._end)
         self._vy = drop.vertical_velocity - self._rate * arm * sin(self._end)
 
-    def clearance(self, x: float, y: float, pitch: float) -> float:
-        """Height [m] of the lowest footpad above the ground at rest, along its normal.
+    def clearance(self, x: float, y: float, pitch: float, t: float) -> float:
+        """Height [m] of the lowest footpad above the ground at time `t`, along its normal.
 
         Args:
             x: The body's CG along inertial x [m].
             y: The body's CG along inertial y (up) [m].
             pitch: Pitch, clockwise positive [rad].
+            t: Time after the start [s].
         """
         s, c = sin(pitch), cos(pitch)
-        across, up = self._normal
+        heave, across, up = self._plane(t)
         height = self._height
         return min(
             [
-                (x + along * c + height * s) * across + (y + height * c - along * s) * up
+                (x + along * c + height * s) * across + (y - heave + height * c - along * s) * up
                 for along in self._along
             ]
         )
@@ -92,7 +135,45 @@ class FreeFlight:
         y = self._contact_y + arm * cos(end) - vy * t - 0.5 * g * t * t - arm * cos(pitch)
         return x, y, pitch, vx - rate * arm * cos(pitch), vy + g * t + rate * arm * sin(pitch), rate
 
-    def lowest(self, duration: float) -> float:
-        """The smallest clearance [m] during the last `duration` [s] of the flight, at 65 times."""
-        parts = FLIGHT_CHECKS if duration > 0.0 else FLIGHT_CHECKS[:1]
-        return min([self.clearance(*self.before_contact(part * duration)[:3]) for part in parts])
+    def start(self) -> tuple[float, float, float, float, float, float]:
+        """Body state at time 0.
+
+        Raises:
+            LandingError: Before the contact a footpad would pass below the ground, or the ground
+                would be too steep. 65 times are checked.
+        """
+        end = self._duration
+        parts = FLIGHT_CHECKS if end > 0.0 else FLIGHT_CHECKS[:1]
+        lowest = min(
+            [
+                self.clearance(*self.before_contact(part * end)[:3], end - part * end)
+                for part in parts
+            ]
+        )
+        if lowest < -DEPTH_LIMIT:
+            raise LandingError(
+                f"drop.contact_time = {end:g} s of free flight would pass {-lowest:.3g} m "
+                f"below the ground, the limit is {DEPTH_LIMIT:g} m; shorten it, or touch down with "
+                "less pitch rate or a faster descent onto the ground"
+            )
+        return self.before_contact(end)
+
+
+def _planes(slope: float, ground: GroundMotion) -> Callable[[float], tuple[float, float, float]]:
+    """Heave [m] of the ground and sine and cosine of its whole slope, as functions of time [s]."""
+
+    def plane(t: float) -> tuple[float, float, float]:
+        heave, tilt = ground.at(t)
+        steep = slope + tilt
+        if not -STEEPEST <= steep <= STEEPEST:
+            raise LandingError(
+                f"ground.slope + ground.tilt = {steep:g} rad at {t:g} s, up to the first contact, "
+                f"is outside [-{STEEPEST:g}, {STEEPEST:g}] rad; "
+                "tilt the ground less, or more slowly"
+            )
+        return heave, sin(steep), cos(steep)
+
+    if ground == AT_REST._replace(heave=ground.heave, tilt=ground.tilt):
+        still = plane(0.0)
+        return lambda t: still
+    return plane

@@ -28,7 +28,6 @@ ENTRIES = {
     "interpolate",
     "outputs_at",
     "record",
-    "add_ground_work",
 }
 SETTING_UP = {"__init__"}
 KERNELS = kernels()

@@ -249,8 +249,6 @@ def both_ways(
     Both every millisecond, under the same names.
     """
     landing = Landing(load_preset(FIGURES, mode).for_mode(mode).with_values(values), rtol=1e-9)
-    body = [landing.get(f"body.{name}") for name in BODY]
-    model = Vehicle3D(landing.parameters, loads)
     landing.set_inputs(
         {
             "external.force_x": loads.force[0], "external.force_y": loads.force[1],
@@ -259,6 +257,8 @@ def both_ways(
             "ground.tilt": loads.tilt, "ground.tilt_rate": loads.tilt_rate,
         }
     )  # fmt: skip
+    body = [landing.get(f"body.{name}") for name in BODY]
+    model = Vehicle3D(landing.parameters, loads)
     history = landing.run(until, 1e-3)
     ours = {name: history[f"body.{name}"] for name in ("x", "y", "pitch")}
     columns = {

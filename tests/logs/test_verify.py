@@ -224,7 +224,10 @@ def test_what_cannot_be_repeated_is_refused_with_what_is_missing(
 
 
 def log_with_inputs(whole: Path, folder: Path) -> LogReader:
-    """A log as the node writes it, with the parameters of the log `whole` and random inputs."""
+    """A log as the node writes it, with the parameters of the log `whole` and random inputs.
+
+    The inputs of time 0 are recorded before the first sample.
+    """
     reader = LogReader(whole)
     reader.read_through()
     parameters, random = reader.parameters(), Random(7)
@@ -235,25 +238,28 @@ def log_with_inputs(whole: Path, folder: Path) -> LogReader:
     ]
     recorder = Recorder(folder, entries, reader.metadata, reader.attachments)
     recorded = [(t, part) for t, part in zip(packer.topics, packer.slices) if t in SAMPLED]
+
+    def change_inputs(k: int) -> None:
+        for topic, names, sizes in (
+            (APPLIED_WRENCH, WRENCH, (900.0, 400.0, 60.0)),
+            (APPLIED_GROUND, GROUND, (1e-3, 0.1, 1e-3, 0.02)),
+        ):
+            if k == 0 or random.random() < 0.1:
+                values = {name: random.uniform(-s, s) for name, s in zip(names, sizes)}
+                change = InputChange(topic, k * 1_000_000, values)
+                landing.set_inputs(change.values)
+                recorder.write(
+                    f"/landing/{topic.name}", k * 1_000_000, serialize_message(change.message())
+                )
+
+    change_inputs(0)
     for k in range(1001):
         landing.advance_to(k * 1e-3)
         messages = packer.pack(k * 1_000_000, tuple(landing.outputs().values()))
         for topic, part in recorded:
             recorder.write(f"/landing/{topic.name}", k * 1_000_000, messages[part])
-        for topic, names, sizes in (
-            (APPLIED_WRENCH, WRENCH, (900.0, 400.0, 60.0)),
-            (APPLIED_GROUND, GROUND, (1e-3, 0.1, 1e-3, 0.02)),
-        ):
-            if random.random() < 0.1:
-                change = InputChange(
-                    topic,
-                    k * 1_000_000,
-                    {name: random.uniform(-s, s) for name, s in zip(names, sizes)},
-                )
-                landing.set_inputs(change.values)
-                recorder.write(
-                    f"/landing/{topic.name}", k * 1_000_000, serialize_message(change.message())
-                )
+        if k:
+            change_inputs(k)
     recorder.close()
     return LogReader(folder)
 

@@ -113,10 +113,9 @@ def _landing(options: dict[str, Any]) -> Landing:
     parameters = chosen_parameters(
         options["preset"], options["file"], options["mode"], options["pairs"]
     )
-    landing = Landing(parameters, rtol=options["rtol"], method=options["method"])
-    inputs = {q.name: q for q in INPUT_QUANTITIES}
-    landing.set_inputs(parse_pairs(options["inputs"], inputs, "input"))
-    return landing
+    quantities = {q.name: q for q in INPUT_QUANTITIES}
+    inputs = parse_pairs(options["inputs"], quantities, "input")
+    return Landing(parameters, rtol=options["rtol"], method=options["method"], inputs=inputs)
 
 
 def _run(landing: Landing, until: float, every: float) -> History:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from math import cos, sin
 from typing import Literal, get_args
 
 import numpy as np
@@ -16,6 +15,7 @@ from ..errors import LandingError
 from ..history import History
 from ..parameters import azimuth
 from ..quantities import MODES
+from ..touchdown import AT_REST
 from .limits import PassedLimit, first_limit_passed
 
 Array = NDArray[np.float64]
@@ -50,8 +50,8 @@ class Outcome:
 
     `margins` [m]: `stability_min` and `stability_end`, the smallest and the last
     `status.stability_margin`; `stroke_left` to the stop; `slid`, the farthest that a footpad lies
-    at the end from where it first touched (inertial axes; the legs' spreading is in it);
-    `joint_clearance`, the least height above the ground at rest of the body's lowest leg joints,
+    at the end from its first contact, relative to the ground, which may move (the legs' spreading
+    is in it); `joint_clearance`, the least height above the ground of the body's lowest leg joints,
     the lowest of the body that the model knows. Peaks between samples are not included.
     """
 
@@ -88,7 +88,9 @@ def outcome(
     toppled = bool(phase[-1] == TOPPLED)
     if toppled:
         over = _first_of_last_period(phase, TOPPLED) + 1
-        history = History(history.time[:over], history.names, history.data[:over], p)
+        history = History(
+            history.time[:over], history.names, history.data[:over], p, history.ground
+        )
     stop = p.main_strut.stroke_max
     strokes = {leg: history[f"leg[{leg}].main_strut.stroke"] for leg in legs}
     slips = [_slip(history, leg) for leg in legs]
@@ -133,7 +135,7 @@ def _legs(mode: str) -> tuple[tuple[int, ...], tuple[float, ...]]:
 
 
 def _slip(history: History, leg: int) -> Array:
-    """Distance [m] of the footpad from its first contact, from then to the end.
+    """Distance [m] of the footpad from its first contact, relative to the ground, to the end.
 
     It is empty for a footpad that never touches.
     """
@@ -141,27 +143,39 @@ def _slip(history: History, leg: int) -> Array:
     start = int(np.argmax(touching > 0.0))
     if not touching[start] > 0.0:
         return np.empty(0)
-    x, y, z = (history[f"leg[{leg}].footpad.{axis}"][start:] for axis in "xyz")
+    along, up, _ = _on_ground(history, *(history[f"leg[{leg}].footpad.{axis}"] for axis in "xy"))
+    x, y, z = (values[start:] for values in (along, up, history[f"leg[{leg}].footpad.z"]))
     distance: Array = np.sqrt((x - x[0]) ** 2 + (y - y[0]) ** 2 + (z - z[0]) ** 2)
     return distance
 
 
-def _joint_clearance(history: History, cosines: tuple[float, ...]) -> float:
-    """Least height [m] of the auxiliary struts' body joints above the ground at rest.
+def _on_ground(history: History, x: Array, y: Array) -> tuple[Array, Array, Array | float]:
+    """A point's position along the ground and height above it [m], and the ground's slope [rad].
 
-    It is measured along the ground's normal.
+    Tilt and heave of the ground are included.
+
+    Args:
+        history: The landing.
+        x: The point along inertial x [m], (n,).
+        y: The point along inertial y (up) [m], (n,).
     """
     p = history.parameters
     assert p is not None
-    radius, depth, slope = (
-        p.auxiliary_strut.joint_radius,
-        p.auxiliary_strut.joint_depth,
-        p.ground.slope,
-    )
+    slope: Array | float = p.ground.slope
+    if history.ground != AT_REST:
+        heave, tilt = history.ground.at(history.time - history.time[0])
+        slope, y = slope + tilt, y - heave
+    return x * np.cos(slope) - y * np.sin(slope), x * np.sin(slope) + y * np.cos(slope), slope
+
+
+def _joint_clearance(history: History, cosines: tuple[float, ...]) -> float:
+    """Least height [m] above the ground, along its normal, of the auxiliary struts' body joints."""
+    p = history.parameters
+    assert p is not None
+    radius, depth = p.auxiliary_strut.joint_radius, p.auxiliary_strut.joint_depth
+    _, height, slope = _on_ground(history, history["body.x"], history["body.y"])
     turned = history["body.pitch"] - slope
-    height = (
-        history["body.x"] * sin(slope) + history["body.y"] * cos(slope) - depth * np.cos(turned)
-    )
+    height = height - depth * np.cos(turned)
     sine = np.sin(turned)
     return min(float((height - radius * c * sine).min()) for c in cosines)
 

@@ -40,4 +40,4 @@ def whole_landing(landing: Landing, until: float, every: float = 1e-3) -> Histor
             break
     time = np.concatenate([parts[0].time, *(p.time[1:] for p in parts[1:])])
     data = np.concatenate([parts[0].data, *(p.data[1:] for p in parts[1:])])
-    return History(time, parts[0].names, data, landing.parameters)
+    return History(time, parts[0].names, data, landing.parameters, parts[0].ground)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
+from itertools import count
 from pathlib import Path
 
 from rlv_landing import Landing, Parameters
@@ -59,27 +60,43 @@ class RepeatedRun:
     def samples(self) -> Generator[dict[str, float], None, None]:
         """All outputs by name at 0, one step, two steps, and so on without end.
 
-        The inputs act at their times.
+        The inputs act at their times, those at 0 before the first sample.
         """
         if self._fmu is None:
             landing = Landing(self.parameters)
-            k = 0
-            while True:
-                landing.advance_to(k * self.step)
-                yield landing.outputs()
-                for values in self._inputs.get(k, ()):
-                    landing.set_inputs(values)
-                k += 1
+
+            def step(k: int) -> None:
+                landing.advance_to((k + 1) * self.step)
+
+            yield from self._samples(landing.outputs, landing.set_inputs, step)
+            return
         from ..fmu.runner import FmuRunner
 
         with FmuRunner(self._fmu, dict(self.parameters.items())) as runner:
-            k = 0
-            while True:
-                yield dict(zip(OUTPUT_NAMES, runner.values()))
-                for values in self._inputs.get(k, ()):
-                    runner.set_inputs(values)
-                runner.step(k, self.step)
-                k += 1
+            yield from self._samples(
+                lambda: dict(zip(OUTPUT_NAMES, runner.values())),
+                runner.set_inputs,
+                lambda k: runner.step(k, self.step),
+            )
+
+    def _samples(
+        self,
+        outputs: Callable[[], dict[str, float]],
+        set_inputs: Callable[[dict[str, float]], None],
+        step: Callable[[int], None],
+    ) -> Generator[dict[str, float], None, None]:
+        """The samples of a model that `step` integrates from sample k to k + 1."""
+        for k in count():
+            if k == 0:
+                self._set(0, set_inputs)
+            yield outputs()
+            if k > 0:
+                self._set(k, set_inputs)
+            step(k)
+
+    def _set(self, k: int, set_inputs: Callable[[dict[str, float]], None]) -> None:
+        for values in self._inputs.get(k, ()):
+            set_inputs(values)
 
 
 def _inputs(reader: LogReader, step_ns: int, refusal: str) -> Inputs:

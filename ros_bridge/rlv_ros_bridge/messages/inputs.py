@@ -58,7 +58,7 @@ def out_of_plane(message: Any) -> bool:
 def read_ground(message: Any) -> dict[str, float]:
     """The inputs that a JointState of `ground` asks for.
 
-    A joint that it does not name stays as it is; without velocities the ground stands still.
+    A joint that it does not name stays as it is. Without velocities they are positions alone.
 
     Raises:
         LandingError: an unknown joint, positions or velocities that do not fit the names, not
@@ -83,8 +83,18 @@ def read_ground(message: Any) -> dict[str, float]:
             )
         position, rate = JOINTS[name]
         values[position] = positions[i]
-        values[rate] = velocities[i] if velocities else 0.0
+        if velocities:
+            values[rate] = velocities[i]
     return _checked(values)
+
+
+def merged(ground: Mapping[str, float], later: Mapping[str, float]) -> dict[str, float]:
+    """The inputs that two messages of `ground` ask for together.
+
+    For a joint that both name, those of the later one count.
+    """
+    named = {own for pair in JOINTS.values() if pair[0] in later for own in pair}
+    return {**{name: value for name, value in ground.items() if name not in named}, **later}
 
 
 def _checked(values: Mapping[str, float]) -> dict[str, float]:

@@ -14,10 +14,9 @@ from sensor_msgs.msg import JointState
 from rlv_landing.errors import LandingError
 
 from ..messages.inputs import (
-    HEAVE,
     JOINTS,
-    TILT,
     WRENCH,
+    merged,
     out_of_plane,
     read_ground,
     read_wrench,
@@ -25,9 +24,9 @@ from ..messages.inputs import (
 )
 from ..messages.samples import set_stamp, set_vector
 from ..messages.topics import APPLIED_GROUND, APPLIED_WRENCH, WORLD_FRAME, Topic
+from .commanded_ground import CommandedGround
 
 NO_WRENCH = dict.fromkeys(WRENCH, 0.0)
-NO_MOTION = dict.fromkeys((*HEAVE, *TILT), 0.0)
 # Messages that wait while the landing is paused; of more than these the newest are kept.
 LONGEST_QUEUE = 1000
 
@@ -64,7 +63,7 @@ class InputQueue:
     """Receives messages of `external_wrench` and `ground` in any thread.
 
     The landing's thread collects the resulting changes by `changes_at`. `received` and `refused`
-    count messages.
+    count messages. Ground positions without velocities are handled by `CommandedGround`.
 
     Args:
         timeout: wall time after a topic's last message [s] after which the wrench becomes 0, or the
@@ -78,13 +77,18 @@ class InputQueue:
         self.refused = 0
         self._warn = warn
         self._arrived: deque[tuple[Topic, dict[str, float]]] = deque(maxlen=LONGEST_QUEUE)
-        self.clear()
+        self.clear(1, lambda values: None)
 
-    def clear(self) -> None:
-        """Resets to no inputs and no waiting messages, for a new landing."""
+    def clear(self, step_ns: int, check_start: Callable[[Mapping[str, float]], object]) -> None:
+        """Resets to no inputs and no waiting messages, for a new landing.
+
+        Args:
+            step_ns: the landing's step [ns].
+            check_start: raises LandingError for ground inputs that the landing cannot start with.
+        """
         self._arrived.clear()
         self._wrench = dict(NO_WRENCH)
-        self._ground, self._ground_since = dict(NO_MOTION), 0
+        self._ground, self._check_start = CommandedGround(step_ns), check_start
         # Arrival of the last message of each topic whose timeout has not passed [s].
         self._last_arrival: dict[Topic, float] = {}
 
@@ -105,8 +109,7 @@ class InputQueue:
         try:
             values = read(message)
         except LandingError as e:
-            self.refused += 1
-            self._warn(f"input refused, the previous one stays in force: {e}")
+            self._refuse(e)
             return
         self.received += 1
         self._arrived.append((topic, values))
@@ -114,21 +117,24 @@ class InputQueue:
     def changes_at(self, nanoseconds: int) -> list[InputChange]:
         """The changes for a step that begins at the simulation time `nanoseconds` [ns].
 
-        Of several messages of a topic the last counts.
+        Of several messages of a topic the last counts, for the ground joint by joint.
         """
-        if not self._arrived and not self._last_arrival:
-            return []
         changed: dict[Topic, None] = {}
+        if self._ground.stop_at_goals(nanoseconds):
+            changed[APPLIED_GROUND] = None
         now = time.monotonic()
+        ground: dict[str, float] = {}
         while self._arrived:
             topic, values = self._arrived.popleft()
-            changed[topic] = None
             self._last_arrival[topic] = now
             if topic is APPLIED_WRENCH:
                 self._wrench = values
+                changed[topic] = None
             else:
-                self._ground = {**self._ground_at(nanoseconds), **values}
-                self._ground_since = nanoseconds
+                ground = merged(ground, values)
+        if ground and (nanoseconds > 0 or self._can_start(ground)):
+            self._ground.command(nanoseconds, ground)
+            changed[APPLIED_GROUND] = None
         for topic, arrival in list(self._last_arrival.items()):
             if self.timeout and now - arrival > self.timeout:
                 del self._last_arrival[topic]
@@ -136,18 +142,25 @@ class InputQueue:
                     changed[topic] = None
         return [
             InputChange(
-                topic, nanoseconds, self._wrench if topic is APPLIED_WRENCH else self._ground
+                topic,
+                nanoseconds,
+                self._wrench if topic is APPLIED_WRENCH else self._ground.values(nanoseconds),
             )
             for topic in changed
         ]
 
-    def _ground_at(self, nanoseconds: int) -> dict[str, float]:
-        """The ground's motion at the simulation time `nanoseconds` [ns], at constant rates."""
-        passed = 1e-9 * (nanoseconds - self._ground_since)
-        moved = {
-            name: self._ground[name] + passed * self._ground[rate] for name, rate in JOINTS.values()
-        }
-        return {**self._ground, **moved}
+    def _can_start(self, values: Mapping[str, float]) -> bool:
+        """Whether the landing can start with the ground inputs `values`; else they are refused."""
+        try:
+            self._check_start({**self._ground.values(0), **values})
+        except LandingError as e:
+            self._refuse(e)
+            return False
+        return True
+
+    def _refuse(self, reason: LandingError) -> None:
+        self.refused += 1
+        self._warn(f"input refused, the previous one stays in force: {reason}")
 
     def _end_input(self, topic: Topic, nanoseconds: int) -> bool:
         """Sets the wrench to 0, or stops the ground, after a timeout; whether that is a change."""
@@ -157,9 +170,7 @@ class InputQueue:
             self._wrench = dict(NO_WRENCH)
             self._warn(f"no external_wrench for {self.timeout:g} s: it is set to 0")
             return True
-        if not (self._ground[HEAVE[1]] or self._ground[TILT[1]]):
+        if not self._ground.stop(nanoseconds):
             return False
-        self._ground = {**self._ground_at(nanoseconds), HEAVE[1]: 0.0, TILT[1]: 0.0}
-        self._ground_since = nanoseconds
         self._warn(f"no ground for {self.timeout:g} s: it stops where it is")
         return True

@@ -12,6 +12,7 @@ from typing import Any
 
 from rclpy.serialization import serialize_message
 
+from rlv_landing import Landing
 from rlv_landing.presets import to_toml
 from rlv_landing.quantities import OUTPUT_NAMES
 
@@ -103,7 +104,7 @@ class LandingRun:
         self._sample_cost = 0.0
         self._dropped_before = self._queue.dropped
         self.fmu = FmuRunner(settings.fmu, dict(settings.parameters.items()))
-        inputs.clear()
+        inputs.clear(settings.step_ns, lambda values: Landing(settings.parameters, inputs=values))
         self._queue.on_published(self._note_published)
 
     def open_log(self) -> None:
@@ -210,12 +211,10 @@ class LandingRun:
     def _compute_sample(self, k: int) -> tuple[list[float], bytes]:
         """Steps to sample k and records it; its outputs and its messages."""
         s, recorder = self.settings, self.recorder
+        # the inputs of time 0 place the vehicle: they are applied before sample 0
+        if k != 1:
+            self._apply_inputs(max(0, k - 1) * s.step_ns)
         if k:
-            before = (k - 1) * s.step_ns
-            for change in self._inputs.changes_at(before):
-                self.fmu.set_inputs(change.values)
-                message = padded(serialize_message(change.message()))
-                self._record_and_enqueue(change.topic, before, message)
             self.fmu.step(k - 1, s.step_size)
         values = self.fmu.values()
         toppled = values[PHASE] == TOPPLED
@@ -229,6 +228,13 @@ class LandingRun:
                 self._error_reported = True
                 self._on_error(f"{recorder.error}; the landing continues without recording")
         return values, messages
+
+    def _apply_inputs(self, now: int) -> None:
+        """Applies and records, at the simulation time `now` [ns], the inputs that have arrived."""
+        for change in self._inputs.changes_at(now):
+            self.fmu.set_inputs(change.values)
+            message = padded(serialize_message(change.message()))
+            self._record_and_enqueue(change.topic, now, message)
 
     def _enqueue_occasional(self, k: int, values: Sequence[float]) -> bool:
         """Makes markers, transforms and diagnostics where they are due; whether any was."""

@@ -42,7 +42,7 @@ def land(fmu, job):
         for kind, read in readers.items():
             references = [v.reference for v in wanted if v.type == kind]
             values.update(zip([(kind, r) for r in references], read(landing, references)))
-        yield [k * step * 1e-9, *(values[v.type, v.reference] for v in wanted)]
+        yield [k * step / 1e9, *(values[v.type, v.reference] for v in wanted)]
         if k == job["inputs_after"]:
             references = [variables[name].reference for name in job["inputs"]]
             assert inputs.slave_real_values(landing, references, list(job["inputs"].values()))

@@ -29,7 +29,6 @@ from ..access import (
 from ..leg import leg_status
 from ..memory import Buffer, Doubles, Records, data, room
 from ..records import (
-    Accounts,
     BodyModel,
     BodyOutputs,
     EnergyOutputs,
@@ -70,30 +69,6 @@ class Planar(PlanarMotion):
         self.energy_start = 0.0
         self._rates = array("d", bytes(8 * self.n))
         self._status = room(self.groups, LEG_STATUS)
-
-    def add_ground_work(self, y: Buffer, work: float) -> None:
-        """Add the `work` [J] of a ground that was moved at once to the accounts in the state `y`."""
-        self._add_ground_work(data(y), work)
-
-    def _add_ground_work(self, y: Doubles, work: float) -> None:
-        at = BODY + LEG * self.groups
-        a = accounts(y, at)
-        ground = a.ground + work
-        put(
-            Accounts(
-                a.orifice,
-                a.seal,
-                a.stop,
-                a.auxiliary,
-                a.contact,
-                a.friction,
-                a.external,
-                ground,
-                a.transverse,
-            ),
-            y,
-            at,
-        )
 
     def outputs(self, y: Doubles, u: Doubles, out: Doubles, at: int) -> None:
         """Write all outputs to `out[at:]`."""

@@ -90,7 +90,11 @@ class PlanarMotion(System):
         self._loads = room(groups, PLANAR_LOADS)
 
     def inputs_after(self, u: Doubles, rates: Doubles, dt: float, now: Doubles) -> None:
-        """Loads go on at their rates, heave and tilt at their own, which change at theirs."""
+        """Loads go on at their rates, heave and tilt at their own, which change at theirs.
+
+        Rates of heave and tilt in `rates` are those of a motion to a new position; they add to the
+        ground's own.
+        """
         a = inputs(u, 0)
         rate = inputs(rates, 0)
         put(
@@ -98,10 +102,10 @@ class PlanarMotion(System):
                 force_x=a.force_x + rate.force_x * dt,
                 force_y=a.force_y + rate.force_y * dt,
                 moment=a.moment + rate.moment * dt,
-                heave=a.heave + (a.heave_rate + 0.5 * rate.heave_rate * dt) * dt,
-                heave_rate=a.heave_rate + rate.heave_rate * dt,
-                tilt=a.tilt + (a.tilt_rate + 0.5 * rate.tilt_rate * dt) * dt,
-                tilt_rate=a.tilt_rate + rate.tilt_rate * dt,
+                heave=a.heave + (a.heave_rate + rate.heave + 0.5 * rate.heave_rate * dt) * dt,
+                heave_rate=a.heave_rate + rate.heave + rate.heave_rate * dt,
+                tilt=a.tilt + (a.tilt_rate + rate.tilt + 0.5 * rate.tilt_rate * dt) * dt,
+                tilt_rate=a.tilt_rate + rate.tilt + rate.tilt_rate * dt,
             ),
             now,
             0,

@@ -89,12 +89,10 @@ def judged_landing(study: EnvelopeStudy, values: Mapping[str, float | str]) -> J
         LandingError: The values make no landing: out of bounds, or the flight starts below the
             ground.
     """
+    own = {name: float(value) for name, value in values.items() if name not in PARAMETER_QUANTITIES}
+    inputs = {**study.inputs, **own}
     parameters = study.parameters_with(values)
-    landing = Landing(parameters, rtol=study.rtol)
-    inputs = {
-        name: float(value) for name, value in values.items() if name not in PARAMETER_QUANTITIES
-    }
-    landing.set_inputs({**study.inputs, **inputs})
+    landing = Landing(parameters, rtol=study.rtol, inputs=inputs)
     try:
         history = whole_landing(landing, study.until, study.every)
     except LandingError as e:
@@ -102,7 +100,8 @@ def judged_landing(study: EnvelopeStudy, values: Mapping[str, float | str]) -> J
     found = outcome(history, study.limits, study.slide)
     towards = ""
     if found.name == "toppled":
-        towards = "+x" if history["body.pitch"][-1] > parameters.ground.slope else "-x"
+        slope = parameters.ground.slope + history.ground.at(history.time[-1])[1]
+        towards = "+x" if history["body.pitch"][-1] > slope else "-x"
     margins = found.margins
     return JudgedLanding(
         name=found.name,

@@ -78,14 +78,11 @@ class Plan:
             for name, value in values.items()
             if name in PARAMETER_QUANTITIES and name != MODE
         }
-        landing = Landing(base.with_values(changes), rtol=self.rtol)
         inputs = {
             **self.inputs,
             **{name: value for name, value in values.items() if name not in PARAMETER_QUANTITIES},
         }
-        if inputs:
-            landing.set_inputs(inputs)
-        return landing
+        return Landing(base.with_values(changes), rtol=self.rtol, inputs=inputs)
 
     def history(self, landing: Landing) -> History:
         """Make a landing, until the study's end or until it is decided.

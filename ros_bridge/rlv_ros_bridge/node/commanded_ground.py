@@ -1,0 +1,99 @@
+"""The motion of the ground that messages ask for; velocities that they lack are derived."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from ..messages.inputs import JOINTS
+
+# Longest time between two messages that counts as their spacing [ns of simulation time]: a message
+# after a longer pause must not take that long to act.
+LONGEST_SPACING = 500_000_000
+
+
+@dataclass
+class _Joint:
+    """The motion of heave or tilt.
+
+    `position` [m or rad] is that at the simulation time `since` [ns], `rate` [m/s or rad/s] its
+    rate. If `end` [ns] is not None, the rate ends there, at `goal` [m or rad]. `commanded` [ns] is
+    the time of the last message.
+    """
+
+    position: float = 0.0
+    rate: float = 0.0
+    since: int = 0
+    goal: float = 0.0
+    end: int | None = None
+    commanded: int | None = None
+
+    def at(self, now: int) -> float:
+        """The position at the simulation time `now` [ns]."""
+        if self.end is not None and now >= self.end:
+            return self.goal
+        return self.position + 1e-9 * (now - self.since) * self.rate
+
+    def move(self, now: int, position: float, rate: float) -> None:
+        self.position, self.rate, self.since, self.end = position, rate, now, None
+
+
+class CommandedGround:
+    """Heave and tilt of the ground over the simulation time, as messages ask for them.
+
+    A position with a velocity is the ground's from then on. Towards a position without a velocity
+    the ground moves at a constant rate, over 1.5 times the spacing of the last two messages, at
+    least one step. So messages at uneven times still give one motion without stops. Where there was
+    no message before, the landing itself moves the ground over its next step. At time 0 the ground
+    is where the message says.
+
+    Args:
+        step_ns: the landing's step [ns].
+    """
+
+    def __init__(self, step_ns: int) -> None:
+        self._step = step_ns
+        self._joints = {position: _Joint() for position, _ in JOINTS.values()}
+
+    def values(self, now: int) -> dict[str, float]:
+        """The inputs that give the ground's motion at the simulation time `now` [ns]."""
+        found = {}
+        for position, rate in JOINTS.values():
+            joint = self._joints[position]
+            found[position], found[rate] = joint.at(now), joint.rate
+        return found
+
+    def command(self, now: int, values: Mapping[str, float]) -> None:
+        """Takes the inputs of a message at the simulation time `now` [ns].
+
+        Args:
+            now: simulation time [ns].
+            values: positions by input name, and their rates if the message has any.
+        """
+        for position, rate in JOINTS.values():
+            if position not in values:
+                continue
+            joint, goal = self._joints[position], values[position]
+            spacing = 0 if joint.commanded is None else min(now - joint.commanded, LONGEST_SPACING)
+            joint.commanded = now
+            if rate in values or spacing == 0:
+                joint.move(now, goal, values.get(rate, 0.0))
+                continue
+            half = -(-spacing // (2 * self._step)) * self._step
+            joint.move(now, joint.at(now), 0.0)
+            joint.rate = (goal - joint.position) / (1e-9 * (spacing + half))
+            joint.goal, joint.end = goal, now + spacing + half
+
+    def stop_at_goals(self, now: int) -> bool:
+        """Stops what has reached its goal at the simulation time `now` [ns]; whether any has."""
+        arrived = [j for j in self._joints.values() if j.end is not None and now >= j.end]
+        for joint in arrived:
+            joint.move(now, joint.goal, 0.0)
+        return bool(arrived)
+
+    def stop(self, now: int) -> bool:
+        """Stops the ground where it is at the simulation time `now` [ns]; whether it moved."""
+        moving = [j for j in self._joints.values() if j.rate != 0.0]
+        for joint in moving:
+            joint.move(now, joint.at(now), 0.0)
+        return bool(moving)
