@@ -85,11 +85,14 @@ class Ground:
     damping: Annotated[float, Q("N.s/m", "normal damping Cgmax at full depth", 0.0, 1e8, "Cgmax", "identified")] = 6950.935
     damping_depth: Annotated[float, Q("m", "penetration at which the normal damping is full", 1e-7, 0.1, "d_ramp", "identified", "mm")] = 0.0001397513
     friction: Annotated[float, Q("", "friction coefficient mu", 0.0, 3.0, "mu", "identified")] = 0.2882521
-    stick_displacement: Annotated[float, Q("m", "displacement s_r0 at which a sticking footpad starts to slip", 1e-6, 0.1, "s_r0", "identified", "mm")] = 0.0012289
+    friction_law: Annotated[str, Q("", "passive: an elastic displacement of constant stiffness and a slider, which never supplies energy; paper: Eqs. (16), (17), which may", choices=("passive", "paper"))] = "passive"
+    stick_displacement: Annotated[float, Q("m", "displacement s_r0 of a sticking footpad: where friction_law = paper starts to slip; of which tangential_stiffness = 0 and slip_zone are made", 1e-6, 0.1, "s_r0", "identified", "mm")] = 0.0012289
+    tangential_stiffness: Annotated[float, Q("N/m", "stiffness K of a sticking footpad along the ground, friction_law = passive; 0: the whole vehicle's mass times 9.80665 m/s2 over stick_displacement", 0.0, 1e12, "K_t", "closure")] = 0.0
+    slip_zone: Annotated[float, Q("", "part of stick_displacement over which a footpad passes from sticking to slipping, friction_law = passive", 1e-3, 1.0, source="closure")] = 0.07
     stribeck_gain: Annotated[float, Q("", "excess ar of the sticking over the sliding friction", 0.0, 2.0, "ar", "identified")] = 0.05135416
     stribeck_speed: Annotated[float, Q("m/s", "slip speed b_strib at which that excess fades", 1e-4, 10.0, "b_strib", "identified")] = 0.01511486
     stick_damping: Annotated[float, Q("N.s/m", "damping Cr of a sticking footpad", 0.0, 1e6, "Cr", "identified")] = 8.077528
-    direction_speed: Annotated[float, Q("m/s", "slip speed below which friction is shared evenly between x and z", 1e-5, 0.1, "v_dir", "closure")] = 0.005
+    direction_speed: Annotated[float, Q("m/s", "slip speed below which friction is shared evenly between x and z, friction_law = paper", 1e-5, 0.1, "v_dir", "closure")] = 0.005
     release_time: Annotated[float, Q("s", "time constant at which the friction displacement returns to 0 out of contact", 1e-5, 1.0, "tau_sr", "closure")] = 0.002
 
 

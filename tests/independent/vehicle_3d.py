@@ -184,6 +184,37 @@ class Vehicle3D:
         q = np.minimum(np.maximum(d / self.ground.damping_depth, 0.0), 1.0)
         return q * q * (3.0 - 2.0 * q)
 
+    def passive_friction(self, d: Array, Fn: Array, v: Array, s: Array) -> tuple[Array, Array]:
+        """Force (2, 4) in the ground's plane and the displacement's rate (2, 4), by return to the
+        cone: `Fn` [N] on footpads that slip at `v` and are displaced by `s`, both (2, 4).
+        """
+        g = self.ground
+        weight = 9.80665 * (self.vehicle.mass + 4.0 * self.vehicle.footpad_mass)
+        k = g.tangential_stiffness or weight / g.stick_displacement
+        zone = g.slip_zone * g.stick_displacement
+        speed, length = np.sqrt((v * v).sum(axis=0)), np.sqrt((s * s).sum(axis=0))
+        cone = g.friction * Fn * (1.0 + g.stribeck_gain * np.exp(-speed / g.stribeck_speed))
+        elastic = np.minimum(k * length, cone)
+        n = s / np.where(length > 0.0, length, 1.0)
+        beyond = length - cone / k
+        share = np.minimum(np.maximum(beyond / zone, 0.0), 1.0)
+        share = share * share * (3.0 - 2.0 * share)
+        growing = (n * v).sum(axis=0)
+        used = elastic / np.where(cone > 0.0, cone, 1.0)
+        damping = np.where(
+            k * length < cone, g.stick_damping * self.ramp(d) * (1.0 - used * used), 0.0
+        )
+        # what the spring takes of a growing motion: all of it below the limit, less the slider's
+        # share and the part of its length that carries no force beyond
+        kept = np.where(
+            beyond >= 0.0, (1.0 - share) * elastic / np.maximum(k * length, 1e-300), 1.0
+        )
+        rate = v - n * np.where(growing > 0.0, (1.0 - kept) * growing, 0.0)
+        rate = rate - n * np.maximum(beyond - zone, 0.0) / g.release_time
+        held = (d > 0.0) & ((length > 0.0) | (cone > 0.0))
+        free = np.where(d > 0.0, 0.0, -s / g.release_time)
+        return np.where(d > 0.0, -elastic * n - damping * v, 0.0), np.where(held, rate, free)
+
     def friction(self, d: Array, limit: Array, v: Array, s: Array) -> tuple[Array, Array]:
         """Force along one direction of the ground and the displacement's rate; `limit` [N] is
         coefficient times normal force.
@@ -223,6 +254,13 @@ class Vehicle3D:
             g.stiffness * depth**g.exponent + g.damping * self.ramp(depth) * sinking, 0.0
         )
         vx, vz = along @ relative, relative[2]
+        if g.friction_law == "passive":
+            (Fx, Fz), (rate_x, rate_z) = self.passive_friction(
+                d, Fn, np.array([vx, vz]), np.array([slip_x, slip_z])
+            )
+            force = normal[:, None] * Fn + along[:, None] * Fx
+            force[2] += Fz
+            return force, rate_x, rate_z, d
         small = g.direction_speed**2
         whole = vx * vx + vz * vz + small
         Fx, rate_x = self.friction(

@@ -27,8 +27,9 @@ def audit(
     """Audit a preset (default yue2022-figures) or a parameter file: energy term by term, liquid
     mass, momentum, rest, convergence.
 
-    Momentum is audited in free flight and in contact, against the integral of contact forces and
-    weight. Every value is held against a bound that is printed with its reason. Both drop tests
+    Energy, mass and rest are audited on a slope of 5 deg and under a steady side load of a tenth of
+    the weight as well. Momentum is audited in free flight and in contact, against the integral of
+    contact forces and weight. Every value is held against a bound that is printed with its reason. Both drop tests
     unless --mode names one. Exit code 1 when a bound is missed.
 
     \b

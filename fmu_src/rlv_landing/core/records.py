@@ -156,6 +156,8 @@ class LegModel(NamedTuple):
     Cr: float
     v_dir: float
     tau_sr: float
+    K_t: float
+    zone: float  # [m]
     share_1: (
         float  # part of mu^2 along 1 at rest: 1/2; 1 for a leg that lies in the symmetric plane
     )
@@ -261,6 +263,7 @@ class FrictionForce(NamedTuple):
     f2: float  # on the footpad along 2 [N]
     dq1: float  # rate of q1 [m/s]
     dq2: float  # rate of q2 [m/s]
+    dissipated: float  # [W]
 
 
 class GroundForce(NamedTuple):
@@ -272,7 +275,7 @@ class GroundForce(NamedTuple):
     dq1: float  # [m/s]
     dq2: float  # [m/s]
     dissipated: float  # by the normal damping [W]
-    friction: float  # taken by friction [W]
+    friction: float  # dissipated by friction [W]
 
 
 class LegForces(NamedTuple):
@@ -305,7 +308,7 @@ class LegForces(NamedTuple):
     stop: float
     auxiliary_dissipated: float
     contact: float  # dissipated by the ground's normal damping
-    friction: float  # taken by friction, part of it held by its displacement
+    friction: float  # dissipated by friction
 
 
 class LegStatus(NamedTuple):
@@ -315,6 +318,7 @@ class LegStatus(NamedTuple):
     stop: float
     auxiliary: float
     contact: float
+    friction: float
     pressure_upper: float  # [Pa]
     pressure_lower: float  # [Pa]
     liquid_mass: float  # [kg]
@@ -380,6 +384,7 @@ class HeldEnergy(NamedTuple):
     liquid: float
     auxiliary: float
     contact: float
+    friction: float
     stop: float
 
 
@@ -410,6 +415,7 @@ class EnergyOutputs(NamedTuple):
     liquid: float
     auxiliary: float
     contact: float
+    friction: float
     stop: float
     dissipated_orifice: float
     dissipated_seal: float

@@ -1,8 +1,12 @@
-"""The bounds that an audit holds a landing to, each with its reason."""
+"""The bounds that an audit holds a landing to, each with its reason, and a value beside one."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Literal, NamedTuple
+
+# tolerance of the landings that are held against exact laws
+TIGHT_RTOL = 1e-8
 
 
 class Bound(NamedTuple):
@@ -32,6 +36,13 @@ BOUNDS: dict[str, Bound] = {
         1e-3,
         "at most",
         "a tenth of a per cent is below any use of the balance",
+    ),
+    "dissipated": Bound(
+        "fall of any account of what is dissipated within 10 s, rtol 1e-8, of the energy turned over",
+        "",
+        1e-9,
+        "at most",
+        "what is lost stays lost: only the integrator's error is left; friction_law = paper supplies energy and misses it",
     ),
     "liquid_mass": Bound(
         "change of a damper's liquid mass",
@@ -89,6 +100,13 @@ BOUNDS: dict[str, Bound] = {
         "at most",
         "a damper that creeps by 0.1 mm/s moves 1 mm in 10 s",
     ),
+    "rest_drift": Bound(
+        "drift of a footpad in the 5 s after that",
+        "m/s",
+        1e-9,
+        "at most",
+        "what friction holds does not creep: 1e-6 mm/s is 0.1 mm in a day; friction_law = paper creeps on slopes",
+    ),
     "rest_phase": Bound(
         "settled 10 s after first contact, never toppled (1: yes)",
         "",
@@ -125,3 +143,21 @@ BOUNDS: dict[str, Bound] = {
         "an instant's error of a contact's time is a force's error there",
     ),
 }
+
+
+@dataclass(frozen=True)
+class Check:
+    """One value held against its bound; `applies` is False where the bound does not hold for these
+    parameters.
+    """
+
+    id: str
+    value: float
+    applies: bool = True
+
+    @property
+    def passed(self) -> bool:
+        bound = BOUNDS[self.id]
+        return not self.applies or (
+            self.value <= bound.limit if bound.side == "at most" else self.value >= bound.limit
+        )

@@ -25,7 +25,8 @@ LOCKED: dict[str, float | str] = {
     "main_strut.seal_pressure": 0.0, "main_strut.seal_stribeck": 0.0,
     "auxiliary_strut.stiffness": 2e8, "auxiliary_strut.exponent": 1.0, "auxiliary_strut.damping": 5e4,
     "ground.stiffness": 1e6, "ground.exponent": 1.0, "ground.damping": 5e4, "ground.damping_depth": 1e-6,
-    "ground.friction": 3.0, "ground.stick_displacement": 1e-4, "ground.stribeck_gain": 0.0, "ground.stick_damping": 1e4,
+    "ground.friction": 3.0, "ground.tangential_stiffness": 1e9, "ground.stick_displacement": 1e-4, "ground.stribeck_gain": 0.0,
+    "ground.stick_damping": 1e4,
 }  # fmt: skip
 AT_REST = 1e-6
 
