@@ -117,7 +117,23 @@ static double damper(double s, double v, double p1, double p2, const Parameters 
     return (p2 - p->Pa) * p->A2 - (p1 - p->Pa) * p->A1 + seal + stop;
 }
 
+/* Elongation of the spring where the joint has moved `x` past one end of its play, and its slope. */
+static double bearing(double x, const Parameters *p, double *slope) {
+    double eps = 0.03 * (p->g_t + p->g_c), root = sqrt(x * x + eps * eps);
+    double u = x > 0.0 ? 0.5 * (x + root) : 0.5 * eps * eps / (root - x);
+    *slope = u / root;
+    return u;
+}
+
 static double auxiliary(double s, double v, const Parameters *p, Loads *w) {
+    if (p->g_t + p->g_c > 0.0) {
+        double slope_t, slope_c, u_t = bearing(-s - p->g_t, p, &slope_t), u_c = bearing(s - p->g_c, p, &slope_c);
+        double pushes = pow(u_c, p->ek) * slope_c;
+        double spring = p->Ka * (pushes - pow(u_t, p->ek) * slope_t) + p->k_play * s;
+        double damping = p->Ca * (p->c_play + (1.0 - p->c_play) * MIN(1.0, slope_t + slope_c));
+        w->auxiliary = damping * v * v;
+        return spring + damping * v;
+    }
     double spring = p->Ka * pow(fabs(s), p->ek);
     if (s < 0.0) spring = -spring;
     w->auxiliary = p->Ca * v * v;

@@ -50,9 +50,11 @@ def body_model(parameters: Parameters) -> BodyModel:
 
 def leg_models(parameters: Parameters) -> list[LegModel]:
     """The numbers of each leg group of the parameters' landing mode."""
+    strut = parameters.auxiliary_strut
+    play = strut.play_tension + strut.play_compression > 0.0
     own = {
         "main_kind": _place(MAIN_STRUTS, "liquid-spring"),
-        "auxiliary_kind": _place(AUXILIARY_STRUTS, "elastic"),
+        "auxiliary_kind": _place(AUXILIARY_STRUTS, "elastic-with-play" if play else "elastic"),
         "friction_kind": _place(FRICTION_LAWS, parameters.ground.friction_law),
         "K_t": tangential_stiffness(parameters),
         "zone": parameters.ground.slip_zone * parameters.ground.stick_displacement,

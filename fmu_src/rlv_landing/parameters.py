@@ -64,7 +64,7 @@ class MainStrut:
 
 @dataclass(frozen=True)
 class AuxiliaryStrut:
-    """The auxiliary strut: nonlinear spring and damper along its axis. Eq. (13)."""
+    """The auxiliary strut: nonlinear spring and damper along its axis, and play in its joints. Eq. (13)."""
 
     joint_radius: Annotated[float, Q("m", "CG to body joint, radially", 0.0, 50.0, "Lc", "paper")] = 0.463
     joint_depth: Annotated[float, Q("m", "CG to body joint, downward", -50.0, 50.0, "Ld", "paper")] = 1.513
@@ -72,6 +72,10 @@ class AuxiliaryStrut:
     stiffness: Annotated[float, Q("N/m", "axial stiffness Ka (N/m^ek)", 1e3, 1e11, "Ka", "identified")] = 4444293.0
     exponent: Annotated[float, Q("", "hardening exponent ek", 1.0, 3.0, "ek", "identified")] = 1.062278
     damping: Annotated[float, Q("N.s/m", "axial damping Ca", 0.0, 1e7, "Ca", "identified")] = 1859.117
+    play_tension: Annotated[float, Q("m", "play of the joints in tension, before the strut bears; 0 on both sides: no play", 0.0, 0.1, "g_t", "closure", "mm")] = 0.0
+    play_compression: Annotated[float, Q("m", "play of the joints in compression, before the strut bears", 0.0, 0.1, "g_c", "closure", "mm")] = 0.0
+    play_stiffness: Annotated[float, Q("N/m", "axial stiffness within the play, and beside Ka beyond it", 0.0, 1e9, "k_play", "closure")] = 0.0
+    play_damping: Annotated[float, Q("", "part of the axial damping that acts within the play", 0.0, 1.0, "c_play", "closure")] = 0.0
 
 
 @dataclass(frozen=True)

@@ -35,6 +35,7 @@ MOVED = {
     "ground.damping_depth": 0.05,
     "ground.stick_damping": 100.0,
     "main_strut.charge_pressure": 2e6,
+    "auxiliary_strut.play_tension": 5e-3,
 }
 LOADS = {
     "external.force_x": 500.0,

@@ -89,6 +89,17 @@ def random_state(
     return y, np.concatenate((body, legs.ravel()))
 
 
+def random_play(rng: np.random.Generator) -> dict[str, float]:
+    """None, on one side, or on both."""
+    tension, compression = rng.choice([0.0, 1.0], 2) * rng.uniform(1e-4, 5e-3, 2)
+    return {
+        "auxiliary_strut.play_tension": tension,
+        "auxiliary_strut.play_compression": compression,
+        "auxiliary_strut.play_stiffness": rng.uniform(0.0, 1e6),
+        "auxiliary_strut.play_damping": rng.uniform(),
+    }
+
+
 @pytest.mark.parametrize("law", ["passive", "paper"])
 @pytest.mark.parametrize("at", ["footpad", "joint"])
 def test_accelerations_and_rates_are_the_same_at_random_states_to_rounding(
@@ -113,6 +124,7 @@ def test_accelerations_and_rates_are_the_same_at_random_states_to_rounding(
                 "auxiliary_strut.exponent": rng.uniform(1.0, 1.5),
                 "main_strut.seal_pressure": rng.uniform(0.0, 1e-4),
                 "main_strut.stroke_max": 0.02,
+                **random_play(rng),
             }
         )
         loads = Inputs(
@@ -217,6 +229,12 @@ LEANING = {
     "drop.tilt": 0.1,
     "drop.pitch_rate": -0.2,
 }
+PLAY = {
+    "auxiliary_strut.play_tension": 8e-4,
+    "auxiliary_strut.play_compression": 5e-4,
+    "auxiliary_strut.play_stiffness": 1e5,
+    "auxiliary_strut.play_damping": 0.2,
+}
 PAPER = {"ground.friction_law": "paper"}
 JOINT = {"vehicle.transverse_load_at": "joint"}
 LOADED = Inputs(force=(400.0, -300.0), moment=150.0)
@@ -231,6 +249,13 @@ LANDINGS = {
     "2-2 on a slope falling towards +x": ("2-2", SLOPE, Inputs(), 0.27),
     "1-2-1 on a slope falling towards -x, other legs first": ("1-2-1", LEANING, Inputs(), 0.27),
     "2-2 with force and moment": ("2-2", NEAR, LOADED, 0.27),
+    "2-2 with play in the auxiliary struts' joints": ("2-2", NEAR | PLAY, Inputs(), 0.27),
+    "1-2-1 on a slope with play in tension only": (
+        "1-2-1",
+        SLOPE | PLAY | {"auxiliary_strut.play_compression": 0.0},
+        Inputs(),
+        0.27,
+    ),
     "1-2-1 on a slope with the paper's friction": ("1-2-1", SLOPE | PAPER, Inputs(), 0.27),
     "1-2-1 on a deck that rises and tilts, transverse load at the joint": (
         "1-2-1",

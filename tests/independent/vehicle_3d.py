@@ -179,6 +179,22 @@ class Vehicle3D:
             lower_rate,
         )
 
+    def auxiliary(self, s: Array, v: Array) -> Array:
+        """Axial force [N], compression positive: a spring and a damper, which bear where the play
+        of the joints is taken up, softly within 3 % of it.
+        """
+        a = self.strut
+        play = a.play_tension + a.play_compression
+        if play == 0.0:
+            return a.stiffness * np.abs(s) ** a.exponent * np.sign(s) + a.damping * v
+        past = np.array([-s - a.play_tension, s - a.play_compression])
+        root = np.hypot(past, 0.03 * play)
+        pressed, bears = 0.5 * (past + root), 0.5 * (1.0 + past / root)
+        out, into = a.stiffness * pressed**a.exponent * bears
+        part = np.minimum(bears.sum(axis=0), 1.0)
+        damping = a.damping * (a.play_damping * (1.0 - part) + part)
+        return into - out + a.play_stiffness * s + damping * v
+
     def ramp(self, d: Array) -> Array:
         """0 to 1 over the ground's damping depth."""
         q = np.minimum(np.maximum(d / self.ground.damping_depth, 0.0), 1.0)
@@ -305,10 +321,7 @@ class Vehicle3D:
         s, s_rate, main_way = self.pull(self.main_joint, self.damper.length, rho, rho_rate)
         sa, sa_rate, aux_way = self.pull(self.aux_joint, self.strut.length, rho, rho_rate)
         Fm, upper_rate, lower_rate = self.main_strut(s, s_rate, upper, lower)
-        Fa = (
-            self.strut.stiffness * np.abs(sa) ** self.strut.exponent * np.where(sa < 0.0, -1.0, 1.0)
-            + self.strut.damping * sa_rate
-        )
+        Fa = self.auxiliary(sa, sa_rate)
         ground, rate_x, rate_z, d = self.contact(t, place, speed, slip_x, slip_z)
 
         down = np.array([0.0, -self.ground.gravity, 0.0])

@@ -144,6 +144,10 @@ class LegModel(NamedTuple):
     Ka: float
     ek: float
     Ca: float
+    g_t: float
+    g_c: float
+    k_play: float
+    c_play: float
     # ground
     Kg: float
     en: float
@@ -215,6 +219,13 @@ class AxialForce(NamedTuple):
 
     force: float  # [N] compression positive
     dissipated: float  # [W]
+
+
+class Bearing(NamedTuple):
+    """How far the faces of a joint with play have come to bear on one side."""
+
+    u: float  # elongation of what they press on [m]
+    slope: float  # its derivative by the joint's motion
 
 
 class StrutMotion(NamedTuple):
