@@ -35,7 +35,7 @@ typedef struct {
 } Parameters;
 
 typedef struct {
-    double sin, cos, count, share_x;
+    double sin, cos, count;
 } Group;
 
 /* Effect of one leg group on the body and on its own states. */
@@ -138,8 +138,27 @@ static double damper(double s, double v, double p1, double p2, const Parameters 
     return (p2 - p->Pa) * p->A2 - (p1 - p->Pa) * p->A1 + seal + stop;
 }
 
+/* Elongation of the spring where the joint has moved `x` past an end of its play; its slope. */
+static double bearing(double x, const Parameters *p, double *slope)
+{
+    double eps = 0.03 * (p->g_t + p->g_c), root = sqrt(x * x + eps * eps);
+    double u = x > 0.0 ? 0.5 * (x + root) : 0.5 * eps * eps / (root - x);
+    *slope = u / root;
+    return u;
+}
+
 static double auxiliary(double s, double v, const Parameters *p, Loads *w)
 {
+    if (p->g_t + p->g_c > 0.0) {
+        double slope_t, slope_c;
+        double u_t = bearing(-s - p->g_t, p, &slope_t), u_c = bearing(s - p->g_c, p, &slope_c);
+        double pushes = pow(u_c, p->ek) * slope_c;
+        double spring = p->Ka * (pushes - pow(u_t, p->ek) * slope_t) + p->k_play * s;
+        double bears = MIN(1.0, slope_t + slope_c);
+        double damping = p->Ca * (p->c_play + (1.0 - p->c_play) * bears);
+        w->auxiliary = damping * v * v;
+        return spring + damping * v;
+    }
     double spring = p->Ka * pow(fabs(s), p->ek);
     if (s < 0.0)
         spring = -spring;
@@ -157,22 +176,45 @@ static double damping_ramp(double d, const Parameters *p)
     return q * q * (3.0 - 2.0 * q);
 }
 
-static double friction(double d, double Fn, double mu, double v, double s, const Parameters *p,
-                       double *ds)
+/* Friction on a footpad: the displacement's rates and the lost power go to `w`, forces to `F`. */
+static void friction(double d, double Fn, double v1, double v2, const double *s,
+                     const Parameters *p, Loads *w, double *F)
 {
+    double square = s[0] * s[0] + s[1] * s[1], size = sqrt(square);
+    F[0] = F[1] = 0.0;
     if (d <= 0.0) {
-        *ds = -s / p->tau_sr;
-        return 0.0;
+        w->dsx = -s[0] / p->tau_sr;
+        w->dsz = -s[1] / p->tau_sr;
+        w->friction = p->K_t * square / p->tau_sr;
+        return;
     }
-    double bounded = MIN(MAX(s, -p->s_r0), p->s_r0);
-    double K = mu * Fn / p->s_r0;
-    if (v * s > 0.0 && fabs(s) >= p->s_r0) {
-        *ds = 0.0;
-        return -K * (1.0 + p->ar * exp(-fabs(v) / p->b_strib)) * bounded;
+    double limit = p->mu * Fn * (1.0 + p->ar * exp(-sqrt(v1 * v1 + v2 * v2) / p->b_strib)) / p->K_t;
+    if (size < limit) {
+        double part = size / limit, damping = p->Cr * damping_ramp(d, p) * (1.0 - part * part);
+        F[0] = -p->K_t * s[0] - damping * v1;
+        F[1] = -p->K_t * s[1] - damping * v2;
+        w->dsx = v1;
+        w->dsz = v2;
+        w->friction = damping * (v1 * v1 + v2 * v2);
+        return;
     }
-    double q = bounded / p->s_r0;
-    *ds = v;
-    return -K * (1.0 + p->ar) * bounded - p->Cr * damping_ramp(d, p) * (1.0 - q * q) * v;
+    w->dsx = w->dsz = w->friction = 0.0;
+    if (size <= 0.0) return;
+    double n1 = s[0] / size, n2 = s[1] / size, vn = v1 * n1 + v2 * n2, past = size - limit;
+    double back = past > p->zone ? (past - p->zone) / p->tau_sr : 0.0;
+    w->friction = p->K_t * size * back;
+    if (vn > 0.0) {
+        double q = past / p->zone, share = q >= 1.0 ? 1.0 : q <= 0.0 ? 0.0 : q * q * (3.0 - 2.0 * q);
+        w->friction += p->K_t * limit * vn * share;
+        back += vn * (1.0 - (1.0 - share) * limit / size);
+    } else {
+        w->friction -= p->K_t * past * vn;
+    }
+    double force = p->K_t * limit;
+    F[0] = -force * n1;
+    F[1] = -force * n2;
+    w->dsx = v1 - n1 * back;
+    w->dsz = v2 - n2 * back;
 }
 
 typedef struct {
@@ -217,12 +259,9 @@ static void leg_loads(const double *y, const double *q, const Group *g, Angles a
             Fn = 0.0;
         w->contact = (Fn - elastic) * dv;
     }
-    double rest = p->v_dir * p->v_dir, speed = slip_x * slip_x + slip_z * slip_z + rest;
-    double mu_x = p->mu * sqrt((slip_x * slip_x + g->share_x * rest) / speed);
-    double mu_z = p->mu * sqrt((slip_z * slip_z + (1.0 - g->share_x) * rest) / speed);
-    double Fx = friction(d, Fn, mu_x, slip_x, q[SX], p, &w->dsx);
-    double Fz = friction(d, Fn, mu_z, slip_z, q[SZ], p, &w->dsz);
-    w->friction = -(Fx * slip_x + Fz * slip_z);
+    double F[2];
+    friction(d, Fn, slip_x, slip_z, q + SX, p, w, F);
+    double Fx = F[0], Fz = F[1];
 
     double Cx = Fx * a.cos_a + Fn * a.sin_a, Cy = Fn * a.cos_a - Fx * a.sin_a,
            weight = p->m_d * p->g;
@@ -460,7 +499,6 @@ static double error(const Landing *s)
 static void accept(Landing *s, double h)
 {
     int n = s->n;
-    double limit = s->p.s_r0;
     for (int i = 0; i < n; i++) {
         double change = s->y_new[i] - s->y[i], bend = h * s->k1[i] - change;
         s->dense[0][i] = s->y[i];
@@ -470,9 +508,6 @@ static void accept(Landing *s, double h)
         s->y[i] = s->y_new[i];
         s->k1[i] = s->k5[i];
     }
-    for (int g = 0; g < s->groups; g++)
-        for (int i = BODY + LEG * g + SX; i <= BODY + LEG * g + SZ; i++)
-            s->y[i] = MIN(MAX(s->y[i], -limit), limit);
     s->t_old = s->t;
     s->t += h;
     s->steps += 1.0;

@@ -31,8 +31,9 @@ from fmu_build.core_source import COMPILE_ARGS  # noqa: E402
 PARAMETERS = (
     "m_u", "I_u", "m_d", "at_joint", "La", "Lb", "Lm0", "A1", "A2", "V10", "V20", "Pa", "rho0",
     "x_air", "n_air", "B0", "kB", "CdAo_c", "CdAo_r", "dP_lam", "Fc", "kp", "Fs", "v_str", "v_sm",
-    "s_max", "K_stop", "c_stop", "Lc", "Ld", "Ls0", "Ka", "ek", "Ca", "alpha", "Kg", "en", "Cgmax",
-    "d_ramp", "mu", "s_r0", "ar", "b_strib", "Cr", "v_dir", "tau_sr", "g",
+    "s_max", "K_stop", "c_stop", "Lc", "Ld", "Ls0", "Ka", "ek", "Ca", "g_t", "g_c", "k_play",
+    "c_play", "alpha", "Kg", "en", "Cgmax", "d_ramp", "mu", "ar", "b_strib", "Cr", "tau_sr", "K_t",
+    "zone", "g",
 )  # fmt: skip
 # the core's own options, and options that may change the digits
 EXACT: tuple[str, ...] = tuple(COMPILE_ARGS)
@@ -107,7 +108,7 @@ class CLanding:
             leg_models(parameters),
             leg_places(parameters),
         )
-        groups = [x for place, leg in zip(places, legs) for x in (*place, leg.share_1)]
+        groups = [x for place in places for x in place]
         numbers = {**legs[0]._asdict(), **body._asdict()}
         self.n, self.controlled = solver.n, solver.system.controlled
         self._library = library(options)

@@ -22,13 +22,15 @@ from .core import (
     Solver,
 )
 from .parameters import PARAMETER_QUANTITIES, Parameters, azimuth
-from .quantities import MODES
+from .quantities import LEGS, MODES
 from .touchdown import AT_REST, FreeFlight, GroundMotion
 
 # Typical size of each state: the absolute part of the error that is allowed is rtol times this.
 # Accounts count in no error.
 BODY_SCALE = BodyState(x=0.1, y=0.1, pitch=0.1, vx=1.0, vy=1.0, pitch_rate=1.0)
 LEG_SCALE = LegState(r=0.1, h=0.1, vr=1.0, vh=1.0, z1=1e5, z2=1e5, q1=1e-3, q2=1e-3)
+# [m/s2], so that a footpad's stiffness does not depend on where the vehicle lands
+STANDARD_GRAVITY = 9.80665
 NO_ENERGY = Accounts(*(0.0 for _ in Accounts._fields))
 NO_INPUTS = Inputs(*(0.0 for _ in Inputs._fields))
 # the states whose error is relative to their own size as well: the liquid's pressures
@@ -53,10 +55,14 @@ def body_model(parameters: Parameters) -> BodyModel:
 
 def leg_models(parameters: Parameters) -> list[LegModel]:
     """The numbers of each leg group of the parameters' landing mode."""
+    strut = parameters.auxiliary_strut
+    play = strut.play_tension + strut.play_compression > 0.0
     own = {
         "main_kind": _place(MAIN_STRUTS, "liquid-spring"),
-        "auxiliary_kind": _place(AUXILIARY_STRUTS, "elastic"),
-        "friction_kind": _place(FRICTION_LAWS, "paper"),
+        "auxiliary_kind": _place(AUXILIARY_STRUTS, "elastic-with-play" if play else "elastic"),
+        "friction_kind": _place(FRICTION_LAWS, parameters.ground.friction_law),
+        "K_t": tangential_stiffness(parameters),
+        "zone": parameters.ground.slip_zone * parameters.ground.stick_displacement,
         "Lb": -parameters.main_strut.joint_depth,
         "Ld": -parameters.auxiliary_strut.joint_depth,
     }
@@ -65,6 +71,19 @@ def leg_models(parameters: Parameters) -> list[LegModel]:
         common._replace(share_1=1.0 if place.sin_g == 0.0 else 0.5)
         for place in leg_places(parameters)
     ]
+
+
+def tangential_stiffness(parameters: Parameters) -> float:
+    """Stiffness of a sticking footpad along the ground [N/m] (closure).
+
+    It is `ground.tangential_stiffness`; 0 stands for the weight of the whole vehicle (at standard
+    gravity) over the stick displacement.
+    """
+    given, vehicle = parameters.ground.tangential_stiffness, parameters.vehicle
+    if given > 0.0:
+        return given
+    mass = vehicle.mass + vehicle.footpad_mass * len(LEGS)
+    return mass * STANDARD_GRAVITY / parameters.ground.stick_displacement
 
 
 def leg_places(parameters: Parameters) -> list[LegPlace]:

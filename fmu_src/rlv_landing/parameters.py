@@ -64,7 +64,7 @@ class MainStrut:
 
 @dataclass(frozen=True)
 class AuxiliaryStrut:
-    """The auxiliary strut: nonlinear spring and damper along its axis. Eq. (13)."""
+    """The auxiliary strut: nonlinear spring and damper along its axis, and play in its joints. Eq. (13)."""
 
     joint_radius: Annotated[float, Q("m", "CG to body joint, radially", 0.0, 50.0, "Lc", "paper")] = 0.463
     joint_depth: Annotated[float, Q("m", "CG to body joint, downward", -50.0, 50.0, "Ld", "paper")] = 1.513
@@ -72,6 +72,10 @@ class AuxiliaryStrut:
     stiffness: Annotated[float, Q("N/m", "axial stiffness Ka (N/m^ek)", 1e3, 1e11, "Ka", "identified")] = 4444293.0
     exponent: Annotated[float, Q("", "hardening exponent ek", 1.0, 3.0, "ek", "identified")] = 1.062278
     damping: Annotated[float, Q("N.s/m", "axial damping Ca", 0.0, 1e7, "Ca", "identified")] = 1859.117
+    play_tension: Annotated[float, Q("m", "play of the joints in tension, before the strut bears; 0 on both sides: no play", 0.0, 0.1, "g_t", "closure", "mm")] = 0.0
+    play_compression: Annotated[float, Q("m", "play of the joints in compression, before the strut bears", 0.0, 0.1, "g_c", "closure", "mm")] = 0.0
+    play_stiffness: Annotated[float, Q("N/m", "axial stiffness within the play, and beside Ka beyond it", 0.0, 1e9, "k_play", "closure")] = 0.0
+    play_damping: Annotated[float, Q("", "part of the axial damping that acts within the play", 0.0, 1.0, "c_play", "closure")] = 0.0
 
 
 @dataclass(frozen=True)
@@ -85,11 +89,14 @@ class Ground:
     damping: Annotated[float, Q("N.s/m", "normal damping Cgmax at full depth", 0.0, 1e8, "Cgmax", "identified")] = 6950.935
     damping_depth: Annotated[float, Q("m", "penetration at which the normal damping is full", 1e-7, 0.1, "d_ramp", "identified", "mm")] = 0.0001397513
     friction: Annotated[float, Q("", "friction coefficient mu", 0.0, 3.0, "mu", "identified")] = 0.2882521
-    stick_displacement: Annotated[float, Q("m", "displacement s_r0 at which a sticking footpad starts to slip", 1e-6, 0.1, "s_r0", "identified", "mm")] = 0.0012289
+    friction_law: Annotated[str, Q("", "passive: an elastic displacement of constant stiffness and a slider, which never supplies energy; paper: Eqs. (16), (17), which may", choices=("passive", "paper"))] = "passive"
+    stick_displacement: Annotated[float, Q("m", "displacement s_r0 of a sticking footpad: where friction_law = paper starts to slip; of which tangential_stiffness = 0 and slip_zone are made", 1e-6, 0.1, "s_r0", "identified", "mm")] = 0.0012289
+    tangential_stiffness: Annotated[float, Q("N/m", "stiffness K of a sticking footpad along the ground, friction_law = passive; 0: the whole vehicle's mass times 9.80665 m/s2 over stick_displacement", 0.0, 1e12, "K_t", "closure")] = 0.0
+    slip_zone: Annotated[float, Q("", "part of stick_displacement over which a footpad passes from sticking to slipping, friction_law = passive", 1e-3, 1.0, source="closure")] = 0.07
     stribeck_gain: Annotated[float, Q("", "excess ar of the sticking over the sliding friction", 0.0, 2.0, "ar", "identified")] = 0.05135416
     stribeck_speed: Annotated[float, Q("m/s", "slip speed b_strib at which that excess fades", 1e-4, 10.0, "b_strib", "identified")] = 0.01511486
     stick_damping: Annotated[float, Q("N.s/m", "damping Cr of a sticking footpad", 0.0, 1e6, "Cr", "identified")] = 8.077528
-    direction_speed: Annotated[float, Q("m/s", "slip speed below which friction is shared evenly between x and z", 1e-5, 0.1, "v_dir", "closure")] = 0.005
+    direction_speed: Annotated[float, Q("m/s", "slip speed below which friction is shared evenly between x and z, friction_law = paper", 1e-5, 0.1, "v_dir", "closure")] = 0.005
     release_time: Annotated[float, Q("s", "time constant at which the friction displacement returns to 0 out of contact", 1e-5, 1.0, "tau_sr", "closure")] = 0.002
 
 

@@ -194,6 +194,12 @@ ENERGY_QUANTITIES: tuple[Quantity, ...] = (
     Quantity("J", "energy held by the dampers' liquid", name="energy.liquid"),
     Quantity("J", "energy held by the auxiliary struts' springs", 0.0, name="energy.auxiliary"),
     Quantity("J", "energy held by the ground's normal elasticity", 0.0, name="energy.contact"),
+    Quantity(
+        "J",
+        "energy held by the footpads' friction while they stick (0 with friction_law = paper)",
+        0.0,
+        name="energy.friction",
+    ),
     Quantity("J", "energy held by the dampers' end stops", 0.0, name="energy.stop"),
     Quantity("J", "dissipated so far in the orifices", name="energy.dissipated_orifice"),
     Quantity("J", "dissipated so far by seal friction", name="energy.dissipated_seal"),
@@ -208,7 +214,8 @@ ENERGY_QUANTITIES: tuple[Quantity, ...] = (
     ),
     Quantity(
         "J",
-        "taken so far by ground friction (a little of it held while sticking)",
+        "dissipated so far by ground friction (with friction_law = paper, which may supply energy, "
+        "all that it took)",
         name="energy.dissipated_friction",
     ),
     Quantity("J", "work done so far by the external force and moment", name="energy.work_external"),

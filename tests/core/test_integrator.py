@@ -120,8 +120,8 @@ def test_a_stiff_orifice_does_not_hold_the_exponential_method():
     assert work("dormand-prince", 1e4) > 1.8 * work("dormand-prince", 1e5)
 
 
-def test_friction_displacements_never_pass_the_slip_limit(mode):
-    parameters = load_preset("yue2022-figures", mode)
+def test_friction_displacements_of_the_papers_law_never_pass_the_slip_limit(mode):
+    parameters = load_preset("yue2022-figures", mode).with_values({"ground.friction_law": "paper"})
     solver, limit = new_solver(parameters, 1e-3), parameters.ground.stick_displacement
     reached = 0.0
     while solver.t < 0.5:

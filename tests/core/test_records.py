@@ -10,6 +10,7 @@ from rlv_landing import Parameters
 from rlv_landing.assembly import body_model, leg_models, new_solver
 from rlv_landing.core import AUXILIARY_STRUTS, FRICTION_LAWS, MAIN_STRUTS, Phase, access, records
 from rlv_landing.landing import DEFAULT_RTOL
+from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.quantities import (
     BODY_QUANTITIES,
     ENERGY_QUANTITIES,
@@ -64,7 +65,10 @@ def test_the_numbers_of_laws_are_their_places():
     leg = leg_models(Parameters())[0]
     assert list(MAIN_STRUTS)[int(leg.main_kind)] == "liquid-spring"
     assert list(AUXILIARY_STRUTS)[int(leg.auxiliary_kind)] == "elastic"
-    assert list(FRICTION_LAWS)[int(leg.friction_kind)] == "paper"
+    assert list(FRICTION_LAWS)[int(leg.friction_kind)] == "passive"
+    paper = leg_models(Parameters().with_values({"ground.friction_law": "paper"}))[0]
+    assert list(FRICTION_LAWS)[int(paper.friction_kind)] == "paper"
+    assert tuple(FRICTION_LAWS) == PARAMETER_QUANTITIES["ground.friction_law"].choices
 
 
 numbers = st.lists(st.floats(allow_nan=False), min_size=20, max_size=20)

@@ -28,6 +28,7 @@ MOVED = {
     "drop.contact_time": 0.05,
     "ground.slope": 0.09,
     "main_strut.charge_pressure": 2e6,
+    "auxiliary_strut.play_tension": 5e-3,
 }
 LOADS_AND_GROUND = {
     "external.force_x": 500.0,

@@ -181,10 +181,60 @@ class Vehicle3D:
             lower_rate,
         )
 
+    def auxiliary(self, s: Array, v: Array) -> Array:
+        """Axial force [N], compression positive: a spring and a damper.
+
+        They bear where the play of the joints is taken up, softly within 3 % of it.
+        """
+        a = self.strut
+        play = a.play_tension + a.play_compression
+        if play == 0.0:
+            return a.stiffness * np.abs(s) ** a.exponent * np.sign(s) + a.damping * v
+        past = np.array([-s - a.play_tension, s - a.play_compression])
+        root = np.hypot(past, 0.03 * play)
+        pressed, bears = 0.5 * (past + root), 0.5 * (1.0 + past / root)
+        out, into = a.stiffness * pressed**a.exponent * bears
+        part = np.minimum(bears.sum(axis=0), 1.0)
+        damping = a.damping * (a.play_damping * (1.0 - part) + part)
+        return into - out + a.play_stiffness * s + damping * v
+
     def ramp(self, d: Array) -> Array:
         """0 to 1 over the ground's damping depth."""
         q = np.minimum(np.maximum(d / self.ground.damping_depth, 0.0), 1.0)
         return q * q * (3.0 - 2.0 * q)
+
+    def passive_friction(self, d: Array, Fn: Array, v: Array, s: Array) -> tuple[Array, Array]:
+        """Force (2, 4) in the ground's plane, and the displacement's rate (2, 4).
+
+        They follow by return to the cone, for `Fn` [N] on footpads that slip at `v` and are
+        displaced by `s`, both (2, 4).
+        """
+        g = self.ground
+        weight = 9.80665 * (self.vehicle.mass + 4.0 * self.vehicle.footpad_mass)
+        k = g.tangential_stiffness or weight / g.stick_displacement
+        zone = g.slip_zone * g.stick_displacement
+        speed, length = np.sqrt((v * v).sum(axis=0)), np.sqrt((s * s).sum(axis=0))
+        cone = g.friction * Fn * (1.0 + g.stribeck_gain * np.exp(-speed / g.stribeck_speed))
+        elastic = np.minimum(k * length, cone)
+        n = s / np.where(length > 0.0, length, 1.0)
+        beyond = length - cone / k
+        share = np.minimum(np.maximum(beyond / zone, 0.0), 1.0)
+        share = share * share * (3.0 - 2.0 * share)
+        growing = (n * v).sum(axis=0)
+        used = elastic / np.where(cone > 0.0, cone, 1.0)
+        damping = np.where(
+            k * length < cone, g.stick_damping * self.ramp(d) * (1.0 - used * used), 0.0
+        )
+        # what the spring takes of a growing motion: all of it below the limit, less the slider's
+        # share and the part of its length that carries no force beyond
+        kept = np.where(
+            beyond >= 0.0, (1.0 - share) * elastic / np.maximum(k * length, 1e-300), 1.0
+        )
+        rate = v - n * np.where(growing > 0.0, (1.0 - kept) * growing, 0.0)
+        rate = rate - n * np.maximum(beyond - zone, 0.0) / g.release_time
+        held = (d > 0.0) & ((length > 0.0) | (cone > 0.0))
+        free = np.where(d > 0.0, 0.0, -s / g.release_time)
+        return np.where(d > 0.0, -elastic * n - damping * v, 0.0), np.where(held, rate, free)
 
     def friction(self, d: Array, limit: Array, v: Array, s: Array) -> tuple[Array, Array]:
         """Force along one direction of the ground, and the displacement's rate.
@@ -227,6 +277,13 @@ class Vehicle3D:
             g.stiffness * depth**g.exponent + g.damping * self.ramp(depth) * sinking, 0.0
         )
         vx, vz = along @ relative, relative[2]
+        if g.friction_law == "passive":
+            (Fx, Fz), (rate_x, rate_z) = self.passive_friction(
+                d, Fn, np.array([vx, vz]), np.array([slip_x, slip_z])
+            )
+            force = normal[:, None] * Fn + along[:, None] * Fx
+            force[2] += Fz
+            return force, rate_x, rate_z, d
         small = g.direction_speed**2
         whole = vx * vx + vz * vz + small
         Fx, rate_x = self.friction(
@@ -272,10 +329,7 @@ class Vehicle3D:
         s, s_rate, main_way = self.pull(self.main_joint, self.damper.length, rho, rho_rate)
         sa, sa_rate, aux_way = self.pull(self.aux_joint, self.strut.length, rho, rho_rate)
         Fm, upper_rate, lower_rate = self.main_strut(s, s_rate, upper, lower)
-        Fa = (
-            self.strut.stiffness * np.abs(sa) ** self.strut.exponent * np.where(sa < 0.0, -1.0, 1.0)
-            + self.strut.damping * sa_rate
-        )
+        Fa = self.auxiliary(sa, sa_rate)
         ground, rate_x, rate_z, d = self.contact(t, place, speed, slip_x, slip_z)
 
         down = np.array([0.0, -self.ground.gravity, 0.0])

@@ -70,7 +70,8 @@ def test_toppled_since_the_cg_is_beyond_the_outermost_footpad_or_the_body_over(l
     beyond = (cg > feet.max(axis=0)) | (cg < feet.min(axis=0))
     over = np.abs(h["body.pitch"]) > np.pi / 2
     assert found.time == h.time[np.flatnonzero(~(beyond | over))[-1] + 1]
-    assert found.margins["stability_end"] < 0.0
+    assert found.margins["stability_end"] == h["status.stability_margin"][-1]
+    assert found.margins["stability_min"] < 0.0
 
 
 def test_the_first_leg_that_meets_its_stop_is_named_with_its_time(landings):

@@ -153,10 +153,7 @@ def test_at_rest_on_a_slope_it_topples_where_the_tangent_passes_half_track_over_
 @pytest.mark.parametrize("mode", ["2-2", "1-2-1"])
 @pytest.mark.parametrize("friction", [0.1, 0.3])
 def test_at_rest_on_a_slope_it_slides_where_the_tangent_passes_the_friction(mode, friction):
-    """The share of friction between the directions is settled at once (`direction_speed`)."""
-    parameters = locked(
-        mode, ground__friction=friction, ground__direction_speed=1e-5, drop__vertical_velocity=-1e-3
-    )
+    parameters = locked(mode, ground__friction=friction, drop__vertical_velocity=-1e-3)
     for part, name in ((0.99, "settled"), (1.01, "slid")):
         slope = atan(part * friction)
         history = whole_landing(

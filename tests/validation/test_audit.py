@@ -10,17 +10,25 @@ from pytest import approx
 
 from rlv_landing import Landing, LandingError, load_preset
 from rlv_landing.history import History
-from rlv_landing.validation.audit import DISSIPATED, HELD, SUPPLIED
 from rlv_landing.validation.bounds import BOUNDS
 from rlv_landing.validation.convergence import smooth_arc
+from rlv_landing.validation.energy import DISSIPATED, HELD, SUPPLIED
 from rlv_landing.validation.momentum import impulse, momentum
 
 FIGURES = "yue2022-figures"
+FOOTPAD = "vehicle.transverse_load_at=footpad"
 LEGS = (1, 2, 3, 4)
 
 
-def test_the_preset_keeps_every_bound_and_every_bound_has_a_reason(audits, mode):
-    assert audits[mode].missed == []
+def test_the_preset_keeps_every_bound_and_every_bound_has_a_reason(every_audit, audits, mode):
+    cases = [a for a in every_audit if a.mode == mode]
+    assert [a.case for a in cases] == [
+        "as it is",
+        "slope of 5 deg",
+        "side load of a tenth of the weight",
+    ]
+    assert [a.missed for a in cases] == [[], [], []]
+    assert all(c.applies for a in cases for c in a.checks)
     assert {c.id for c in audits[mode].checks} == set(BOUNDS)
     assert all(b.reason for b in BOUNDS.values())
 
@@ -101,7 +109,7 @@ def test_the_joint_is_told_to_drop_angular_momentum_and_not_held_to_it(command):
         "audit", FIGURES, "--mode", "2-2", "--set", "vehicle.transverse_load_at=joint", "--json"
     )
     assert done.code == 0, done.err
-    (found,) = json.loads(done.out)["audits"]
+    found, *_ = json.loads(done.out)["audits"]
     checks = {c["id"]: c for c in found["checks"]}
     assert not checks["angular"]["applies"]
     assert checks["angular"]["value"] > 1e-2
@@ -129,7 +137,28 @@ def test_any_parameter_file_can_be_audited(command, tmp_path):
     record = json.loads(done.out)
     assert record["passed"]
     assert record["parameters"] == "mine.toml"
-    assert [a["mode"] for a in record["audits"]] == ["1-2-1"]
+    assert [a["mode"] for a in record["audits"]] == ["1-2-1"] * 3
+
+
+def test_the_papers_friction_is_told_to_supply_energy_and_to_creep(command):
+    done = command("audit", "--mode", "2-2", "--set", "ground.friction_law=paper", "--set", FOOTPAD)
+    assert done.code == 1
+    missed = [line for line in done.err.splitlines() if line.startswith("missed: ")]
+    fall = "fall of any account of what is dissipated"
+    for case in ("2-2", "2-2, slope of 5 deg", "2-2, side load of a tenth of the weight"):
+        assert any(line.startswith(f"missed: {case}: {fall}") for line in missed)
+    assert any("slope of 5 deg: drift of a footpad" in line for line in missed)
+
+
+def test_what_friction_cannot_hold_is_not_asked_to_rest(command):
+    done = command("audit", "--mode", "2-2", "--set", "ground.friction=0.05", "--json")
+    cases = {a["case"]: a for a in json.loads(done.out)["audits"]}
+    asked = {
+        name: {c["id"] for c in a["checks"] if c["applies"]} & {"rest_drift", "rest_phase"}
+        for name, a in cases.items()
+    }
+    assert len(asked["as it is"]) == 2
+    assert asked["slope of 5 deg"] == asked["side load of a tenth of the weight"] == set()
 
 
 @pytest.mark.parametrize(

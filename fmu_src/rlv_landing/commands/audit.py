@@ -18,10 +18,11 @@ from .printing import print_checked
 def audit(name: str | None, *, as_json: bool, **choice: Any) -> int:
     """Audit energy, liquid mass, momentum, rest and convergence of a landing.
 
-    It takes a preset (default yue2022-figures) or a parameter file. Momentum is audited in free
-    flight and in contact, against the integral of contact forces and weight. Every value has a
-    bound, which is printed with its reason. Both drop tests are audited unless --mode names one.
-    The exit code is 1 when a bound is missed.
+    It takes a preset (default yue2022-figures) or a parameter file. Energy, mass and rest are also
+    audited on a slope of 5 deg and under a steady side load of a tenth of the weight. Momentum is
+    audited in free flight and in contact, against the integral of contact forces and weight. Every
+    value has a bound, which is printed with its reason. Both drop tests are audited unless --mode
+    names one. The exit code is 1 when a bound is missed.
 
     \b
     rlv-landing audit yue2022-figures

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from .ground.kinds import ground_force
+from .ground.kinds import friction_energy, ground_force
 from .ground.normal import normal_energy
 from .records import FootMotion, LegForces, LegModel, LegState, LegStatus, StrutMotion
 from .struts.kinds import auxiliary_strut, auxiliary_strut_energy, main_strut, main_strut_status
@@ -78,6 +78,7 @@ def leg_status(leg: LegState, forces: LegForces, depth: float, p: LegModel) -> L
         stop=strut.held_by_stop,
         auxiliary=auxiliary_strut_energy(forces.auxiliary_stroke, p),
         contact=normal_energy(depth, p),
+        friction=friction_energy(leg.q1, leg.q2, p),
         pressure_upper=strut.pressure_upper,
         pressure_lower=strut.pressure_lower,
         liquid_mass=strut.liquid_mass,

@@ -142,6 +142,10 @@ class LegModel(NamedTuple):
     Ka: float
     ek: float
     Ca: float
+    g_t: float
+    g_c: float
+    k_play: float
+    c_play: float
     # ground
     Kg: float
     en: float
@@ -154,6 +158,8 @@ class LegModel(NamedTuple):
     Cr: float
     v_dir: float
     tau_sr: float
+    K_t: float
+    zone: float  # [m]
     share_1: (
         float  # part of mu^2 along 1 at rest: 1/2; 1 for a leg that lies in the symmetric plane
     )
@@ -213,6 +219,13 @@ class AxialForce(NamedTuple):
     dissipated: float  # [W]
 
 
+class Bearing(NamedTuple):
+    """How far the faces of a joint with play have come to bear on one side."""
+
+    u: float  # elongation of what they press on [m]
+    slope: float  # its derivative by the joint's motion
+
+
 class StrutMotion(NamedTuple):
     """A strut between its joint on the body and the footpad; `e` points to the footpad."""
 
@@ -259,6 +272,7 @@ class FrictionForce(NamedTuple):
     f2: float  # on the footpad along 2 [N]
     dq1: float  # rate of q1 [m/s]
     dq2: float  # rate of q2 [m/s]
+    dissipated: float  # [W]
 
 
 class GroundForce(NamedTuple):
@@ -270,7 +284,7 @@ class GroundForce(NamedTuple):
     dq1: float  # [m/s]
     dq2: float  # [m/s]
     dissipated: float  # by the normal damping [W]
-    friction: float  # taken by friction [W]
+    friction: float  # dissipated by friction [W]
 
 
 class LegForces(NamedTuple):
@@ -303,7 +317,7 @@ class LegForces(NamedTuple):
     stop: float
     auxiliary_dissipated: float
     contact: float  # dissipated by the ground's normal damping
-    friction: float  # taken by friction, part of it held by its displacement
+    friction: float  # dissipated by friction
 
 
 class LegStatus(NamedTuple):
@@ -313,6 +327,7 @@ class LegStatus(NamedTuple):
     stop: float
     auxiliary: float
     contact: float
+    friction: float
     pressure_upper: float  # [Pa]
     pressure_lower: float  # [Pa]
     liquid_mass: float  # [kg]
@@ -378,6 +393,7 @@ class HeldEnergy(NamedTuple):
     liquid: float
     auxiliary: float
     contact: float
+    friction: float
     stop: float
 
 
@@ -408,6 +424,7 @@ class EnergyOutputs(NamedTuple):
     liquid: float
     auxiliary: float
     contact: float
+    friction: float
     stop: float
     dissipated_orifice: float
     dissipated_seal: float

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..validation.audit import Audit, Check
-from ..validation.bounds import BOUNDS
+from ..validation.audit import Audit
+from ..validation.bounds import BOUNDS, Check
 from ..validation.convergence import Errors
 from ..validation.paper import Comparison
 from ..validation.validate import Validation
@@ -136,15 +136,20 @@ def _curve_table(found: Validation) -> str:
 
 
 def audit_tables(audits: Iterable[Audit]) -> str:
-    """Energies by term, convergence, and every check with its bound and reason, mode by mode."""
+    """Energies by term, convergence, and every check with its bound and reason, case by case."""
     return "".join(
         _energy_table(a) + _convergence_table(a) + _check_table(a) + _rest_line(a) for a in audits
     )
 
 
+def _landed(found: Audit) -> str:
+    """The mode, and the case where it is not the vehicle as it is."""
+    return found.mode if found.convergence is not None else f"{found.mode}, {found.case}"
+
+
 def _energy_table(found: Audit) -> str:
     table = new_table(
-        f"{found.mode}: energies [J], rtol 1e-8", ("term",), ("start", "end", "change")
+        f"{_landed(found)}: energies [J], rtol 1e-8", ("term",), ("start", "end", "change")
     )
     sums = [0.0, 0.0]
     for term, (start, end) in found.energy.items():
@@ -169,8 +174,10 @@ def _energy_table(found: Audit) -> str:
 
 def _convergence_table(found: Audit) -> str:
     c = found.convergence
+    if c is None:
+        return ""
     table = new_table(
-        f"{found.mode}: error against a run at rtol {c.reference:g}, "
+        f"{_landed(found)}: error against a run at rtol {c.reference:g}, "
         "of the largest strut force and stroke",
         (),
         ("rtol", "steps on the arc", "force", "stroke", "steps of the landing", "force", "stroke"),
@@ -191,7 +198,7 @@ def _convergence_table(found: Audit) -> str:
 
 def _check_table(found: Audit) -> str:
     table = new_table(
-        f"{found.mode}: audit", ("check",), ("value", "bound"), ("", "why this bound")
+        f"{_landed(found)}: audit", ("check",), ("value", "bound"), ("", "why this bound")
     )
     for check in found.checks:
         b = BOUNDS[check.id]
@@ -218,8 +225,8 @@ def _rest_line(found: Audit) -> str:
     )
     strokes = ", ".join(f"{1e3 * r[f'stroke_{leg}']:.2f}" for leg in (1, 2, 3, 4))
     return (
-        f"{found.mode} at rest: {settled}; pitch {r['pitch'] * 57.29577951308232:+.3f} deg, "
-        f"strokes {strokes} mm, "
+        f"{_landed(found)} at rest: {settled}; "
+        f"pitch {r['pitch'] * 57.29577951308232:+.3f} deg, strokes {strokes} mm, "
         f"stability margin {r['stability_margin']:.3f} m\n\n"
     )
 
@@ -231,7 +238,7 @@ def missed_lines(audits: Iterable[Audit]) -> list[str]:
         for check in found.missed:
             b = BOUNDS[check.id]
             lines.append(
-                f"{found.mode}: {b.what}: {check.value:.3g} {b.unit}".rstrip()
+                f"{_landed(found)}: {b.what}: {check.value:.3g} {b.unit}".rstrip()
                 + f", {b.side} {b.limit:g} {b.unit}".rstrip()
                 + " is required"
             )

@@ -1,8 +1,12 @@
-"""The bounds of an audit, each with its reason."""
+"""The bounds of an audit, each with its reason, and a value with its bound."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Literal, NamedTuple
+
+# tolerance of the landings that are held against exact laws
+TIGHT_RTOL = 1e-8
 
 
 class Bound(NamedTuple):
@@ -38,6 +42,14 @@ BOUNDS: dict[str, Bound] = {
         1e-3,
         "at most",
         "a tenth of a per cent is below any use of the balance",
+    ),
+    "dissipated": Bound(
+        "fall of any account of dissipated energy within 10 s, rtol 1e-8, of the energy turned over",
+        "",
+        1e-9,
+        "at most",
+        "what is lost stays lost: only the integrator's error is left; "
+        "friction_law = paper supplies energy and misses it",
     ),
     "liquid_mass": Bound(
         "change of a damper's liquid mass",
@@ -95,6 +107,14 @@ BOUNDS: dict[str, Bound] = {
         "at most",
         "a damper that creeps by 0.1 mm/s moves 1 mm in 10 s",
     ),
+    "rest_drift": Bound(
+        "drift of a footpad in the 5 s after that",
+        "m/s",
+        1e-9,
+        "at most",
+        "what friction holds does not creep: 1e-6 mm/s is 0.1 mm in a day; "
+        "friction_law = paper creeps on slopes",
+    ),
     "rest_phase": Bound(
         "settled 10 s after first contact, never toppled (1: yes)",
         "",
@@ -132,3 +152,23 @@ BOUNDS: dict[str, Bound] = {
         "an instant's error of a contact's time is a force's error there",
     ),
 }
+
+
+@dataclass(frozen=True)
+class Check:
+    """One value and its bound, by the bound's `id`.
+
+    `applies` is False where the bound is not valid for these parameters.
+    """
+
+    id: str
+    value: float
+    applies: bool = True
+
+    @property
+    def passed(self) -> bool:
+        """Whether the value is on the right side of its bound, or the bound does not apply."""
+        bound = BOUNDS[self.id]
+        return not self.applies or (
+            self.value <= bound.limit if bound.side == "at most" else self.value >= bound.limit
+        )

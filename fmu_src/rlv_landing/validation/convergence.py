@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -67,6 +68,17 @@ class Convergence:
     contacts: tuple[Errors, ...]
     smooth_slope: float
     contacts_slope: float
+
+    def record(self) -> dict[str, Any]:
+        """The same for JSON."""
+        return {
+            "reference_rtol": self.reference,
+            "smooth_arc": [self.start, self.end],
+            "smooth": [vars(e) for e in self.smooth],
+            "contacts": [vars(e) for e in self.contacts],
+            "smooth_slope": self.smooth_slope,
+            "contacts_slope": self.contacts_slope,
+        }
 
 
 def convergence(parameters: Parameters, until: float) -> Convergence:

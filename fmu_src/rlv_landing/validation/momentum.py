@@ -1,21 +1,28 @@
-"""Linear and angular momentum of the whole vehicle, from a history's outputs alone.
+"""Linear and angular momentum of the whole vehicle, and what a landing must conserve of them.
 
-No kernel of the core is used, so that the result is an independent check.
+They come from a history's outputs alone. No kernel of the core is used, so that the result is an
+independent check.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_simpson
 
 from ..history import History
+from ..landing import Landing
 from ..parameters import Parameters, azimuth
-from ..quantities import LEGS, MODES
+from ..quantities import LEGS, MODES, OUTPUT_NAMES
+from .bounds import TIGHT_RTOL, Check
+from .cases import mass
 
 Array = NDArray[np.float64]
+FLIGHT = 0.3
+SAMPLE_STEP, FINE_STEP, FINE_BEFORE, FINE_AFTER = 5e-5, 1e-6, 5e-5, 5e-4
 
 
 @dataclass(frozen=True)
@@ -114,3 +121,69 @@ def impulse(history: History, parameters: Parameters) -> Momentum:
         np.asarray(cumulative_simpson(f, x=t, initial=0.0)) for f in (force_x, force_y, moment)
     )
     return Momentum(x, y, turn, np.zeros(len(t)))
+
+
+def flight(parameters: Parameters) -> list[Check]:
+    """Momentum in 0.3 s of turning free flight.
+
+    The flight's state at touchdown is the landing's, but faster downward by gravity times 0.3 s.
+    """
+    drop, g = parameters.drop, parameters.ground.gravity
+    rate = drop.pitch_rate if abs(drop.pitch_rate) > 0.1 else 0.2
+    speed = max(drop.vertical_velocity - g * FLIGHT, -50.0)
+    flying = replace(
+        parameters,
+        drop=replace(drop, contact_time=FLIGHT, vertical_velocity=speed, pitch_rate=rate),
+        by_mode={},
+    )
+    history = Landing(flying, rtol=TIGHT_RTOL).run(0.95 * FLIGHT)
+    found, given = momentum(history, flying), impulse(history, flying)
+    size = mass(parameters) * max(g, 1.0) * FLIGHT
+    linear = (
+        max(np.abs(a - a[0] - b).max() for a, b in ((found.x, given.x), (found.y, given.y))) / size
+    )
+    angular = np.ptp(found.about_cg) / np.abs(found.about_cg).max()
+    consistent = parameters.vehicle.transverse_load_at == "footpad"
+    return [
+        Check("flight_momentum", float(linear)),
+        Check("flight_angular", float(angular), consistent),
+    ]
+
+
+def contact(parameters: Parameters, until: float) -> list[Check]:
+    """Change of momentum against the integral of contact forces and weight."""
+    landing = Landing(parameters, rtol=TIGHT_RTOL)
+    coarse = np.arange(int(until / SAMPLE_STEP) + 1) * SAMPLE_STEP
+    history = _sample(landing, coarse)
+    active = np.array([history[f"leg[{leg}].contact.active"] for leg in LEGS])
+    changes = np.flatnonzero(np.any(np.diff(active, axis=1) != 0.0, axis=0))
+    fine = [
+        np.arange(coarse[i] - FINE_BEFORE, coarse[i + 1] + FINE_AFTER, FINE_STEP) for i in changes
+    ]
+    times = np.unique(np.round(np.concatenate([coarse, *fine]), 9))
+    landing.reset()
+    history = _sample(landing, times[(times >= 0.0) & (times <= until)])
+    found, given = momentum(history, parameters), impulse(history, parameters)
+
+    def left(a: Any, b: Any) -> float:
+        return float(np.abs(a - a[0] - b).max() / np.ptp(a))
+
+    return [
+        Check("momentum_x", left(found.x, given.x)),
+        Check("momentum_y", left(found.y, given.y)),
+        Check(
+            "angular",
+            left(found.about_origin, given.about_origin),
+            parameters.vehicle.transverse_load_at == "footpad",
+        ),
+    ]
+
+
+def _sample(landing: Landing, times: Any) -> History:
+    def values(time: float) -> list[float]:
+        landing.advance_to(time)
+        return landing.values()
+
+    return History(
+        times, OUTPUT_NAMES, np.array([values(t) for t in times.tolist()]), landing.parameters
+    )

@@ -136,7 +136,7 @@ class Planar(PlanarMotion):
         body = body_state(y, 0)
         turn = turned(body.pitch, 0.0)
         height = p.m_u * body.y
-        liquid = auxiliary = contact = stop = 0.0
+        liquid = auxiliary = contact = friction = stop = 0.0
         for i in range(self.groups):
             leg = leg_state(y, BODY + LEG * i)
             place = leg_place(self._places, i)
@@ -145,14 +145,15 @@ class Planar(PlanarMotion):
             liquid += place.legs * s.main
             auxiliary += place.legs * s.auxiliary
             contact += place.legs * s.contact
+            friction += place.legs * s.friction
             stop += place.legs * s.stop
-        return HeldEnergy(kinetic, p.g * height, liquid, auxiliary, contact, stop)
+        return HeldEnergy(kinetic, p.g * height, liquid, auxiliary, contact, friction, stop)
 
     def _put_energies(self, y: Doubles, held: HeldEnergy, out: Doubles, at: int) -> None:
         a = accounts(y, BODY + LEG * self.groups)
-        mechanical = (
-            held.kinetic + held.potential + held.liquid + held.auxiliary + held.contact + held.stop
-        )
+        motion = held.kinetic + held.potential
+        stored = held.liquid + held.auxiliary + held.contact + held.friction + held.stop
+        mechanical = motion + stored
         dissipated = a.orifice + a.seal + a.stop + a.auxiliary + a.contact + a.friction
         supplied = a.external + a.ground + a.transverse
         put(
@@ -162,6 +163,7 @@ class Planar(PlanarMotion):
                 liquid=held.liquid,
                 auxiliary=held.auxiliary,
                 contact=held.contact,
+                friction=held.friction,
                 stop=held.stop,
                 dissipated_orifice=a.orifice,
                 dissipated_seal=a.seal,

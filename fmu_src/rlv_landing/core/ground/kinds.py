@@ -14,20 +14,23 @@ from typing import NamedTuple
 from ..memory import chosen
 from ..records import FootMotion, FrictionBound, FrictionForce, GroundForce, LegModel
 from .normal import normal_force
-from .paper_friction import paper_friction, paper_friction_bound
+from .paper_friction import paper_friction, paper_friction_bound, paper_friction_energy
+from .passive_friction import passive_friction, passive_friction_bound, passive_friction_energy
 
 
 class FrictionLaw(NamedTuple):
-    """A law of friction: what it gives at (motion, normal force, q1, q2), and where it lets (q1,
-    q2) be at the end of a step.
+    """A law of friction: what it gives at (motion, normal force, q1, q2), where it lets (q1, q2) be
+    at the end of a step, and the energy [J] that it holds there.
     """
 
     force: Callable[[FootMotion, float, float, float, LegModel], FrictionForce]
     bound: Callable[[float, float, LegModel], FrictionBound]
+    energy: Callable[[float, float, LegModel], float]
 
 
 FRICTION_LAWS: dict[str, FrictionLaw] = {
-    "paper": FrictionLaw(paper_friction, paper_friction_bound),
+    "passive": FrictionLaw(passive_friction, passive_friction_bound, passive_friction_energy),
+    "paper": FrictionLaw(paper_friction, paper_friction_bound, paper_friction_energy),
 }
 
 
@@ -41,13 +44,13 @@ def friction_bound(q1: float, q2: float, p: LegModel) -> FrictionBound:
     return chosen(FRICTION_LAWS, p.friction_kind).bound(q1, q2, p)
 
 
-def ground_force(foot: FootMotion, q1: float, q2: float, p: LegModel) -> GroundForce:
-    """The ground on a footpad, in the ground's axes.
+def friction_energy(q1: float, q2: float, p: LegModel) -> float:
+    """Energy [J] that the friction law holds."""
+    return chosen(FRICTION_LAWS, p.friction_kind).energy(q1, q2, p)
 
-    Friction power [W] is taken from the motion, part of it held by the law's states.
-    """
+
+def ground_force(foot: FootMotion, q1: float, q2: float, p: LegModel) -> GroundForce:
+    """The ground on a footpad, in the ground's axes."""
     n = normal_force(foot.depth, foot.depth_rate, p)
     f = friction(foot, n.force, q1, q2, p)
-    return GroundForce(
-        n.force, f.f1, f.f2, f.dq1, f.dq2, n.dissipated, -(f.f1 * foot.slip_1 + f.f2 * foot.slip_2)
-    )
+    return GroundForce(n.force, f.f1, f.f2, f.dq1, f.dq2, n.dissipated, f.dissipated)

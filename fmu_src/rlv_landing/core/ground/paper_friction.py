@@ -1,7 +1,10 @@
 """The paper's friction: reset-integral with Stribeck effect, along each of the ground's directions
 by itself. Eqs. (16), (17).
 
-Its states q1, q2 are the friction displacements [m] along 1 and 2.
+Its states q1, q2 are the friction displacements [m] along 1 and 2. The law is not passive: where
+the normal force or the direction of slip changes under a displacement, it may supply energy. So
+nothing is called held, and what is called dissipated is all that the law takes, which may be less
+than 0.
 """
 
 from __future__ import annotations
@@ -51,7 +54,8 @@ def paper_friction(foot: FootMotion, Fn: float, q1: float, q2: float, p: LegMode
     along2 = friction_along(
         foot.depth, Fn, p.mu * sqrt((v2 * v2 + (1.0 - p.share_1) * w) / speed), v2, q2, p
     )
-    return FrictionForce(along1.force, along2.force, along1.rate, along2.rate)
+    taken = -(along1.force * v1 + along2.force * v2)
+    return FrictionForce(along1.force, along2.force, along1.rate, along2.rate, taken)
 
 
 def paper_friction_bound(q1: float, q2: float, p: LegModel) -> FrictionBound:
@@ -59,3 +63,8 @@ def paper_friction_bound(q1: float, q2: float, p: LegModel) -> FrictionBound:
     turned to slip is taken off.
     """
     return FrictionBound(min(max(q1, -p.s_r0), p.s_r0), min(max(q2, -p.s_r0), p.s_r0))
+
+
+def paper_friction_energy(q1: float, q2: float, p: LegModel) -> float:
+    """Nothing is called held."""
+    return 0.0

@@ -13,6 +13,7 @@ from ..memory import chosen
 from ..records import AxialForce, LegModel, StrutForce, StrutStatus
 from .elastic import elastic, elastic_energy
 from .liquid_spring import liquid_spring, liquid_spring_status
+from .play import elastic_with_play, elastic_with_play_energy
 
 
 class MainStrutLaw(NamedTuple):
@@ -39,6 +40,7 @@ MAIN_STRUTS: dict[str, MainStrutLaw] = {
 
 AUXILIARY_STRUTS: dict[str, AuxiliaryStrutLaw] = {
     "elastic": AuxiliaryStrutLaw(elastic, elastic_energy),
+    "elastic-with-play": AuxiliaryStrutLaw(elastic_with_play, elastic_with_play_energy),
 }
 
 

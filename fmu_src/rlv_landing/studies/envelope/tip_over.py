@@ -39,6 +39,7 @@ LOCKED: dict[str, float | str] = {
     "ground.damping": 5e4,
     "ground.damping_depth": 1e-6,
     "ground.friction": 3.0,
+    "ground.tangential_stiffness": 1e9,
     "ground.stick_displacement": 1e-4,
     "ground.stribeck_gain": 0.0,
     "ground.stick_damping": 1e4,

@@ -1,0 +1,52 @@
+"""The elastic auxiliary strut with play in its joints: it bears only where its elongation has taken
+up the play, g_t in tension or g_c in compression. [closure]
+
+The faces come to bear over a part of the play, smoothly, so that forces have slopes everywhere.
+"""
+
+from __future__ import annotations
+
+from math import pow, sqrt
+
+from ..records import AxialForce, Bearing, LegModel
+
+# part of the whole play over which the faces come to bear
+BEARING_PART = 0.03
+
+
+def bearing(x: float, p: LegModel) -> Bearing:
+    """The spring's elongation u where the joint has moved `x` [m] past one end of its play: 0 well
+    inside, x well past it.
+
+    u = (x + sqrt(x^2 + eps^2))/2, u' = u/sqrt(x^2 + eps^2).
+    """
+    eps = BEARING_PART * (p.g_t + p.g_c)
+    root = sqrt(x * x + eps * eps)
+    u = 0.5 * (x + root) if x > 0.0 else 0.5 * eps * eps / (root - x)
+    return Bearing(u, u / root)
+
+
+def elastic_with_play(s: float, v: float, p: LegModel) -> AxialForce:
+    """The strut at stroke `s` [m] and stroke rate `v` [m/s]; with the elongation e = -s, tension
+    positive,
+
+    F = Ka (u+^ek u+' - u-^ek u-') + k_play e + Ca e' [c_play + (1 - c_play) min(1, u+' + u-')],
+    u+ of e - g_t and u- of -e - g_c. The factor u' makes the spring's energy a closed form for
+    every ek.
+    """
+    tension = bearing(-s - p.g_t, p)
+    compression = bearing(s - p.g_c, p)
+    pushes = pow(compression.u, p.ek) * compression.slope
+    spring = p.Ka * (pushes - pow(tension.u, p.ek) * tension.slope) + p.k_play * s
+    borne = min(1.0, tension.slope + compression.slope)
+    damping = p.Ca * (p.c_play + (1.0 - p.c_play) * borne)
+    return AxialForce(spring + damping * v, damping * v * v)
+
+
+def elastic_with_play_energy(s: float, p: LegModel) -> float:
+    """Energy [J] that the spring holds at stroke `s` [m]:
+    Ka/(ek + 1) (u+^(ek + 1) + u-^(ek + 1)) + k_play s^2/2.
+    """
+    n = p.ek + 1.0
+    borne = pow(bearing(-s - p.g_t, p).u, n) + pow(bearing(s - p.g_c, p).u, n)
+    return p.Ka / n * borne + 0.5 * p.k_play * s * s

@@ -1,0 +1,59 @@
+"""The cases that an audit lands a vehicle in: as it is, on a slope, under a steady side load."""
+
+from __future__ import annotations
+
+from math import radians, tan
+from typing import NamedTuple
+
+from ..landing import Landing
+from ..parameters import Parameters
+from ..quantities import LEGS
+
+
+class Case(NamedTuple):
+    """A vehicle to be landed: its parameters, and a steady side load in parts of its weight."""
+
+    name: str
+    parameters: Parameters
+    side_load: float = 0.0
+
+    def landing(self, rtol: float) -> Landing:
+        """A landing of this case at time 0, with its load on."""
+        landing = Landing(self.parameters, rtol=rtol)
+        landing.set_inputs({"external.force_x": self.side_load * weight(self.parameters)})
+        return landing
+
+    @property
+    def holds(self) -> bool:
+        """Whether friction can hold the vehicle.
+
+        It can if the ground's slope and the side load together are within the friction angle.
+        """
+        ground = self.parameters.ground
+        return abs(tan(ground.slope)) + abs(self.side_load) < ground.friction
+
+
+SLOPE, SIDE_LOAD = radians(5.0), 0.1
+
+
+def cases(parameters: Parameters) -> tuple[Case, ...]:
+    """The cases of an audit.
+
+    The vehicle as the parameters say, on a slope of 5 deg, and under a steady side load of a tenth
+    of the weight.
+    """
+    return (
+        Case("as it is", parameters),
+        Case("slope of 5 deg", parameters.with_values({"ground.slope": SLOPE})),
+        Case("side load of a tenth of the weight", parameters, SIDE_LOAD),
+    )
+
+
+def mass(parameters: Parameters) -> float:
+    """Mass [kg] of body and footpads."""
+    return parameters.vehicle.mass + len(LEGS) * parameters.vehicle.footpad_mass
+
+
+def weight(parameters: Parameters) -> float:
+    """Weight [N] of body and footpads."""
+    return mass(parameters) * parameters.ground.gravity
