@@ -44,7 +44,7 @@ BOUNDS: dict[str, Bound] = {
         "a tenth of a per cent is below any use of the balance",
     ),
     "dissipated": Bound(
-        "fall of any account of dissipated energy within 10 s, rtol 1e-8, of the energy turned over",
+        "fall of any account of dissipated energy in 10 s, rtol 1e-8, of the energy turned over",
         "",
         1e-9,
         "at most",
