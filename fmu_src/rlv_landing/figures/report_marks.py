@@ -103,11 +103,9 @@ def marks(
             continue
         factor = {"N": 1e-3}.get(s.unit, 1.0)
         timed = own.get(f"{name}-t")
-        ours = (
-            float(history.time[np.argmin(np.abs(column - c.ours * factor))])
-            if np.isfinite(c.ours)
-            else 0.0
-        )
+        if timed is None and not np.isfinite(c.ours):
+            continue  # no time at which to draw it
+        ours = float(history.time[np.argmin(np.abs(column - c.ours * factor))])
         if "settled" in s.event:
             ours = min(float(history.time[-1]), 1.0) - 0.1
         when = timed.scalar.simulation if timed else ours
