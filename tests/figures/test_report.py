@@ -8,7 +8,6 @@ from html.parser import HTMLParser
 from math import isnan
 
 import pytest
-from study_tools import AS_IDENTIFIED
 
 from rlv_landing import LandingError, load_preset
 from rlv_landing.figures.report import render_report, write_whole
@@ -107,16 +106,18 @@ def test_names_are_escaped(text):
     assert "yue2022-figures &lt;&amp;&gt;" in text
 
 
-def test_the_command_writes_the_page_and_does_not_overwrite_unless_told(command, tmp_path):
+def test_the_command_writes_the_page_and_does_not_overwrite_unless_told(
+    as_identified, command, tmp_path
+):
     path = tmp_path / "report.html"
-    assert command("validate", *AS_IDENTIFIED, "--mode", "2-2", "--html", str(path)).code == 0
+    assert command("validate", *as_identified, "--mode", "2-2", "--html", str(path)).code == 0
     assert path.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
     path.write_text("precious")
-    done = command("validate", *AS_IDENTIFIED, "--mode", "2-2", "--html", str(path))
+    done = command("validate", *as_identified, "--mode", "2-2", "--html", str(path))
     assert (done.code, path.read_text()) == (2, "precious")
     assert "report.html exists; --force overwrites it" in done.err
     assert (
-        command("validate", *AS_IDENTIFIED, "--mode", "2-2", "--html", str(path), "--force").code
+        command("validate", *as_identified, "--mode", "2-2", "--html", str(path), "--force").code
         == 0
     )
     assert path.stat().st_size > 100_000

@@ -11,10 +11,6 @@ from typing import Any
 
 from pyarrow import parquet
 
-# the laws that the preset's numbers were identified with
-AS_IDENTIFIED = (
-    "--set", "ground.friction_law=paper", "--set", "vehicle.transverse_load_at=joint",
-)  # fmt: skip
 # short landings: what these tests are about is what happens around them
 STUDY = """
 [study]

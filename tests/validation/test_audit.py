@@ -144,7 +144,7 @@ def test_the_papers_friction_is_told_to_supply_energy_and_to_creep(command):
     done = command("audit", "--mode", "2-2", "--set", "ground.friction_law=paper", "--set", FOOTPAD)
     assert done.code == 1
     missed = [line for line in done.err.splitlines() if line.startswith("missed: ")]
-    fall = "fall of any account of what is dissipated"
+    fall = "fall of any account of dissipated energy"
     for case in ("2-2", "2-2, slope of 5 deg", "2-2, side load of a tenth of the weight"):
         assert any(line.startswith(f"missed: {case}: {fall}") for line in missed)
     assert any("slope of 5 deg: drift of a footpad" in line for line in missed)

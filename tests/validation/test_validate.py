@@ -7,7 +7,6 @@ import json
 import numpy as np
 import pytest
 from pytest import approx
-from study_tools import AS_IDENTIFIED
 
 from rlv_landing import LandingError, load_preset
 from rlv_landing.history import History
@@ -19,8 +18,8 @@ FORCE, STROKE = "leg[1].main_strut.force", "leg[1].main_strut.stroke"
 BROKEN = "main_strut.orifice_area_compression=60 mm2"
 
 
-def test_json_has_every_printed_scalar_with_the_errors_that_follow_from_it(command):
-    done = command("validate", *AS_IDENTIFIED, "--json")
+def test_json_has_every_printed_scalar_with_the_errors_that_follow_from_it(as_identified, command):
+    done = command("validate", *as_identified, "--json")
     assert done.code == 0, done.err
     record = json.loads(done.out)
     scalars = {s["id"]: s for s in record["scalars"]}
@@ -41,8 +40,8 @@ def test_json_has_every_printed_scalar_with_the_errors_that_follow_from_it(comma
     assert {mode: len(legs) for mode, legs in record["measures"].items()} == {"2-2": 4, "1-2-1": 4}
 
 
-def test_tables_have_every_scalar_the_measures_and_all_three_counts(command):
-    done = command("validate", *AS_IDENTIFIED, "--mode", "1-2-1")
+def test_tables_have_every_scalar_the_measures_and_all_three_counts(as_identified, command):
+    done = command("validate", *as_identified, "--mode", "1-2-1")
     assert done.code == 0, done.err
     for printed in printed_scalars():
         assert (printed.id in done.out) == (printed.mode == "1-2-1")
