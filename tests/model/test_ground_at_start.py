@@ -152,8 +152,8 @@ def test_ground_inputs_after_the_start_do_not_move_the_vehicle(mode):
             {"drop.contact_time": 0.5, "drop.vertical_velocity": -6.0},
             {"ground.heave_rate": -9.0},
             (
-                r"drop\.contact_time = 0\.5 s of free flight would pass \d\.\d+ m below the ground, "
-                r"the limit is 1e-06 m"
+                r"drop\.contact_time = 0\.5 s of free flight would pass \d\.\d+ m below the "
+                r"ground, the limit is 1e-06 m"
             ),
         ),
         (
