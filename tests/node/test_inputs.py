@@ -137,6 +137,11 @@ def test_inputs_act_until_the_timeout_and_repeat_the_run_from_its_log(
     )
     pushing = remote.node.create_publisher(WrenchStamped, "/landing/external_wrench", 10)
     moving = remote.node.create_publisher(JointState, "/landing/ground", 10)
+    # steps that are made before all are connected are lost, and the landing has only 1000
+    for publisher in (pushing, moving):
+        remote.until(lambda publisher=publisher: publisher.get_subscription_count() > 0)
+    for topic in (APPLIED_WRENCH, APPLIED_GROUND):
+        remote.until(lambda topic=topic: remote.node.count_publishers(f"/landing/{topic.name}") > 0)
 
     def publish() -> None:
         pushing.publish(wrench(x=800.0, z=-300.0, torque=40.0))
