@@ -25,16 +25,20 @@ def parse_value(q: Quantity, value: Any, unit: str = "") -> float | str:
     Raises:
         LandingError: No number, an unknown unit, a unit of another dimension, or out of bounds.
     """
-    if q.choices or isinstance(value, bool) or not isinstance(value, (int, float, str)):
+    if q.choices or not is_number(value):
         return check_value(q, value)
     return check_value(q, to_si(q, value, unit))
 
 
 def parse_values(q: Quantity, values: Sequence[Any]) -> list[float | str]:
     """The values of `q` in SI that are given together, as `parse_value` and `check_together`."""
-    parsed = [parse_value(q, value) for value in values]
-    check_together(q, values)
-    return parsed
+    check_together(q, [v for v in values if is_number(v)])
+    return [parse_value(q, value) for value in values]
+
+
+def is_number(value: Any) -> bool:
+    """Whether a value from TOML can be a number: one, or a text."""
+    return isinstance(value, (int, float, str)) and not isinstance(value, bool)
 
 
 def check_together(q: Quantity, values: Sequence[Any]) -> None:

@@ -96,6 +96,35 @@ def test_help_teaches(command):
         (("simulate", "--rtol", "3"), "rtol = 3 is outside"),
         (("simulate", "--output", "x.txt"), "must end in .csv"),
         (("simulate", "--output", "no/such/x.csv"), "there is no folder no/such"),
+        (("simulate", "--output", "x" * 300 + ".csv"), "cannot be written: File name too long"),
+        (("simulate", "--set", "drop.tilt=9**9**9**9 deg"), "nothing is calculated"),
+        (("simulate", "--set", "ground.friction=0,05"), "a point instead of the comma: 0.05"),
+        (("simulate", "--input", "ground.tilt=1,5 deg"), "a point instead of the comma: 1.5 deg"),
+        (("simulate", "--until", "1_0"), "a number has no underscores"),
+        (("simulate", "--until", "1 m"), "give it in s"),
+        (("simulate", "--rtol", "9" * 500), "500 characters, more than 100"),
+        (("envelope", "--cells", "1_0"), "not a valid integer"),
+        (("envelope", "--cells", "9" * 500), "more than 18 digits"),
+        (
+            ("envelope", "--x", "drop.tilt=-9..9 deg", "--y", "ground.friction=0..1"),
+            "drop.tilt = -9 has no unit, and '9 deg' beside it has one",
+        ),
+        (("envelope", "--limit", "main_strut.force=1,5 kN"), "a point instead of the comma"),
+        (
+            (
+                "envelope",
+                "--family",
+                "ground.slope=1,5 deg",
+                "--x",
+                "drop.tilt=-1..1",
+                "--y",
+                "ground.friction=0..1",
+            ),
+            "ground.slope = 1 has no unit",
+        ),
+        (("identify", "--bound", "main_strut.stroke_max=30..60 mm"), "30 has no unit"),
+        (("identify", "--bound", "main_strut.stroke_max=30 mm..60 deg"), "has the wrong unit"),
+        (("simulate", "--parameters", "/dev/zero"), "larger than 4 MiB"),
         (("simulate", "--compare", "--until", "0.3"), "the paper's scalars need it until"),
     ],
 )
@@ -104,8 +133,20 @@ def test_bad_input_is_one_clear_line_and_exit_code_2(tmp_path, arguments, messag
     assert done.returncode == 2
     assert message in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
+    assert len(done.stderr.strip()) <= 300
     assert "Traceback" not in done.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+def test_options_take_units(tmp_path):
+    done = run(
+        *("simulate", "--until", "100 ms", "--every", "10 ms", "--output", "l.csv"),
+        *("--input", "ground.tilt=\u22122 deg", "--set", "main_strut.area_upper=0.001077092 m2"),
+        cwd=tmp_path,
+    )
+    assert done.returncode == 0, done.stderr
+    data = np.loadtxt(tmp_path / "l.csv", delimiter=",", skiprows=1)
+    assert data[:, 0].tolist() == [k * 0.01 for k in range(11)]
 
 
 def test_files_are_not_overwritten_unless_told(tmp_path):

@@ -99,7 +99,11 @@ def check_writable(path: Path | None, ending: str, *, force: bool) -> None:
         return
     if path.suffix != ending:
         raise LandingError(f"{path} must end in {ending}")
-    if path.exists() and not force:
+    try:
+        exists, folder = path.exists(), path.resolve().parent.is_dir()
+    except OSError as e:
+        raise LandingError(f"{path} cannot be written: {e.strerror or e}") from None
+    if exists and not force:
         raise LandingError(f"{path} exists; --force overwrites it")
-    if not path.resolve().parent.is_dir():
+    if not folder:
         raise LandingError(f"there is no folder {path.parent} to write {path.name} to")

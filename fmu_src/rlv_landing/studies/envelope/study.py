@@ -17,7 +17,7 @@ from ...errors import LandingError, unknown
 from ...parameters import PARAMETER_QUANTITIES, Parameters, check_value
 from ...presets import to_toml
 from ...quantities import Quantity
-from ...values import check_together, parse_value, parse_values
+from ...values import check_together, is_number, parse_value, parse_values
 from .. import toml_keys
 from ..limits import LIMITS
 from ..outcome import DEFAULT_SLIDE
@@ -260,11 +260,12 @@ def _axis(document: Mapping[str, Any], key: str) -> Axis:
     q = variable(toml_keys.text(keys, "name", ""), "quantity for an axis")
     if q.choices:
         raise _no_axis(q)
+    given = [keys[key] for key in ("low", "high", "tolerance") if key in keys]
+    check_together(q, [v for v in given if is_number(v)])
     low, high = (float(parse_value(q, keys[bound])) for bound in ("low", "high"))
     tolerance = (high - low) / 128.0
     if "tolerance" in keys:
         tolerance = float(parse_value(replace(q, lo=0.0, hi=float("inf")), keys["tolerance"]))
-    check_together(q, [keys[key] for key in ("low", "high", "tolerance") if key in keys])
     return Axis(q.name, low, high, tolerance)
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ...errors import LandingError, unknown
 from ...parameters import PARAMETER_QUANTITIES, check_value
 from ...quantities import INPUT_QUANTITIES, Quantity, shown
-from ...values import check_together, to_si, unit_of
+from ...values import check_together, is_number, to_si, unit_of
 from .. import toml_keys
 
 Array = NDArray[np.float64]
@@ -192,7 +192,7 @@ class _Numbers:
         given = [entry[key] for key in keys if key in entry]
         values = entry.get("values")
         given += values if isinstance(values, list) else []
-        numbers = [v for v in given if _is_number(v)]
+        numbers = [v for v in given if is_number(v)]
         if not unit:
             check_together(q, numbers)
 
@@ -207,16 +207,12 @@ class _Numbers:
         return [v if self._q.choices else self._in_si("values", v) for v in values]
 
     def _in_si(self, key: str, value: Any) -> float:
-        if not _is_number(value):
+        if not is_number(value):
             raise LandingError(
                 f"factor {self._q.name}: {key} = {value!r} is not a number; "
                 f"give it in {self._unit or self._q.unit or 'plain numbers'}"
             )
         return to_si(self._q, value, self._unit)
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float, str)) and not isinstance(value, bool)
 
 
 def _check_range(q: Quantity, low: float, high: float, distribution: str) -> None:
