@@ -37,6 +37,8 @@ MODULES = (
     "parameters.py",
     "touchdown.py",
     "assembly.py",
+    "extremes.py",
+    "state.py",
     "landing.py",
 )
 # pythonfmu's command line, CSV tool and builder, which no slave needs

@@ -15,7 +15,7 @@ from pathlib import Path
 
 # these become C: records, and how arrays and records are accessed
 TRANSLATED = ("records", "access", "memory")
-MATH = "from cython cimport final\nfrom libc.math cimport cos, exp, expm1, fabs, log, pow, sin, sqrt, tanh\n"
+MATH = "from cython cimport final\nfrom libc.math cimport INFINITY as inf, cos, exp, expm1, fabs, log, pow, sin, sqrt, tanh\n"
 DATA = """
 cdef inline double* data(double[::1] numbers) noexcept nogil:
     return &numbers[0]

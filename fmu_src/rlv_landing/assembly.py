@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable, Mapping
-from math import inf
 
 from .core import (
     AUXILIARY_STRUTS,
@@ -130,9 +129,7 @@ def begin(solver: Solver, parameters: Parameters) -> None:
         solver.y[i] = value
     for i in range(solver.system.inputs):
         solver.u[i] = solver.u_rate[i] = 0.0
-    solver.steps = solver.rejected = solver.rhs_calls = 0.0
-    solver.h = inf
-    solver.restart(0.0)
+    solver.start(0.0)
 
 
 def _place(laws: Mapping[str, object], kind: str) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TextIO
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import LandingError, unknown
+from .extremes import Extreme
 from .parameters import Parameters
 
 
@@ -18,7 +19,8 @@ class History:
     """Columns named as the FMU's variables, in SI units, over `time` [s]:
     `history["leg[1].main_strut.force"]` is an array (n,).
 
-    `parameters` are those of the landing, where they are known.
+    `parameters` are those of the landing, where they are known. `extremes` by name are those of the
+    outputs over the whole span, between the samples, too; None where there are samples only.
     """
 
     def __init__(
@@ -27,6 +29,7 @@ class History:
         names: Sequence[str],
         data: NDArray[np.float64],
         parameters: Parameters | None = None,
+        extremes: Mapping[str, Extreme] | None = None,
     ) -> None:
         if data.shape != (len(time), len(names)):
             raise LandingError(
@@ -36,6 +39,7 @@ class History:
         self.names = tuple(names)
         self.data = data
         self.parameters = parameters
+        self.extremes = extremes
         self._index = {name: i for i, name in enumerate(self.names)}
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
