@@ -39,6 +39,8 @@ MODULES = (
     "touchdown.py",
     "driven_inputs.py",
     "assembly.py",
+    "extremes.py",
+    "state.py",
     "landing.py",
 )
 # pythonfmu's command line, CSV tool and builder, which no slave needs

@@ -16,7 +16,7 @@ from pathlib import Path
 TRANSLATED = ("records", "access", "memory")
 MATH = (
     "from cython cimport final\n"
-    "from libc.math cimport cos, exp, expm1, fabs, log, pow, sin, sqrt, tanh\n"
+    "from libc.math cimport INFINITY as inf, cos, exp, expm1, fabs, log, pow, sin, sqrt, tanh\n"
 )
 DATA = """
 cdef inline double* data(double[::1] numbers) noexcept nogil:

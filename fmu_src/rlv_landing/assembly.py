@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable, Mapping
-from math import inf
 
 from .core import (
     AUXILIARY_STRUTS,
@@ -162,9 +161,7 @@ def begin(
     ):
         for i, value in enumerate(numbers):
             target[i] = value
-    solver.steps = solver.rejected = solver.rhs_calls = 0.0
-    solver.h = inf
-    solver.restart(0.0)
+    solver.start(0.0)
 
 
 def _place(laws: Mapping[str, object], kind: str) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from array import array
 from collections.abc import Mapping
 from math import isfinite
 from typing import Any
@@ -43,7 +42,6 @@ class DrivenInputs:
 
     def __init__(self, solver: Solver) -> None:
         self._solver = solver
-        self._y = array("d", bytes(8 * solver.n))
         self.adopt((0.0, 0.0))
 
     def adopt(self, goal: tuple[float, float]) -> None:
@@ -110,11 +108,11 @@ class DrivenInputs:
             rates: Rates of its motion to a new position [m/s, rad/s].
         """
         solver = self._solver
-        solver.interpolate(t, self._y)
+        solver.cut(t)
         u, u_rate = list(setting[0]), list(setting[1])
         for i, at, rate in zip(POSITIONS, position, rates):
             u[i], u_rate[i] = at, rate
-        for target, numbers in ((solver.y, self._y), (solver.u, u), (solver.u_rate, u_rate)):
+        for target, numbers in ((solver.u, u), (solver.u_rate, u_rate)):
             for i, value in enumerate(numbers):
                 target[i] = value
         solver.restart(t)

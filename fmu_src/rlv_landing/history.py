@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TextIO
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import LandingError, unknown
+from .extremes import Extreme
 from .parameters import Parameters
 from .touchdown import AT_REST, GroundMotion
 
@@ -26,6 +27,8 @@ class History:
         data: The columns, (n, names).
         parameters: The landing's parameters, where they are known.
         ground: Motion of the ground from the first of the times on; by default it is at rest.
+        extremes: Extremes of the outputs by name, over the whole span, also between the samples;
+            None where there are samples only.
 
     Raises:
         LandingError: `data` has another shape, or a column is unknown.
@@ -38,6 +41,7 @@ class History:
         data: NDArray[np.float64],
         parameters: Parameters | None = None,
         ground: GroundMotion = AT_REST,
+        extremes: Mapping[str, Extreme] | None = None,
     ) -> None:
         if data.shape != (len(time), len(names)):
             raise LandingError(
@@ -49,6 +53,7 @@ class History:
         self.data = data
         self.parameters = parameters
         self.ground = ground
+        self.extremes = extremes
         self._index = {name: i for i, name in enumerate(self.names)}
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:

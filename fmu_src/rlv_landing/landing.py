@@ -6,12 +6,13 @@ from array import array
 from collections.abc import Callable, Mapping
 from math import inf, isfinite
 from operator import itemgetter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from .assembly import NO_INPUTS, begin, build_system
 from .core import DormandPrince, Exponential, Inputs, Solver
 from .driven_inputs import DrivenInputs, changed_setting
 from .errors import LandingError, unknown
+from .extremes import Extreme, by_name
 from .parameters import Parameters
 from .quantities import (
     LEG_QUANTITIES,
@@ -20,6 +21,7 @@ from .quantities import (
     OUTPUT_NAMES,
     SHARED_QUANTITIES,
 )
+from .state import state_of, take_up
 
 if TYPE_CHECKING:
     from numpy import float64
@@ -32,25 +34,6 @@ DEFAULT_RTOL = 1e-5
 METHODS: dict[str, type[Solver]] = {"exponential": Exponential, "dormand-prince": DormandPrince}
 # samples between two looks at signals and two calls of `progress` in a run
 SLICE = 250
-
-
-class StateHeader(NamedTuple):
-    """What `Landing.state` begins with: the landing's time, and what the integrator keeps beside
-    its arrays.
-    """
-
-    time: float  # [s]
-    t: float  # end of the last internal step [s]
-    t_old: float  # and its start [s]
-    t_input: float  # when the inputs were set [s]
-    h: float  # the next internal step [s]
-    error_old: float  # error of the last step, in units of the tolerance
-    energy_start: float  # [J]
-    steps: float
-    rejected: float
-    rhs_calls: float
-    heave: float  # of the ground at t_input, as it was set [m]
-    tilt: float  # of the ground at t_input, as it was set [rad]
 
 
 def output_order(mode: str) -> list[tuple[int, float]]:
@@ -150,6 +133,7 @@ class Landing:
         self._system.energy_start = 0.0
         self._out_time = inf
         self._system.energy_start = self.get("energy.balance")
+        self._solver.start(0.0)
         self._out_time = inf
 
     def set_inputs(self, values: Mapping[str, Any], rates: Mapping[str, Any] | None = None) -> None:
@@ -223,25 +207,21 @@ class Landing:
             raise unknown("output", name, OUTPUT_NAMES)
         return self.values()[OUTPUT_NAMES.index(name)]
 
+    def extremes(self) -> dict[str, Extreme]:
+        """The extremes of all outputs from the start to the present time, by name.
+
+        They are kept at the integrator's steps, and looked for between these where an output turns:
+        they depend neither on samples nor on communication steps.
+        """
+        found = array("d", bytes(8 * 4 * self._system.row))
+        self._solver.extremes(self._time, found)
+        return by_name(found, self._order)
+
     def state(self) -> array[float]:
         """The whole state, the integrator's included: what `restore` needs to go on with the very
         same digits.
         """
-        s = self._solver
-        header = StateHeader(
-            self._time,
-            s.t,
-            s.t_old,
-            s.t_input,
-            s.h,
-            s.error_old,
-            self._system.energy_start,
-            s.steps,
-            s.rejected,
-            s.rhs_calls,
-            *self._inputs.goal,
-        )
-        return array("d", [*header, *s.u, *s.u_rate, *s.y, *s.dense])
+        return state_of(self._solver, self._time, self._system.energy_start, self._inputs.goal)
 
     def restore(self, state: array[float]) -> None:
         """Take up a state that `state()` of a landing with the same parameters gave.
@@ -249,38 +229,9 @@ class Landing:
         Raises LandingError if its length is not that of this landing's state or a number in it is
         not finite.
         """
-        s = self._solver
-        targets = (s.u, s.u_rate, s.y, s.dense)
-        at = len(StateHeader._fields)
-        expected = at + sum(map(len, targets))
-        if len(state) != expected:
-            raise LandingError(
-                f"state has {len(state)} numbers, this landing's has {expected}; it comes from another mode or version"
-            )
-        if not all(map(isfinite, state)):
-            raise LandingError(
-                "state holds numbers that are not finite; take one that state() gave"
-            )
-        header = StateHeader(*state[:at])
-        self._time, s.t, s.t_old, s.t_input, s.h = (
-            header.time,
-            header.t,
-            header.t_old,
-            header.t_input,
-            header.h,
-        )
+        header = take_up(self._solver, state)
+        self._time = header.time
         self._system.energy_start = header.energy_start
-        for target in targets:
-            for i in range(len(target)):
-                target[i] = state[at + i]
-            at += len(target)
-        s.recompute_derived()
-        s.error_old, s.steps, s.rejected, s.rhs_calls = (
-            header.error_old,
-            header.steps,
-            header.rejected,
-            header.rhs_calls,
-        )
         self._inputs.adopt((header.heave, header.tilt))
         self._out_time = inf
 
@@ -307,10 +258,33 @@ class Landing:
             raise LandingError(
                 f"until = {until:g} s must be finite and after the present time, {self._time:g} s"
             )
-        start, solver, ground = self._time, self._solver, self._inputs.ground(self._time)
+        start, ground = self._time, self._inputs.ground(self._time)
         samples = int((until - start) / every * (1.0 + 1e-12) + 1e-9) + 1
         rows = np.empty((samples, self._system.row))
-        flat = rows.reshape(-1)
+        self._solver.open_span(start)
+        try:
+            self._record(rows.reshape(-1), start, every, samples, progress)
+            found = array("d", bytes(8 * 4 * self._system.row))
+            self._solver.extremes_of_span(self._time, found)
+        finally:
+            self._solver.close_span()
+        # a column of the history is contiguous: what studies make of it takes a fraction of the
+        # time
+        columns = np.ascontiguousarray(rows.T)[[i for i, _ in self._order]]
+        columns[self._turned] *= -1.0
+        time: NDArray[float64] = np.array([start + k * every for k in range(samples)])
+        extremes = by_name(found, self._order)
+        return History(time, OUTPUT_NAMES, columns.T, self.parameters, ground, extremes)
+
+    def _record(
+        self,
+        rows: NDArray[float64],
+        start: float,
+        every: float,
+        samples: int,
+        progress: Callable[[float], object] | None,
+    ) -> None:
+        """Write the outputs at so many `samples` from `start` [s] on, `every` [s], to `rows`."""
         reached = 0
         while reached < samples:
             goal = min(reached + SLICE, samples)
@@ -319,18 +293,12 @@ class Landing:
                 goal = reached + 1
                 if reached > 0:
                     self._inputs.begin_step(self._time, start + reached * every - self._time)
-            reached = solver.record(start, every, reached, goal, flat)
+            reached = self._solver.record(start, every, reached, goal, rows)
             if reached < goal:
                 raise self._collapsed()
             self._time = start + (reached - 1) * every
             if progress is not None:
                 progress(self._time)
-        # a column of the history is contiguous: what studies make of it takes a fraction of the
-        # time
-        columns = np.ascontiguousarray(rows.T)[[i for i, _ in self._order]]
-        columns[self._turned] *= -1.0
-        time: NDArray[float64] = np.array([start + k * every for k in range(samples)])
-        return History(time, OUTPUT_NAMES, columns.T, self.parameters, ground)
 
     def _collapsed(self) -> LandingError:
         return LandingError(

@@ -22,7 +22,13 @@ from fmu_build.core_source import CORE, kernels
 ENTRIES = {
     "inputs_at",
     "derivatives",
+    "start",
+    "cut",
     "restart",
+    "extremes",
+    "open_span",
+    "extremes_of_span",
+    "close_span",
     "recompute_derived",
     "advance",
     "interpolate",

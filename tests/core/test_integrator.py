@@ -184,7 +184,10 @@ for time in (0.1, 0.15, 0.26, 0.4):
 landing.set_inputs({"ground.heave": 1e-4, "ground.heave_rate": 0.1, "external.moment": 30.0})
 landing.advance_to(0.45)
 print(core.COMPILED)
-print(" ".join(float(v).hex() for v in [*values, *landing.values(), *landing.state()]))
+values += [*landing.values(), *landing.state()]
+values += [v for e in landing.extremes().values() for v in e]
+span = landing.run(0.46).extremes
+print(" ".join(float(v).hex() for v in [*values, *(v for e in span.values() for v in e)]))
 """
 
 

@@ -36,12 +36,14 @@ SPRING_RATE, DAMPING = 2e5, 3e3
 def linear_spring(s: float, v: float, z1: float, z2: float, p: LegModel) -> StrutForce:
     """The strut at stroke `s` [m] and stroke rate `v` [m/s]."""
     damping = DAMPING * v
-    return StrutForce(SPRING_RATE * s + damping, 0.0, 0.0, damping * v, 0.0, 0.0, 0.0, 0.0)
+    held = 0.5 * SPRING_RATE * s * s
+    force = SPRING_RATE * s + damping
+    return StrutForce(force, 0.0, 0.0, damping * v, 0.0, 0.0, held, 0.0, 0.0, 0.0)
 
 
 def linear_spring_status(s: float, z1: float, z2: float, p: LegModel) -> StrutStatus:
-    """What the spring holds."""
-    return StrutStatus(0.5 * SPRING_RATE * s * s, 0.0, 0.0, 0.0, 0.0)
+    """It has no end stops and no chambers."""
+    return StrutStatus(0.0, 0.0, 0.0)
 '''
 IMPORT = "from .linear_spring import linear_spring, linear_spring_status\n"
 LINE = '    "linear-spring": MainStrutLaw(linear_spring, linear_spring_status),\n'

@@ -47,7 +47,7 @@ class Relaxing(System):
     def stiff(self, k):
         return StiffPair(2, 3, self.decay, 2.0 * self.decay)
 
-    def outputs(self, y, u, out, at):
+    def read(self, y, u, dy, out, at):
         out[at], out[at + 1] = y[0], u[0]
 
 

@@ -13,6 +13,7 @@ from typing import Any
 from .memory import Doubles, Records
 from .records import (
     Accounts,
+    Attitude,
     BodyModel,
     BodyOutputs,
     BodyState,
@@ -38,6 +39,7 @@ INPUTS = len(Inputs._fields)
 LEG_FORCES = len(LegForces._fields)
 LEG_STATUS = len(LegStatus._fields)
 PLANAR_LOADS = len(PlanarLoads._fields)
+ATTITUDE = len(Attitude._fields)
 STIFF_PAIR = len(StiffPair._fields)
 PHI_WEIGHTS = len(PhiWeights._fields)
 BODY_OUTPUTS = len(BodyOutputs._fields)
@@ -102,6 +104,11 @@ def leg_status_of(kept: Records[LegStatus], i: int) -> LegStatus:
 
 
 def planar_loads_of(kept: Records[PlanarLoads], i: int) -> PlanarLoads:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def attitude_of(kept: Records[Attitude], i: int) -> Attitude:
     """The `i`-th record of those kept."""
     return kept[i]
 

@@ -65,6 +65,8 @@ def leg_forces(leg: LegState, foot: FootMotion, p: LegModel) -> LegForces:
         auxiliary_dissipated=link.dissipated,
         contact=ground.dissipated,
         friction=ground.friction,
+        held=strut.held,
+        liquid_mass=strut.liquid_mass,
     )
 
 
@@ -74,12 +76,10 @@ def leg_status(leg: LegState, forces: LegForces, depth: float, p: LegModel) -> L
     """
     strut = main_strut_status(forces.stroke, leg.z1, leg.z2, p)
     return LegStatus(
-        main=strut.held,
         stop=strut.held_by_stop,
         auxiliary=auxiliary_strut_energy(forces.auxiliary_stroke, p),
         contact=normal_energy(depth, p),
         friction=friction_energy(leg.q1, leg.q2, p),
         pressure_upper=strut.pressure_upper,
         pressure_lower=strut.pressure_lower,
-        liquid_mass=strut.liquid_mass,
     )

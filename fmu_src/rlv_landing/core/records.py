@@ -187,7 +187,10 @@ class FluidState(NamedTuple):
 
 
 class StrutForce(NamedTuple):
-    """What a main strut law gives. A law without a passage, a seal or a stop gives 0 W for it."""
+    """What a main strut law gives.
+
+    A law without a passage, a seal or a stop gives 0 W for it, one without a liquid 0 kg.
+    """
 
     force: float  # [N] compression positive
     dz1: float  # rate of z1
@@ -195,6 +198,8 @@ class StrutForce(NamedTuple):
     orifice: float  # dissipated in the passage [W]
     seal: float  # dissipated by friction of the seal [W]
     stop: float  # dissipated by the end stops [W]
+    held: float  # energy held by the strut's medium [J]
+    liquid_mass: float  # [kg]
     a1: float  # x = z2 - z1 decays: a change of x changes dz1 by a1 x [1/s]; 0 where nothing is stiff
     a2: float  # and dz2 by -a2 x [1/s]; 0 where nothing is stiff
 
@@ -205,11 +210,9 @@ class StrutStatus(NamedTuple):
     A law without chambers gives 0 for what they would have.
     """
 
-    held: float  # energy held by the strut's medium [J]
     held_by_stop: float  # energy held by the end stops [J]
     pressure_upper: float  # [Pa]
     pressure_lower: float  # [Pa]
-    liquid_mass: float  # [kg]
 
 
 class AxialForce(NamedTuple):
@@ -318,19 +321,19 @@ class LegForces(NamedTuple):
     auxiliary_dissipated: float
     contact: float  # dissipated by the ground's normal damping
     friction: float  # dissipated by friction
+    held: float  # energy held by the main strut's medium [J]
+    liquid_mass: float  # [kg]
 
 
 class LegStatus(NamedTuple):
     """What is read of a leg beside its forces: energies held [J], and the main strut's chambers."""
 
-    main: float
     stop: float
     auxiliary: float
     contact: float
     friction: float
     pressure_upper: float  # [Pa]
     pressure_lower: float  # [Pa]
-    liquid_mass: float  # [kg]
 
 
 # ---- the planar body's own
@@ -343,6 +346,14 @@ class Turn(NamedTuple):
     cos_p: float
     sin_a: float
     cos_a: float
+
+
+class Attitude(NamedTuple):
+    """How the planar body stands, and how it is accelerated along its axis."""
+
+    sin_p: float
+    cos_p: float
+    along: float  # acceleration of the CG along the body's y [m/s2]
 
 
 class FootPoint(NamedTuple):
@@ -495,3 +506,21 @@ class PhiWeights(NamedTuple):
     b1: float
     b23: float
     b4: float
+
+
+class Bend(NamedTuple):
+    """A quantity at three times one after the other."""
+
+    t0: float  # [s]
+    v0: float
+    t1: float  # [s]
+    v1: float
+    t2: float  # [s]
+    v2: float
+
+
+class Crest(NamedTuple):
+    """Where and how high a quantity is at most."""
+
+    t: float  # [s]
+    value: float

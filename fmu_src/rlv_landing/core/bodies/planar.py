@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from array import array
 from collections.abc import Sequence
 
 from ..access import (
@@ -14,9 +13,9 @@ from ..access import (
     LEG_STATUS,
     STATUS_OUTPUTS,
     accounts,
+    attitude_of,
     body_model,
     body_state,
-    inputs,
     keep,
     leg_forces_of,
     leg_model,
@@ -27,7 +26,7 @@ from ..access import (
     put,
 )
 from ..leg import leg_status
-from ..memory import Buffer, Doubles, Records, data, room
+from ..memory import Buffer, Doubles, Records, room
 from ..records import (
     BodyModel,
     BodyOutputs,
@@ -38,8 +37,9 @@ from ..records import (
     LegPlace,
     LegStatus,
     StatusOutputs,
+    Turn,
 )
-from .planar_legs import footpad_kinetic_energy, footpad_moment, turned
+from .planar_legs import footpad_kinetic_energy, footpad_moment
 from .planar_motion import PlanarMotion
 from .planar_status import phase_of
 
@@ -54,7 +54,6 @@ class Planar(PlanarMotion):
     """
 
     energy_start: float
-    _rates: Buffer
     _status: Records[LegStatus]
 
     def __init__(
@@ -67,13 +66,10 @@ class Planar(PlanarMotion):
     ) -> None:
         super().__init__(body, legs, places, scale, relative)
         self.energy_start = 0.0
-        self._rates = array("d", bytes(8 * self.n))
         self._status = room(self.groups, LEG_STATUS)
 
-    def outputs(self, y: Doubles, u: Doubles, out: Doubles, at: int) -> None:
-        """Write all outputs to `out[at:]`."""
-        rates = data(self._rates)
-        self.rhs(y, u, rates)
+    def read(self, y: Doubles, u: Doubles, dy: Doubles, out: Doubles, at: int) -> None:
+        """Write all outputs to `out[at:]`, from what `rhs` has kept of the legs."""
         for i in range(self.groups):
             depth = planar_loads_of(self._loads, i).depth
             keep(
@@ -87,19 +83,19 @@ class Planar(PlanarMotion):
                 i,
             )
         kinetic = self._kinetic_energy(y)
-        self._put_body(y, u, rates, out, at)
+        self._put_body(y, dy, out, at)
         at += BODY_OUTPUTS
         self._put_energies(y, self._held(y, kinetic), out, at)
         at += ENERGY_OUTPUTS
-        self._put_status(y, rates, kinetic, out, at)
+        self._put_status(y, dy, kinetic, out, at)
         at += STATUS_OUTPUTS
         for i in range(self.groups):
             self._put_leg(i, out, at + LEG_OUTPUTS * i)
 
-    def _put_body(self, y: Doubles, u: Doubles, rates: Doubles, out: Doubles, at: int) -> None:
+    def _put_body(self, y: Doubles, rates: Doubles, out: Doubles, at: int) -> None:
         s = body_state(y, 0)
         r = body_state(rates, 0)
-        along = self._acceleration(y, s, inputs(u, 0), turned(s.pitch, 0.0)).y
+        along = attitude_of(self._attitude, 0).along
         top = along - s.pitch_rate * s.pitch_rate * body_model(self._body, 0).H
         put(
             BodyOutputs(s.x, s.y, s.pitch, s.vx, s.vy, s.pitch_rate, r.vx, r.vy, r.pitch_rate, top),
@@ -111,7 +107,7 @@ class Planar(PlanarMotion):
         """Kinetic energy [J] of body and footpads."""
         p = body_model(self._body, 0)
         body = body_state(y, 0)
-        turn = turned(body.pitch, 0.0)
+        turn = attitude_of(self._attitude, 0)
         vx = body.vx * turn.cos_p - body.vy * turn.sin_p
         vy = body.vx * turn.sin_p + body.vy * turn.cos_p
         twice = (
@@ -134,7 +130,8 @@ class Planar(PlanarMotion):
         """The mechanical energy, from the status that is kept of the legs."""
         p = body_model(self._body, 0)
         body = body_state(y, 0)
-        turn = turned(body.pitch, 0.0)
+        stands = attitude_of(self._attitude, 0)
+        turn = Turn(stands.sin_p, stands.cos_p, 0.0, 1.0)
         height = p.m_u * body.y
         liquid = auxiliary = contact = friction = stop = 0.0
         for i in range(self.groups):
@@ -142,7 +139,7 @@ class Planar(PlanarMotion):
             place = leg_place(self._places, i)
             s = leg_status_of(self._status, i)
             height += footpad_moment(body, leg, place, turn, leg_model(self._legs, i).m_d)
-            liquid += place.legs * s.main
+            liquid += place.legs * leg_forces_of(self._forces, i).held
             auxiliary += place.legs * s.auxiliary
             contact += place.legs * s.contact
             friction += place.legs * s.friction
@@ -218,7 +215,7 @@ class Planar(PlanarMotion):
                 main_strut_stroke_rate=f.stroke_rate,
                 main_strut_pressure_upper=s.pressure_upper,
                 main_strut_pressure_lower=s.pressure_lower,
-                main_strut_liquid_mass=s.liquid_mass,
+                main_strut_liquid_mass=f.liquid_mass,
                 auxiliary_strut_force=-f.auxiliary,
                 auxiliary_strut_stroke=f.auxiliary_stroke,
                 auxiliary_strut_stroke_rate=f.auxiliary_rate,

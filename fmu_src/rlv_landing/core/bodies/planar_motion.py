@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from ..access import (
     ACCOUNTS,
+    ATTITUDE,
     BODY,
     BODY_OUTPUTS,
     ENERGY_OUTPUTS,
@@ -33,6 +34,7 @@ from ..leg import leg_forces
 from ..memory import Buffer, Doubles, Records, room, stored
 from ..records import (
     Accounts,
+    Attitude,
     BodyAcceleration,
     BodyModel,
     BodyState,
@@ -70,6 +72,7 @@ class PlanarMotion(System):
     _legs: Records[LegModel]
     _forces: Records[LegForces]
     _loads: Records[PlanarLoads]
+    _attitude: Records[Attitude]
 
     def __init__(
         self,
@@ -88,6 +91,7 @@ class PlanarMotion(System):
         self._legs = stored(legs)
         self._forces = room(groups, LEG_FORCES)
         self._loads = room(groups, PLANAR_LOADS)
+        self._attitude = room(1, ATTITUDE)
 
     def inputs_after(self, u: Doubles, rates: Doubles, dt: float, now: Doubles) -> None:
         """Loads go on at their rates, heave and tilt at their own, which change at theirs.
@@ -113,7 +117,7 @@ class PlanarMotion(System):
 
     def rhs(self, y: Doubles, u: Doubles, dy: Doubles) -> None:
         """Write dy/dt at the state `y` and the inputs `u` to `dy`; keep the legs' forces and loads
-        on the way.
+        and the body's attitude on the way.
         """
         p = body_model(self._body, 0)
         body = body_state(y, 0)
@@ -122,6 +126,7 @@ class PlanarMotion(System):
         for i in range(self.groups):
             self._load(i, y, body, now, turn)
         a = self._acceleration(y, body, now, turn)
+        keep(Attitude(turn.sin_p, turn.cos_p, a.y), self._attitude, 0)
         put(
             BodyState(
                 body.vx, body.vy, body.pitch_rate, a.x * turn.cos_p + a.y * turn.sin_p, a.y * turn.cos_p - a.x * turn.sin_p, a.pitch

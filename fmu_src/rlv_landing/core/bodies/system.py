@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from ..memory import Buffer, Doubles
+from array import array
+
+from ..memory import Buffer, Doubles, data
 from ..records import StiffPair
 
 
@@ -28,6 +30,7 @@ class System:
     stiff_pairs: int
     scale: Buffer
     relative: Buffer
+    _rates: Buffer
 
     def __init__(
         self, scale: Buffer, relative: Buffer, carried: int, inputs: int, row: int, stiff_pairs: int
@@ -39,6 +42,7 @@ class System:
         self.stiff_pairs = stiff_pairs
         self.scale = scale
         self.relative = relative
+        self._rates = array("d", bytes(8 * self.n))
 
     def inputs_after(self, u: Doubles, rates: Doubles, dt: float, now: Doubles) -> None:
         """Write to `now` the inputs that are `u`, `dt` [s] ago, and have gone on at their `rates`
@@ -59,3 +63,11 @@ class System:
 
     def outputs(self, y: Doubles, u: Doubles, out: Doubles, at: int) -> None:
         """Write the outputs at the state `y` and the inputs `u` to `out[at:]`."""
+        rates = data(self._rates)
+        self.rhs(y, u, rates)
+        self.read(y, u, rates, out, at)
+
+    def read(self, y: Doubles, u: Doubles, dy: Doubles, out: Doubles, at: int) -> None:
+        """Write the outputs to `out[at:]` at the state `y` and the inputs `u` where `rhs` was called
+        last, and gave the rates `dy`.
+        """

@@ -88,7 +88,7 @@ class DormandPrince(Solver):
         """The interpolant's fourth-order part."""
         n = self.n
         for i in range(n):
-            self.dense[4 * n + i] = h * (
+            self.dense[self.dense_at + 4 * n + i] = h * (
                 D1 * self.k1[i]
                 + D3 * self.k3[i]
                 + D4 * self.k4[i]

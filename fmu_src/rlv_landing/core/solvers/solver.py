@@ -1,44 +1,37 @@
 """One-step integration with dense output, with steps of its own whatever the communication step.
 
 The methods are subclasses.
-
-Interpolants: Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, II.6.
 """
 
 from __future__ import annotations
 
 from array import array
-from math import fabs, sqrt
+from math import fabs, inf, sqrt
 
 from ..bodies.system import System
 from ..memory import Buffer, Doubles, data, nogil
 from .step_control import LEAST_PREVIOUS_ERROR, step_factor
+from .watch import Watch
 
 # the shortest step must be able to pass a jump of the friction force at the tightest tolerance
 FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 1e-5, 2e-3, 1e-16
 
 
-class Solver:
+class Solver(Watch):
     """The state of one `System` in time: the present state, and the internal step that reaches
     ahead of it.
 
     `y` [n] is the state at `t` (s), the end of the last internal step; `advance` moves `t` to or
-    past a time, `interpolate` gives the state at any time inside the last step. `u` [inputs] holds
-    the inputs at `t_input`, which go on from there at `u_rate` [inputs]. `exponent` of the step
-    control is the method's.
+    past a time, `interpolate` gives the state at any time inside the last step. `exponent` of the
+    step control is the method's.
 
     Forces that switch do so inside steps: the error control finds them. The system takes off at a
     step's end what the step has gathered beyond where a state may be, which would be a first-order
     error.
     """
 
-    system: System
-    n: int
     rtol: float
     exponent: float
-    t: float
-    t_old: float
-    t_input: float
     h: float
     error_old: float
     steps: float
@@ -53,15 +46,10 @@ class Solver:
     k4: Buffer
     k_end: Buffer
     deviation: Buffer
-    dense: Buffer
-    u: Buffer
-    u_rate: Buffer
-    u_now: Buffer
 
     def __init__(self, system: System, rtol: float) -> None:
+        super().__init__(system)
         n = system.n
-        self.system = system
-        self.n = n
         self.rtol = rtol
         self.exponent = 0.0
         self.y = array("d", bytes(8 * n))
@@ -73,27 +61,11 @@ class Solver:
         self.k4 = array("d", bytes(8 * n))
         self.k_end = array("d", bytes(8 * n))
         self.deviation = array("d", bytes(8 * n))
-        self.dense = array("d", bytes(8 * 5 * n))
-        self.u = array("d", bytes(8 * system.inputs))
-        self.u_rate = array("d", bytes(8 * system.inputs))
-        self.u_now = array("d", bytes(8 * system.inputs))
-        self.t = 0.0
-        self.t_old = 0.0
-        self.t_input = 0.0
         self.h = FIRST_STEP
         self.error_old = LEAST_PREVIOUS_ERROR
         self.steps = 0.0
         self.rejected = 0.0
         self.rhs_calls = 0.0
-
-    def inputs_at(self, t: float) -> None:
-        """Write the inputs at time `t` [s] to `u_now`."""
-        self._inputs_at(t)
-
-    def _inputs_at(self, t: float) -> None:
-        self.system.inputs_after(
-            data(self.u), data(self.u_rate), t - self.t_input, data(self.u_now)
-        )
 
     def derivatives(self, t: float, y: Buffer, dy: Buffer) -> None:
         """Write dy/dt at time `t` [s] and state `y` [n] to `dy` [n], for other solvers."""
@@ -104,21 +76,39 @@ class Solver:
         self.system.rhs(y, data(self.u_now), dy)
         self.rhs_calls += 1.0
 
-    def restart(self, t: float) -> None:
-        """Start anew at time `t` [s] from the state in `y` and the inputs in `u`, with no step
-        behind.
+    def start(self, t: float) -> None:
+        """Start at time `t` [s] from the state in `y` and the inputs in `u`; extremes and counts
+        start there, too.
         """
+        self.t_start = t
+        self.t_span = inf
+        self.steps = 0.0
+        self.rejected = 0.0
+        self.rhs_calls = 0.0
+        self.h = FIRST_STEP
+        self.restart(t)
+
+    def cut(self, t: float) -> None:
+        """End the path at time `t` [s], inside the last internal step: write the state there to
+        `y`, from which `restart` goes on.
+        """
+        self._watch_until(t, data(self.kept), self.t_start)
+        if self.t_span < inf:
+            self._watch_until(t, data(self.span), self.t_span)
+        self._interpolate(t, data(self.y))
+
+    def restart(self, t: float) -> None:
+        """Go on from time `t` [s] from the state in `y` and the inputs in `u`, with no step behind."""
         self.t = t
         self.t_old = t
+        self.t_before = t
         self.t_input = t
         self.error_old = LEAST_PREVIOUS_ERROR
-        for i in range(5 * self.n):
-            self.dense[i] = 0.0
-        for i in range(self.n):
-            self.dense[i] = self.y[i]
+        self._stand_still(data(self.y))
         if self.h > FIRST_STEP:
             self.h = FIRST_STEP
         self.recompute_derived()
+        self._start_rows(data(self.y), data(self.k1))
 
     def recompute_derived(self) -> None:
         """Work out again, after the stored numbers were overwritten, what is not stored."""
@@ -136,8 +126,8 @@ class Solver:
         """
 
     def _dense_correction(self, h: float) -> None:
-        """Write the interpolant's fourth-order part, where the method has one, to the end of
-        `dense`.
+        """Write the interpolant's fourth-order part, where the method has one, to the end of the
+        last step's.
         """
 
     def _error(self) -> float:
@@ -166,18 +156,22 @@ class Solver:
             data(self.k1),
             data(self.k_end),
         )
+        self._next_row(end, k_end)
+        self.dense_at = self._other_dense()
         for i in range(n):
+            j = self.dense_at + i
             change = end[i] - y[i]
             bend = h * k1[i] - change
-            d[i] = y[i]
-            d[n + i] = change
-            d[2 * n + i] = bend
-            d[3 * n + i] = change - h * k_end[i] - bend
+            d[j] = y[i]
+            d[n + j] = change
+            d[2 * n + j] = bend
+            d[3 * n + j] = change - h * k_end[i] - bend
             y[i] = end[i]
         self._dense_correction(h)
         for i in range(n):
             k1[i] = k_end[i]
         self.system.project(y)
+        self.t_before = self.t_old
         self.t_old = self.t
         self.t += h
         self.steps += 1.0
@@ -195,6 +189,8 @@ class Solver:
             h = self.h
             if h < SHORTEST_STEP:
                 return False
+            if not self.noted:
+                self._note_step()
             self._try_step(h)
             error = self._error()
             self.h = h * step_factor(error, self.error_old, self.exponent)
@@ -205,29 +201,6 @@ class Solver:
             else:
                 self.rejected += 1.0
         return True
-
-    def interpolate(self, t: float, y: Buffer) -> None:
-        """Write the state at time `t` [s], inside the last internal step, to `y` [n]."""
-        self._interpolate(t, data(y))
-
-    def _interpolate(self, t: float, y: Doubles) -> None:
-        n = self.n
-        d = data(self.dense)
-        span = self.t - self.t_old
-        a = (t - self.t_old) / span if span > 0.0 else 0.0
-        b = 1.0 - a
-        for i in range(n):
-            y[i] = d[i] + a * (
-                d[n + i] + b * (d[2 * n + i] + a * (d[3 * n + i] + b * d[4 * n + i]))
-            )
-
-    def outputs_at(self, t: float, y: Buffer, out: Buffer) -> None:
-        """Write the outputs at time `t` [s] and state `y` [n] to `out` [row]."""
-        self._outputs_at(t, data(y), data(out), 0)
-
-    def _outputs_at(self, t: float, y: Doubles, out: Doubles, at: int) -> None:
-        self._inputs_at(t)
-        self.system.outputs(y, data(self.u_now), out, at)
 
     def record(self, start: float, every: float, first: int, last: int, rows: Buffer) -> int:
         """Go on and write the outputs at times start + k every [s], k from `first` to `last` - 1,

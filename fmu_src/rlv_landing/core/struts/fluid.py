@@ -31,8 +31,8 @@ def fluid(P: float, x: float, n: float, B0: float, kB: float, Pa: float) -> Flui
     return FluidState(v, dv, h)
 
 
-def strain_energy(f: FluidState, P: float, V: float, Pa: float) -> float:
-    """Energy [J] stored in volume `V` [m3] of the mixture `f` at pressure `P` [Pa]: V/v times (h -
-    (P - Pa) v), zero at `Pa`.
+def strain_energy(f: FluidState, density: float, P: float, V: float, Pa: float) -> float:
+    """Energy [J] stored in volume `V` [m3] of the mixture `f`, of `density` 1/v, at pressure `P`
+    [Pa]: V (h/v - (P - Pa)), zero at `Pa`.
     """
-    return V / f.v * (f.h - (P - Pa) * f.v)
+    return V * (f.h * density - (P - Pa))

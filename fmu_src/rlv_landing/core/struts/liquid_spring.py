@@ -56,30 +56,36 @@ def liquid_spring(s: float, v: float, P1: float, P2: float, p: LegModel) -> Stru
     """
     f1 = fluid(P1, p.x_air, p.n_air, p.B0, p.kB, p.Pa)
     f2 = fluid(P2, p.x_air, p.n_air, p.B0, p.kB, p.Pa)
-    ratio = 0.5 * (1.0 / f1.v + 1.0 / f2.v)
+    density1 = 1.0 / f1.v
+    density2 = 1.0 / f2.v
+    ratio = 0.5 * (density1 + density2)
     Q = orifice_flow(P2 - P1, ratio, p)
-    stiffness1 = -f1.v / f1.dv / (p.V10 + p.A1 * s)
-    stiffness2 = -f2.v / f2.dv / (p.V20 - p.A2 * s)
+    V1 = p.V10 + p.A1 * s
+    V2 = p.V20 - p.A2 * s
+    stiffness1 = -f1.v / f1.dv / V1
+    stiffness2 = -f2.v / f2.dv / V2
     dP1 = stiffness1 * (ratio * f1.v * Q - p.A1 * v)
     dP2 = stiffness2 * (p.A2 * v - ratio * f2.v * Q)
     slope = ratio * orifice_slope(P2 - P1, ratio, p)
     F_seal = seal_friction(v, P1, P2, p)
     stop = stop_force(s, v, p)
     force = (P2 - p.Pa) * p.A2 - (P1 - p.Pa) * p.A1 + F_seal + stop.force
-    a1 = stiffness1 * f1.v * slope
-    a2 = stiffness2 * f2.v * slope
+    held1 = strain_energy(f1, density1, P1, V1, p.Pa)
+    held2 = strain_energy(f2, density2, P2, V2, p.Pa)
     return StrutForce(
-        force, dP1, dP2, ratio * Q * (f2.h - f1.h), F_seal * v, stop.dissipated, a1, a2
+        force=force,
+        dz1=dP1,
+        dz2=dP2,
+        orifice=ratio * Q * (f2.h - f1.h),
+        seal=F_seal * v,
+        stop=stop.dissipated,
+        held=held1 + held2,
+        liquid_mass=p.rho0 * (V1 * density1 + V2 * density2),
+        a1=stiffness1 * f1.v * slope,
+        a2=stiffness2 * f2.v * slope,
     )
 
 
 def liquid_spring_status(s: float, P1: float, P2: float, p: LegModel) -> StrutStatus:
-    """What the liquid and the end stops hold at stroke `s` [m], the pressures, and the liquid's
-    mass.
-    """
-    V1 = p.V10 + p.A1 * s
-    V2 = p.V20 - p.A2 * s
-    f1 = fluid(P1, p.x_air, p.n_air, p.B0, p.kB, p.Pa)
-    f2 = fluid(P2, p.x_air, p.n_air, p.B0, p.kB, p.Pa)
-    held = strain_energy(f1, P1, V1, p.Pa) + strain_energy(f2, P2, V2, p.Pa)
-    return StrutStatus(held, stop_energy(s, p), P1, P2, p.rho0 * (V1 / f1.v + V2 / f2.v))
+    """What the end stops hold at stroke `s` [m], and the pressures."""
+    return StrutStatus(stop_energy(s, p), P1, P2)

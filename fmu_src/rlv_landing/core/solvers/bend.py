@@ -1,0 +1,94 @@
+"""Where quantities turn, and where between three times a quantity is highest."""
+
+from __future__ import annotations
+
+from math import inf
+
+from ..memory import Doubles
+from ..records import Bend, Crest
+
+# a quantity that goes on by no more than this part of its last change has come to a level
+LEVEL = 1e-30
+# a crest is known well enough where the parabola promises no more than this part of its size beyond
+ENOUGH = 2e-4
+# and where no side falls by more than this part
+STEEP = 0.01
+# a steep side may hide this part of its height above the crest
+HIDDEN = 0.1
+# it is looked for no nearer to a known point than this part of the gap between them
+NEAREST = 0.05
+
+
+def expected(b: Bend, t: float) -> float:
+    """The value at time `t` [s] of the parabola through the three points of `b`."""
+    rise = (b.v1 - b.v0) / (b.t1 - b.t0)
+    fall = (b.v2 - b.v1) / (b.t2 - b.t1)
+    return b.v1 + (t - b.t1) * (rise + (t - b.t0) * (fall - rise) / (b.t2 - b.t0))
+
+
+def crest(b: Bend) -> Crest:
+    """The top of the parabola through the three points of `b`, whose middle one is highest."""
+    before = b.t1 - b.t0
+    after = b.t2 - b.t1
+    rise = (b.v1 - b.v0) / before
+    fall = (b.v2 - b.v1) / after
+    if rise <= fall:
+        return Crest(b.t1, b.v1)
+    slope = (rise * after + fall * before) / (before + after)
+    ahead = 0.5 * slope * (before + after) / (rise - fall)
+    return Crest(b.t1 + ahead, b.v1 + 0.5 * slope * ahead)
+
+
+def where_to_look(b: Bend, record: float, size: float, surprise: float) -> float:
+    """The time [s] to look at for a value in `b` above the `record`; -inf where a look would not
+    find much more, in parts of `size`.
+
+    At the crest, away from the times that are known; amid the wider side where the parabola has
+    missed by a `surprise` at the last look; amid the steeper side where that is so steep that it may
+    hold a kink.
+    """
+    top = crest(b)
+    enough = ENOUGH * size
+    steepest = max(b.v1 - b.v0, b.v1 - b.v2)
+    before, after = b.t0 - b.t1, b.t2 - b.t1
+    if surprise > enough and steepest > enough:
+        ahead = 0.5 * (before if -before > after else after)
+    elif top.value - record > enough:
+        gap = before if top.t < b.t1 else after
+        ahead = gap * min(max((top.t - b.t1) / gap, NEAREST), 1.0 - NEAREST)
+    elif steepest > STEEP * size and top.value + HIDDEN * steepest > record:
+        ahead = 0.5 * (before if b.v0 < b.v2 else after)
+    else:
+        return -inf
+    t = b.t1 + ahead
+    return t if b.t0 < t < b.t2 and t != b.t1 else -inf
+
+
+def narrowed(b: Bend, t: float, v: float) -> Bend:
+    """`b` with the point (`t`, `v`) in the place of one of its ends, the highest in the middle."""
+    if v > b.v1:
+        if t < b.t1:
+            return Bend(b.t0, b.v0, t, v, b.t1, b.v1)
+        return Bend(b.t1, b.v1, t, v, b.t2, b.v2)
+    if t < b.t1:
+        return Bend(t, v, b.t1, b.v1, b.t2, b.v2)
+    return Bend(b.t0, b.v0, b.t1, b.v1, t, v)
+
+
+def mark_turns(
+    first: Doubles, middle: Doubles, following: Doubles, level: float, turns: Doubles, count: int
+) -> None:
+    """Write below 0 to `turns` for each of `count` quantities that turns in the `middle` of three
+    times, or comes to a level there.
+
+    Without branches and calls, so that the compiler takes several at once.
+    """
+    for i in range(count):
+        rise = middle[i] - first[i]
+        turns[i] = rise * (following[i] - middle[i] - level * rise)
+
+
+def copy(source: Doubles, target: Doubles, count: int) -> None:
+    """Copy `count` numbers."""
+    for i in range(count):
+        target[i] = source[i]

@@ -1,0 +1,107 @@
+"""The way of a system: its last two internal steps, and what is read along them.
+
+Interpolants: Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, II.6.
+"""
+
+from __future__ import annotations
+
+from array import array
+
+from ..bodies.system import System
+from ..memory import Buffer, Doubles, data
+
+# parts of an interpolant, each as long as the state
+PARTS = 5
+
+
+class Path:
+    """The last two internal steps of one `System`, with its inputs.
+
+    The last step leads from `t_old` to `t` [s], that before it from `t_before` to `t_old`. `dense`
+    [2 x 5 n] holds their interpolants, the last step's from `dense_at` on. `u` [inputs] holds the
+    inputs at `t_input`, which go on from there at `u_rate` [inputs].
+    """
+
+    system: System
+    n: int
+    t: float
+    t_old: float
+    t_before: float
+    t_input: float
+    dense_at: int
+    dense: Buffer
+    u: Buffer
+    u_rate: Buffer
+    u_now: Buffer
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.n = system.n
+        self.t = 0.0
+        self.t_old = 0.0
+        self.t_before = 0.0
+        self.t_input = 0.0
+        self.dense_at = 0
+        self.dense = array("d", bytes(8 * 2 * PARTS * system.n))
+        self.u = array("d", bytes(8 * system.inputs))
+        self.u_rate = array("d", bytes(8 * system.inputs))
+        self.u_now = array("d", bytes(8 * system.inputs))
+
+    def inputs_at(self, t: float) -> None:
+        """Write the inputs at time `t` [s] to `u_now`."""
+        self._inputs_at(t)
+
+    def _inputs_at(self, t: float) -> None:
+        self.system.inputs_after(
+            data(self.u), data(self.u_rate), t - self.t_input, data(self.u_now)
+        )
+
+    def interpolate(self, t: float, y: Buffer) -> None:
+        """Write the state at time `t` [s], inside the last internal step, to `y` [n]."""
+        self._interpolate(t, data(y))
+
+    def _interpolate(self, t: float, y: Doubles) -> None:
+        self._inside(self.dense_at, t, self.t_old, self.t, y)
+
+    def _interpolate_back(self, t: float, y: Doubles) -> None:
+        """Write the state at time `t` [s], inside one of the last two internal steps."""
+        if t < self.t_old:
+            self._inside(self._other_dense(), t, self.t_before, self.t_old, y)
+        else:
+            self._interpolate(t, y)
+
+    def _inside(self, at: int, t: float, start: float, end: float, y: Doubles) -> None:
+        """Write the state at time `t` [s] of the step from `start` to `end`, whose interpolant
+        begins at `at`.
+        """
+        n = self.n
+        d = data(self.dense)
+        span = end - start
+        a = (t - start) / span if span > 0.0 else 0.0
+        b = 1.0 - a
+        for i in range(n):
+            j = at + i
+            y[i] = d[j] + a * (
+                d[n + j] + b * (d[2 * n + j] + a * (d[3 * n + j] + b * d[4 * n + j]))
+            )
+
+    def _other_dense(self) -> int:
+        """Where the interpolant of the step before the last begins."""
+        return PARTS * self.n - self.dense_at
+
+    def _stand_still(self, y: Doubles) -> None:
+        """Be at the state `y` at time `t`, with no step behind."""
+        self.dense_at = 0
+        d = data(self.dense)
+        for i in range(2 * PARTS * self.n):
+            d[i] = 0.0
+        for i in range(self.n):
+            d[i] = y[i]
+
+    def outputs_at(self, t: float, y: Buffer, out: Buffer) -> None:
+        """Write the outputs at time `t` [s] and state `y` [n] to `out` [row]."""
+        self._outputs_at(t, data(y), data(out), 0)
+
+    def _outputs_at(self, t: float, y: Doubles, out: Doubles, at: int) -> None:
+        self._inputs_at(t)
+        self.system.outputs(y, data(self.u_now), out, at)

@@ -1,0 +1,241 @@
+"""The extremes of every output along the path of a system, whatever the communication step.
+
+At the end of each internal step the outputs are known without a further right-hand side. Where an
+output turns there, its extreme lies in the two steps beside; if the parabola through the three
+steps' ends says that it lies beyond the record so far, it is looked for on the interpolant.
+"""
+
+from __future__ import annotations
+
+from array import array
+from math import fabs, inf
+
+from ..bodies.system import System
+from ..memory import Buffer, Doubles, data
+from ..records import Bend
+from .bend import LEVEL, copy, expected, mark_turns, narrowed, where_to_look
+from .path import Path
+
+# a crest is no higher above the middle of a bend than so many times its higher side
+REACH = 2.0
+# an extreme is known in parts of its size, or of this share of what the output has gone through
+SHARE = 0.1
+# it is looked for at so many times at most
+LOOKS = 12
+
+
+class Watch(Path):
+    """A path whose outputs' extremes are kept.
+
+    Extremes are four blocks of `row` numbers: least values, their times [s], greatest values, their
+    times. `kept` are those from `t_start` to the start of the last step, in which the present time
+    lies; `span` those from `t_span` on, which is infinite where no span is open.
+
+    `last`, `middle`, `before` [row] are the outputs at `t`, `t_old`, `t_before`; `seen` tells how
+    many of them there are since the path began or inputs jumped, `noted` whether `middle` has been
+    judged.
+    """
+
+    row: int
+    t_start: float
+    t_span: float
+    seen: int
+    noted: bool
+    kept: Buffer
+    span: Buffer
+    before: Buffer
+    middle: Buffer
+    last: Buffer
+    _half: Buffer
+    _now: Buffer
+    _look: Buffer
+    _turns: Buffer
+    _y_look: Buffer
+
+    def __init__(self, system: System) -> None:
+        super().__init__(system)
+        row = system.row
+        self.row = row
+        self.t_start = 0.0
+        self.t_span = inf
+        self.seen = 0
+        self.noted = True
+        self.kept = array("d", bytes(8 * 4 * row))
+        self.span = array("d", bytes(8 * 4 * row))
+        self.before = array("d", bytes(8 * row))
+        self.middle = array("d", bytes(8 * row))
+        self.last = array("d", bytes(8 * row))
+        self._half = array("d", bytes(8 * row))
+        self._now = array("d", bytes(8 * row))
+        self._look = array("d", bytes(8 * row))
+        self._turns = array("d", bytes(8 * row))
+        self._y_look = array("d", bytes(8 * system.n))
+
+    def extremes(self, t: float, found: Buffer) -> None:
+        """Write the extremes from the start to the time `t` [s], inside the last internal step, to
+        `found` [4 row].
+        """
+        copy(data(self.kept), data(found), 4 * self.row)
+        self._watch_until(t, data(found), self.t_start)
+
+    def open_span(self, t: float) -> None:
+        """Keep extremes from time `t` [s] on, inside the last internal step, beside those from the
+        start; at the start they are the same.
+        """
+        if t <= self.t_start:
+            return
+        self.t_span = t
+        self._row_at(t, data(self._now))
+        self._begin(data(self._now), t, data(self.span))
+
+    def extremes_of_span(self, t: float, found: Buffer) -> None:
+        """Write the extremes from the time of `open_span` to `t` [s], inside the last internal
+        step, to `found` [4 row].
+        """
+        if self.t_span < inf:
+            copy(data(self.span), data(found), 4 * self.row)
+            self._watch_until(t, data(found), self.t_span)
+        else:
+            self.extremes(t, found)
+
+    def close_span(self) -> None:
+        """Keep the extremes from the start only."""
+        self.t_span = inf
+
+    def _row_at(self, t: float, row: Doubles) -> None:
+        """Write the outputs at time `t` [s], inside one of the last two steps, to `row`."""
+        y = data(self._y_look)
+        self._interpolate_back(t, y)
+        self._outputs_at(t, y, row, 0)
+
+    def _start_rows(self, y: Doubles, dy: Doubles) -> None:
+        """Begin at `t` with no step behind: at the state `y`, whose rates `dy` were just computed."""
+        self.seen = 1
+        self.noted = True
+        self.system.read(y, data(self.u_now), dy, data(self.last), 0)
+        if self.t == self.t_start:
+            self._begin(data(self.last), self.t, data(self.kept))
+
+    def _next_row(self, y: Doubles, dy: Doubles) -> None:
+        """Keep the outputs at the end of a step: at the state `y`, whose rates `dy` were just
+        computed.
+        """
+        copy(data(self.middle), data(self.before), self.row)
+        copy(data(self.last), data(self.middle), self.row)
+        self.seen = min(self.seen + 1, 3)
+        self.noted = False
+        self.system.read(y, data(self.u_now), dy, data(self.last), 0)
+
+    def _note_step(self) -> None:
+        """Judge the outputs at the start of the last step, which is about to be left behind."""
+        self.noted = True
+        self._judge_middle(data(self.last), self.t, data(self.kept), self.t_start)
+        if self.t_span < inf:
+            self._judge_middle(data(self.last), self.t, data(self.span), self.t_span)
+
+    def _watch_until(self, t: float, found: Doubles, since: float) -> None:
+        """Bring the extremes `found`, kept since a time, to the time `t` [s] inside the last step."""
+        half, now = data(self._half), data(self._now)
+        if t > self.t_old:
+            middle = 0.5 * (self.t_old + t)
+            self._row_at(middle, half)
+            self._row_at(t, now)
+            self._judge_middle(half, middle, found, since)
+            self._judge(self.t_old, data(self.middle), middle, half, t, now, found, since)
+            self._note_row(now, t, found, since)
+        elif self.seen == 1:
+            self._note_row(data(self.last), t, found, since)
+        else:
+            self._note_row(data(self.middle), t, found, since)
+
+    def _judge_middle(self, following: Doubles, t: float, found: Doubles, since: float) -> None:
+        """Judge the outputs at the last step's start, with those that are `following` at time `t`
+        [s] after it.
+        """
+        middle = data(self.middle)
+        if self.seen > 2:
+            self._judge(
+                self.t_before, data(self.before), self.t_old, middle, t, following, found, since
+            )
+        else:
+            self._note_row(middle, self.t_old, found, since)
+
+    def _judge(
+        self,
+        t0: float,
+        first: Doubles,
+        t1: float,
+        middle: Doubles,
+        t2: float,
+        following: Doubles,
+        found: Doubles,
+        since: float,
+    ) -> None:
+        """Take the outputs in `middle` that turn there, or near there, into the extremes `found`."""
+        if t1 < since:
+            return
+        if t1 <= t0 or t2 <= t1:
+            self._note_row(middle, t1, found, since)
+            return
+        turns = data(self._turns)
+        mark_turns(first, middle, following, LEVEL, turns, self.row)
+        for i in range(self.row):
+            if turns[i] < 0.0:
+                b = Bend(t0, first[i], t1, middle[i], t2, following[i])
+                self._judge_bend(i, b, found, since)
+
+    def _judge_bend(self, i: int, b: Bend, found: Doubles, since: float) -> None:
+        """Take the output `i`, which turns amid `b`, into the extremes where it may be beyond them."""
+        reach = REACH * max(fabs(b.v1 - b.v0), fabs(b.v1 - b.v2))
+        if b.v1 > b.v0 and b.v1 + reach > found[2 * self.row + i]:
+            self._raise(i, 1.0, b, found, since)
+        elif b.v1 < b.v0 and b.v1 - reach < found[i]:
+            self._raise(i, -1.0, Bend(b.t0, -b.v0, b.t1, -b.v1, b.t2, -b.v2), found, since)
+
+    def _raise(self, i: int, sign: float, b: Bend, found: Doubles, since: float) -> None:
+        """Look for the crest `b` of `sign` times the output `i`, as far as it is beyond the record."""
+        at = (2 * self.row if sign > 0.0 else 0) + i
+        look = data(self._look)
+        self._put_higher(at, sign, b.t1, b.v1, found)
+        size = max(fabs(b.v1), SHARE * (found[2 * self.row + i] - found[i]))
+        surprise = 0.0
+        for _ in range(LOOKS):
+            t = where_to_look(b, sign * found[at], size, surprise)
+            if t < since:
+                return
+            self._row_at(t, look)
+            value = sign * look[i]
+            self._put_higher(at, sign, t, value, found)
+            if value == b.v1:
+                return
+            surprise = fabs(value - expected(b, t))
+            b = narrowed(b, t, value)
+
+    def _put_higher(self, at: int, sign: float, t: float, value: float, found: Doubles) -> None:
+        """Put `value` at time `t` [s], `sign` times an output, where it is beyond that at `found[at]`."""
+        if value > sign * found[at]:
+            found[at] = sign * value
+            found[at + self.row] = t
+
+    def _begin(self, outputs: Doubles, t: float, found: Doubles) -> None:
+        """Begin the extremes `found` with the `outputs` at time `t` [s]."""
+        n = self.row
+        for i in range(n):
+            found[i] = outputs[i]
+            found[n + i] = t
+            found[2 * n + i] = outputs[i]
+            found[3 * n + i] = t
+
+    def _note_row(self, outputs: Doubles, t: float, found: Doubles, since: float) -> None:
+        """Take the `outputs` at time `t` [s] into the extremes `found`."""
+        if t < since:
+            return
+        n = self.row
+        for i in range(n):
+            value = outputs[i]
+            if value < found[i]:
+                found[i] = value
+                found[n + i] = t
+            if value > found[2 * n + i]:
+                found[2 * n + i] = value
+                found[3 * n + i] = t
