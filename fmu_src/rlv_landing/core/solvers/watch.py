@@ -21,7 +21,7 @@ REACH = 2.0
 # an extreme is known in parts of its size, or of this share of what the output has gone through
 SHARE = 0.1
 # it is looked for at so many times at most
-LOOKS = 12
+LOOKS = 20
 
 
 class Watch(Path):
@@ -113,6 +113,9 @@ class Watch(Path):
         self.seen = 1
         self.noted = True
         self.system.read(y, data(self.u_now), dy, data(self.last), 0)
+        # not read before there are steps; a state shall not hold what was before the start
+        copy(data(self.last), data(self.middle), self.row)
+        copy(data(self.last), data(self.before), self.row)
         if self.t == self.t_start:
             self._begin(data(self.last), self.t, data(self.kept))
 
