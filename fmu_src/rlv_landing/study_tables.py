@@ -20,6 +20,7 @@ def validation_tables(found: Validation) -> str:
     parts.append(
         f"within 5 / 10 / 20 % of the paper's simulation: {counts_line(found.counts)}\n"
         f"within 5 / 10 / 20 % of the paper's tests:      {counts_line(found.counts_against_test)}\n"
+        f"the same, read through the tests' sensor chain: {counts_line(found.counts_against_test_sensed)}\n"
         f"the paper's own simulation of its tests:        {counts_line(found.paper_counts_against_test)}\n"
     )
     return "".join(parts)

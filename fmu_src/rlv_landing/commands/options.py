@@ -19,7 +19,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 def parameter_options(command: F) -> F:
     """Options that choose vehicle, ground and drop."""
     options = (
-        click.option("--preset", metavar="NAME", help="Named parameters [default: yue2022-figures]; also yue2022-table2."),
+        click.option("--preset", metavar="NAME", help="Named parameters [default: yue2022-figures]; also yue2022-tests, yue2022-table2."),
         click.option("--parameters", "file", metavar="FILE.toml", help="Parameters from a TOML file instead."),
         click.option("--mode", metavar="MODE", help="Landing mode: 2-2 or 1-2-1 (legs that touch first, second, third)."),
         click.option(

@@ -1,4 +1,4 @@
-"""Identification: a global search (CMA-ES), then least squares, on all cores; seeded, resumable, and never losing its best."""
+"""Identification on all cores: global search (CMA-ES), least squares, a search that counts; seeded, resumable, never losing its best."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pickle
 import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from ..durable import write_durably
 from ..errors import LandingError
+from .counting import KICKS, count_round
 from .objective import Objective
 
 STEP = 1e-3
@@ -38,13 +39,20 @@ def _misfits(z: Sequence[float]) -> NDArray[np.float64]:
 
 @dataclass
 class Best:
-    """The best point so far: `z` on the unit cube, its loss, and how it came about."""
+    """The best point so far: `z` on the unit cube, its loss, and how it came about.
+
+    `missed`: its softly counted misses (`Objective.missed`), by which points are judged once the counting search has begun; none before.
+    `counted`, `rounds`: evaluations and starts of the counting search.
+    """
 
     z: list[float]
     loss: float
     evaluations: int
     stage: str
     seed: int
+    missed: float | None = None
+    counted: int = 0
+    rounds: int = 0
 
 
 class Search:
@@ -61,7 +69,7 @@ class Search:
         self.labels = objective.free.labels
         start = objective.free.start()
         self.best = Best(start, float("inf"), 0, "start", seed)
-        self.start_loss = float("nan")
+        self.start_loss = self.start_missed = float("nan")
         self._strategy: Any = None
         self._pool: ProcessPoolExecutor | None = None
         best, state = folder / "best.json", folder / "search.pickle"
@@ -78,7 +86,7 @@ class Search:
             raise LandingError(f"{best} cannot be read ({e}); there is nothing to resume") from None
         if kept.pop("labels") != self.labels or kept.pop("targets") != self.objective.labels:
             raise LandingError(f"{best} is of other free numbers or targets; resume with the same, or name another folder by --work")
-        self.start_loss = kept.pop("start_loss")
+        self.start_loss, self.start_missed = kept.pop("start_loss"), kept.pop("start_missed")
         self.best = Best(**kept)
         if state.exists():
             self._strategy = pickle.loads(state.read_bytes())
@@ -107,13 +115,26 @@ class Search:
         """The loss of a point; it is kept, on disk too, where it is the best so far."""
         loss = float(np.log1p(misfits**2).sum())
         if loss < self.best.loss:
-            self.best = Best([float(x) for x in z], loss, self.best.evaluations, stage, self.seed)
+            self.best = replace(self.best, z=[float(x) for x in z], loss=loss, stage=stage, seed=self.seed)
             self.save()
         return loss
 
+    @property
+    def counting(self) -> bool:
+        """Whether the counting search has begun."""
+        return self.best.missed is not None
+
+    @property
+    def improved(self) -> bool:
+        """Whether the best point is better than the start, by the count where it has begun, else by the loss."""
+        return self.best.loss < self.start_loss if self.best.missed is None else self.best.missed < self.start_missed
+
     def save(self) -> None:
         """Write best point and search state, each to a temporary name first."""
-        told = {**asdict(self.best), "labels": self.labels, "targets": self.objective.labels, "start_loss": self.start_loss}
+        told = {
+            **asdict(self.best), "labels": self.labels, "targets": self.objective.labels,
+            "start_loss": self.start_loss, "start_missed": self.start_missed,
+        }  # fmt: skip
         write_durably(self.folder / "best.json", json.dumps(told, indent=1).encode())
         if self._strategy is not None:
             write_durably(self.folder / "search.pickle", pickle.dumps(self._strategy))
@@ -127,6 +148,7 @@ class Search:
 
         if self._strategy is None:
             (first,) = self.evaluate([self.best.z])
+            self.start_missed = self.objective.missed(first)
             self.start_loss = self.consider(self.best.z, first, "start")
             options = {"seed": self.seed, "popsize": population, "verbose": -9}
             self._strategy = cma.CMAEvolutionStrategy(self.best.z, sigma, options)
@@ -136,6 +158,37 @@ class Search:
             self._strategy.tell(points, losses)
             self.save()
             progress(self.best.evaluations, self.best.loss)
+
+    def count(self, evaluations: int, progress: Callable[[int, float], object]) -> None:
+        """Rounds of `counting.count_round` from the best point; none begins once they have tried `evaluations` landings of both modes.
+
+        `progress` is told all evaluations so far and the misses.
+        """
+        if self.best.missed is None:
+            (first,) = self.look([self.best.z])
+            self.best.missed = self.objective.missed(first)
+            self._strategy = None
+
+        def evaluate(points: Sequence[Sequence[float]]) -> list[NDArray[np.float64]]:
+            found = self.evaluate(points)
+            self.best.counted += len(points)
+            for z, misfits in zip(points, found):
+                self._consider_count(z, misfits)
+            progress(self.best.evaluations, float(self.best.missed or 0.0))
+            return found
+
+        while self.best.counted < evaluations:
+            turn = self.best.rounds
+            count_round(self.objective, evaluate, self.best.z, (self.seed, turn), KICKS[turn % len(KICKS)])
+            self.best.rounds += 1
+            self.save()
+
+    def _consider_count(self, z: Sequence[float], misfits: NDArray[np.float64]) -> None:
+        missed = self.objective.missed(misfits)
+        if self.best.missed is None or missed < self.best.missed:
+            loss = float(np.log1p(misfits**2).sum())
+            self.best = replace(self.best, z=list(z), loss=loss, stage="counting search", seed=self.seed, missed=missed)
+            self.save()
 
     def polish(self, evaluations: int, progress: Callable[[int, float], object]) -> None:
         """Least squares (scipy, trust region, Cauchy's loss, bounds) from the best point; the Jacobian's columns side by side."""
