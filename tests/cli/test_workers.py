@@ -11,9 +11,10 @@ from pathlib import Path
 import pytest
 
 from rlv_landing import load_preset
+from rlv_landing.identification.free_numbers import FreeNumbers
 from rlv_landing.identification.identify import Search
-from rlv_landing.identification.objective import Objective, paper_targets
-from rlv_landing.identification.priors import FreeNumbers
+from rlv_landing.identification.objective import Objective
+from rlv_landing.identification.targets import paper_targets
 from rlv_landing.workers import default_workers
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="sets processor affinity")

@@ -12,7 +12,8 @@ from rlv_landing import LandingError, load_preset
 from rlv_landing.history import History
 from rlv_landing.validation.curves import read_curves
 from rlv_landing.validation.paper import printed_scalars
-from rlv_landing.validation.validate import missed_bounds, parse_bounds, stated_bounds, validate
+from rlv_landing.validation.required_counts import missed_bounds, parse_bounds, stated_bounds
+from rlv_landing.validation.validate import validate
 
 FORCE, STROKE = "leg[1].main_strut.force", "leg[1].main_strut.stroke"
 BROKEN = "main_strut.orifice_area_compression=60 mm2"

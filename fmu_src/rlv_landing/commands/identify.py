@@ -36,10 +36,18 @@ NOTHING_BETTER, INTERRUPTED = 1, 130
     help='Bounds for a parameter, SI or with units: "30 mm..60 mm". Repeat.',
 )
 @click.option(
+    "--scalars",
+    type=click.Choice(["simulation", "tests"]),
+    default="simulation",
+    show_default=True,
+    help="Scalars to reach: the 48 of the paper's simulation, or the 35 of its tests, "
+    "read through the tests' sensor chain.",
+)
+@click.option(
     "--targets",
     type=click.Path(path_type=Path),
     metavar="FILE.csv",
-    help="Measured scalars: id,value,unit [default: the paper's 48].",
+    help="Measured scalars instead: id,value,unit; with --scalars tests through the same sensors.",
 )
 @click.option(
     "--series",
@@ -89,6 +97,15 @@ NOTHING_BETTER, INTERRUPTED = 1, 130
     help="Points a generation.",
 )
 @click.option(
+    "--count",
+    default=0,
+    show_default=True,
+    type=WholeNumber(0, 10**9),
+    metavar="N",
+    help="Landings for a last search that counts the scalars within 5, 10 and 20 %: "
+    "no round of it begins after so many.",
+)
+@click.option(
     "--seed",
     default=1,
     show_default=True,
@@ -107,14 +124,16 @@ def identify(work: Path, *, list_priors: bool, **options: Any) -> None:
     """Estimate parameters from peaks, times and curves of landings.
 
     They are those that the paper does not print, or your own vehicle's. A global search (CMA-ES)
-    on all cores is followed by least squares; both modes at once. The folder --work gets
-    identified.toml (for --parameters) and report.md (fit, numbers at bounds, how well each is
-    determined). It also keeps the best point all along: after Ctrl-C, --resume continues. A
-    parameter that is not free keeps the value of preset, file and --set. --mode takes one drop
-    test's numbers only.
+    on all cores is followed by least squares, and with --count by a search that counts the scalars
+    within 5, 10 and 20 %; both modes at once. The folder --work gets identified.toml (for
+    --parameters) and report.md (fit, numbers at bounds, how well each is determined). It also keeps
+    the best point all along: after Ctrl-C, --resume continues. A parameter that is not free keeps
+    the value of preset, file and --set. --mode takes one drop test's numbers only; the report then
+    predicts the other.
 
     \b
     rlv-landing identify --work identification --seed 3
+    rlv-landing identify --parameters start.toml --evaluations 1 --polish 0 --count 40000
     rlv-landing identify --resume --work identification --evaluations 40000
     rlv-landing identify --parameters mine.toml --targets measured.csv \\
         --free main_strut.orifice_area_compression,ground.friction
@@ -132,7 +151,9 @@ def identify(work: Path, *, list_priors: bool, **options: Any) -> None:
     objective = _objective(options)
     # SIGTERM ends as Ctrl-C does: with everything written
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    with Search(objective, work, options["seed"], options["workers"], options["resume"]) as search:
+    with Search(
+        objective, work, options["seed"], options["workers"], resume=options["resume"]
+    ) as search:
         finished = _search(search, options)
         search.save()
         best = objective.free.parameters(search.best.z)
@@ -140,15 +161,20 @@ def identify(work: Path, *, list_priors: bool, **options: Any) -> None:
         if finished:
             (work / "report.md").write_text(write_report(search, best), encoding="utf-8")
     click.echo(
-        f"loss {search.start_loss:.3f} at the start, {search.best.loss:.3f} at the best of "
+        f"loss {search.best.start_loss:.3f} at the start, {search.best.loss:.3f} at the best of "
         f"{search.best.evaluations} evaluations"
     )
+    if search.best.counting:
+        click.echo(
+            f"misses {search.best.start_missed:.3f} at the start, "
+            f"{search.best.missed:.3f} at the best"
+        )
     click.echo(f"parameters: {work / 'identified.toml'}")
     if not finished:
         click.echo("interrupted; --resume goes on", err=True)
         sys.exit(INTERRUPTED)
     click.echo(f"report: {work / 'report.md'}")
-    if not search.best.loss < search.start_loss:
+    if not search.best.improved:
         click.echo(
             "error: nothing better than the start was found; free more, widen --bound, "
             "or try another --seed or --sigma",
@@ -167,33 +193,35 @@ def _print_priors() -> None:
 
 def _objective(options: dict[str, Any]) -> Objective:
     """The free parameters, targets, curves and conditions that the options choose."""
-    from ..identification.objective import (
-        CONDITIONS,
-        Objective,
-        Series,
-        paper_targets,
-        read_targets,
-    )
-    from ..identification.priors import FreeNumbers
+    from ..identification.conditions import CONDITIONS
+    from ..identification.free_numbers import FreeNumbers
+    from ..identification.objective import Objective, Series
+    from ..identification.targets import paper_targets, read_targets, targets_of_tests
     from ..validation.curves import read_curves
 
     parameters, modes, _ = choose(
         options["preset"], options["file"], options["mode"], options["pairs"]
     )
     names = options["free"].split(",") if options["free"] else None
-    numbers = FreeNumbers(parameters, names, dict(map(_bound, options["bounds"])))
+    numbers = FreeNumbers(parameters, names, dict(map(_bound, options["bounds"])), modes)
     pairs = [split_pair(pair, "--series") for pair in options["series"]]
     curves = [Series(mode, read_curves(path)) for mode, path in pairs]
     targets, conditions = options["targets"], options["conditions"]
+    sensors, count = options["scalars"] == "tests", options["count"]
     if targets:
         wanted = read_targets(targets)
     elif curves:
         wanted = []
     else:
-        wanted = [t for t in paper_targets() if t.mode in modes]
+        printed = targets_of_tests() if sensors else paper_targets()
+        wanted = [t for t in printed if t.mode in modes]
+    if count and not wanted:
+        raise LandingError(
+            f"--count {count} counts scalars, and there are none; give --targets, or leave it out"
+        )
     if conditions is None:
         conditions = not (targets or curves)
-    return Objective(numbers, wanted, curves, CONDITIONS if conditions else ())
+    return Objective(numbers, wanted, curves, CONDITIONS if conditions else (), sensors=sensors)
 
 
 def _search(search: Search, options: dict[str, Any]) -> bool:
@@ -211,17 +239,22 @@ def _search(search: Search, options: dict[str, Any]) -> bool:
         def show_progress(done: int, loss: float) -> None:
             bar.total = max(bar.total or 0, done)
             bar.update(done - bar.n)
-            bar.set_postfix_str(f"loss {loss:.2f}")
+            bar.set_postfix_str(f"{'misses' if search.best.counting else 'loss'} {loss:.2f}")
 
         try:
-            bar.set_description_str("global search")
-            search.explore(
-                options["evaluations"], show_progress, options["sigma"], options["population"]
-            )
-            if options["polish"]:
-                bar.set_description_str("least squares")
-                bar.total = search.best.evaluations + options["polish"]
-                search.polish(options["polish"], show_progress)
+            if not search.best.counting:
+                bar.set_description_str("global search")
+                search.global_search(
+                    options["evaluations"], show_progress, options["sigma"], options["population"]
+                )
+                if options["polish"]:
+                    bar.set_description_str("least squares")
+                    bar.total = search.best.evaluations + options["polish"]
+                    search.refine(options["polish"], show_progress)
+            if options["count"]:
+                bar.set_description_str("counting search")
+                bar.total = search.best.evaluations + options["count"] - search.best.counted
+                search.count(options["count"], show_progress)
         except KeyboardInterrupt:
             return False
     return True

@@ -1,33 +1,36 @@
-"""Identification: a global search (CMA-ES), then least squares, on all cores; seeded, resumable,
-and never losing its best.
+"""Identification on all cores: a global search, least squares, and a search that counts.
+
+It is seeded and resumable, and never loses its best point.
 """
 
 from __future__ import annotations
 
-import json
-import pickle
 import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..durable import write_durably
-from ..errors import LandingError
 from ..workers import default_workers
-from .objective import Objective
+from .counting import KICKS, count_round
+from .free_numbers import folded
+from .global_search import GlobalSearch
+from .objective import Objective, cauchy_loss
+from .search_folder import Best, SearchFolder
 
+# difference for the Jacobian, on the unit cube
 STEP = 1e-3
+# gets the evaluations so far and the best loss (in the counting search: the fewest misses)
+Progress = Callable[[int, float], object]
 _OBJECTIVE: Objective | None = None
 
 
 def _adopt(objective: Objective) -> None:
-    """In a worker: Ctrl-C is the parent's to answer."""
+    """Set up a worker; Ctrl-C is the parent's to answer."""
     global _OBJECTIVE
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _OBJECTIVE = objective
@@ -38,22 +41,19 @@ def _misfits(z: Sequence[float]) -> NDArray[np.float64]:
     return _OBJECTIVE.misfits(z)
 
 
-@dataclass
-class Best:
-    """The best point so far: `z` on the unit cube, its loss, and how it came about."""
-
-    z: list[float]
-    loss: float
-    evaluations: int
-    stage: str
-    seed: int
-
-
 class Search:
-    """One identification. `folder` keeps its best and its state, from which `resume` goes on.
+    """One identification.
 
-    Raises LandingError: the folder holds a search already and `resume` is not asked for, or one of
-        other free numbers or targets.
+    Args:
+        objective: What it makes small.
+        folder: The folder that keeps its best point and its state.
+        seed: The seed.
+        workers: The number of processes; None: one for each core that this process may use.
+        resume: Whether to go on from what the folder holds.
+
+    Raises:
+        LandingError: The folder holds a search and `resume` is not asked for; or it is, and the
+            folder holds none, or one of other free numbers or targets.
     """
 
     def __init__(
@@ -62,40 +62,20 @@ class Search:
         folder: Path,
         seed: int = 1,
         workers: int | None = None,
+        *,
         resume: bool = False,
     ) -> None:
         self.objective = objective
-        self.folder = folder
         self.seed = seed
         self.workers = workers or default_workers()
-        self.labels = objective.free.labels
-        start = objective.free.start()
-        self.best = Best(start, float("inf"), 0, "start", seed)
-        self.start_loss = float("nan")
-        self._strategy: Any = None
+        self._folder = SearchFolder(folder, objective)
+        self._global: GlobalSearch | None = None
         self._pool: ProcessPoolExecutor | None = None
-        best, state = folder / "best.json", folder / "search.pickle"
-        if best.exists() and not resume:
-            raise LandingError(
-                f"{folder} holds an identification; --resume goes on with it, --work names another folder"
-            )
         if resume:
-            self._take_up(best, state)
-        folder.mkdir(parents=True, exist_ok=True)
-
-    def _take_up(self, best: Path, state: Path) -> None:
-        try:
-            kept = json.loads(best.read_text(encoding="utf-8"))
-        except (OSError, ValueError) as e:
-            raise LandingError(f"{best} cannot be read ({e}); there is nothing to resume") from None
-        if kept.pop("labels") != self.labels or kept.pop("targets") != self.objective.labels:
-            raise LandingError(
-                f"{best} is of other free numbers or targets; resume with the same, or name another folder by --work"
-            )
-        self.start_loss = kept.pop("start_loss")
-        self.best = Best(**kept)
-        if state.exists():
-            self._strategy = pickle.loads(state.read_bytes())
+            self.best, self._global = self._folder.load()
+        else:
+            self._folder.create()
+            self.best = Best(objective.free.start(), float("inf"), 0, "start", seed)
 
     def __enter__(self) -> Search:
         self._pool = ProcessPoolExecutor(
@@ -114,73 +94,84 @@ class Search:
             self._pool = None
 
     def evaluate(self, points: Sequence[Sequence[float]]) -> list[NDArray[np.float64]]:
-        """Misfits at several points, side by side; they count as tried."""
-        found = self.look(points)
+        """The misfits at several points, side by side; they count as evaluations."""
+        found = self.evaluate_uncounted(points)
         self.best.evaluations += len(points)
         return found
 
-    def look(self, points: Sequence[Sequence[float]]) -> list[NDArray[np.float64]]:
-        """Misfits at several points, side by side."""
+    def evaluate_uncounted(self, points: Sequence[Sequence[float]]) -> list[NDArray[np.float64]]:
+        """The misfits at several points, side by side."""
         assert self._pool is not None
         return list(self._pool.map(_misfits, [list(map(float, p)) for p in points]))
 
-    def consider(self, z: Sequence[float], misfits: NDArray[np.float64], stage: str) -> float:
-        """The loss of a point; it is kept, on disk too, where it is the best so far."""
-        loss = float(np.log1p(misfits**2).sum())
+    def update_best(self, z: Sequence[float], misfits: NDArray[np.float64], stage: str) -> float:
+        """The loss of a point, which is kept, on disk too, where that is the least so far."""
+        loss = cauchy_loss(misfits)
         if loss < self.best.loss:
-            self.best = Best([float(x) for x in z], loss, self.best.evaluations, stage, self.seed)
-            self.save()
+            self._keep(z, loss, stage)
         return loss
 
-    def save(self) -> None:
-        """Write best point and search state, each to a temporary name first."""
-        told = {
-            **asdict(self.best),
-            "labels": self.labels,
-            "targets": self.objective.labels,
-            "start_loss": self.start_loss,
-        }
-        write_durably(self.folder / "best.json", json.dumps(told, indent=1).encode())
-        if self._strategy is not None:
-            write_durably(self.folder / "search.pickle", pickle.dumps(self._strategy))
+    def _update_fewest_misses(self, z: Sequence[float], misfits: NDArray[np.float64]) -> None:
+        missed = self.objective.missed(misfits)
+        if self.best.missed is None or missed < self.best.missed:
+            self._keep(z, cauchy_loss(misfits), "counting search", missed)
 
-    def explore(
-        self,
-        evaluations: int,
-        progress: Callable[[int, float], object],
-        sigma: float = 0.1,
-        population: int = 32,
+    def _keep(
+        self, z: Sequence[float], loss: float, stage: str, missed: float | None = None
     ) -> None:
-        """Global search by CMA-ES until `evaluations` landings of both modes have been tried in
-        all, or it has converged.
+        point = [float(x) for x in z]
+        self.best = replace(
+            self.best, z=point, loss=loss, stage=stage, seed=self.seed, missed=missed
+        )
+        self._folder.save_best(self.best)
 
-        `progress` is told the evaluations so far and the best loss.
+    def save(self) -> None:
+        """Write the best point and the state of the search."""
+        self._folder.save_best(self.best)
+        if self._global is not None:
+            self._folder.save_state(self._global)
+
+    def global_search(
+        self, evaluations: int, progress: Progress, sigma: float = 0.1, population: int = 32
+    ) -> None:
+        """Search by CMA-ES until it has converged, or until enough landings have been tried.
+
+        Args:
+            evaluations: The evaluations of the landings, in all, after which none begins.
+            progress: Called after each generation.
+            sigma: The first standard deviation, on the unit cube.
+            population: The number of points in a generation.
         """
-        import cma
-
-        if self._strategy is None:
+        if not self.best.evaluations:
             (first,) = self.evaluate([self.best.z])
-            self.start_loss = self.consider(self.best.z, first, "start")
-            options = {"seed": self.seed, "popsize": population, "verbose": -9}
-            self._strategy = cma.CMAEvolutionStrategy(self.best.z, sigma, options)
-        while self.best.evaluations < evaluations and not self._strategy.stop():
-            points = self._strategy.ask()
-            losses = [
-                self.consider(z, m, "global search") for z, m in zip(points, self.evaluate(points))
-            ]
-            self._strategy.tell(points, losses)
+            self.best.start_missed = self.objective.missed(first)
+            self.best.start_loss = cauchy_loss(first)
+            self.update_best(self.best.z, first, "start")
+        if self._global is None:
+            self._global = GlobalSearch(self.best.z, sigma, population, self.seed)
+        while self.best.evaluations < evaluations and not self._global.converged:
+            points = self._global.ask()
+            found = self.evaluate(points)
+            self._global.tell(
+                [self.update_best(z, m, "global search") for z, m in zip(points, found)]
+            )
             self.save()
             progress(self.best.evaluations, self.best.loss)
 
-    def polish(self, evaluations: int, progress: Callable[[int, float], object]) -> None:
-        """Least squares (scipy, trust region, Cauchy's loss, bounds) from the best point; the
-        Jacobian's columns side by side.
+    def refine(self, evaluations: int, progress: Progress) -> None:
+        """Least squares from the best point (scipy: trust region, Cauchy's loss, bounds).
+
+        The Jacobian's columns are evaluated side by side.
+
+        Args:
+            evaluations: The evaluations of the landings at most, the Jacobian's included.
+            progress: Called after each point.
         """
         from scipy.optimize import least_squares
 
         def residuals(z: NDArray[np.float64]) -> NDArray[np.float64]:
             (found,) = self.evaluate([z.tolist()])
-            self.consider(z.tolist(), found, "least squares")
+            self.update_best(z.tolist(), found, "least squares")
             progress(self.best.evaluations, self.best.loss)
             return found
 
@@ -196,23 +187,41 @@ class Search:
             x_scale="jac",
         )
 
+    def count(self, evaluations: int, progress: Progress) -> None:
+        """Search for the fewest missed bounds, in rounds from the best point (`count_round`).
+
+        Args:
+            evaluations: The evaluations of the landings by this search, in all, after which no
+                round begins.
+            progress: Called after each step.
+        """
+        if not self.best.counting:
+            (first,) = self.evaluate_uncounted([folded(self.best.z).tolist()])
+            self.best.missed = self.objective.missed(first)
+            self._global = None
+
+        def evaluate(points: Sequence[Sequence[float]]) -> list[NDArray[np.float64]]:
+            found = self.evaluate(points)
+            self.best.counted += len(points)
+            for z, misfits in zip(points, found):
+                self._update_fewest_misses(z, misfits)
+            progress(self.best.evaluations, float(self.best.missed or 0.0))
+            return found
+
+        while self.best.counted < evaluations:
+            kick = KICKS[self.best.rounds % len(KICKS)]
+            start, seed = folded(self.best.z).tolist(), (self.seed, self.best.rounds)
+            count_round(self.objective.soft_count, evaluate, start, seed, kick)
+            self.best.rounds += 1
+            self.save()
+
     def jacobian(self, z: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Derivative of the misfit by `z` (targets, numbers) by central differences, one-sided at the cube's faces."""
-        higher: list[NDArray[np.float64]] = []
-        lower: list[NDArray[np.float64]] = []
-        for i in range(len(z)):
-            for points, sign in ((higher, 1.0), (lower, -1.0)):
-                moved = np.array(z, dtype=float)
-                moved[i] = np.clip(moved[i] + sign * STEP, 0.0, 1.0)
-                points.append(moved)
-        found = self.look([p.tolist() for p in (*higher, *lower)])
+        """The derivatives of the misfits by `z`, shape (misfits, numbers).
+
+        By central differences, one-sided at the cube's faces.
+        """
+        higher, lower = (np.clip(z + sign * STEP * np.eye(len(z)), 0.0, 1.0) for sign in (1, -1))
+        found = self.evaluate_uncounted([*higher.tolist(), *lower.tolist()])
         n = len(z)
         columns = [(found[i] - found[n + i]) / (higher[i][i] - lower[i][i]) for i in range(n)]
         return np.array(columns).T
-
-
-def folded(z: Sequence[float]) -> NDArray[np.float64]:
-    """`z` inside the unit cube: what lies beyond a face is mirrored at it."""
-    turned = np.abs(np.asarray(z, dtype=float)) % 2.0
-    inside: NDArray[np.float64] = np.where(turned > 1.0, 2.0 - turned, turned)
-    return inside

@@ -1,137 +1,155 @@
-"""What an identification came to: the fit, numbers at their bounds, and how well each number is
-determined.
-"""
+"""The report of an identification: the fit, the free numbers, and the conditions."""
 
 from __future__ import annotations
-
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import __version__
 from ..parameters import Parameters
-from .identify import Search, folded
-from .objective import TOLERANCE, fit_of
-
-AT_BOUND = 0.01
-# the standard deviation of a uniform prior on [0, 1]: a number not known better than that is not
-# identified
-UNINFORMED = 12.0**-0.5
-WELL, POORLY = 0.05, 0.15
-
-
-@dataclass(frozen=True)
-class Determination:
-    """How well the misfits determine one number: posterior standard deviation as a part of the
-    prior's width, and what moves with it.
-    """
-
-    label: str
-    value: float
-    lo: float
-    hi: float
-    z: float
-    deviation: float
-    partner: str
-    correlation: float
-    scalar: str
-
-    @property
-    def verdict(self) -> str:
-        """In words."""
-        if self.z < AT_BOUND or self.z > 1.0 - AT_BOUND:
-            return "at its bound"
-        if self.deviation > 0.8 * UNINFORMED:
-            return "not identifiable"
-        return (
-            "well determined"
-            if self.deviation < WELL
-            else "determined"
-            if self.deviation < POORLY
-            else "poorly determined"
-        )
-
-
-def determinations(search: Search) -> list[Determination]:
-    """From the Jacobian at the best point: covariance (J'J/s2 + prior)^-1 with Cauchy's weights, on
-    the unit cube.
-
-    Gaussian approximation, valid near the point only; s2 is 1 or the mean weighted misfit squared,
-    where that is larger.
-    """
-    z = folded(search.best.z)
-    (misfits,) = search.look([z.tolist()])
-    jacobian = search.jacobian(z)
-    weights = 1.0 / (1.0 + misfits**2)
-    spread = max(1.0, float((weights * misfits**2).sum() / weights.sum()))
-    information = (jacobian.T * weights) @ jacobian / spread + np.eye(len(z)) / UNINFORMED**2
-    covariance = np.linalg.inv(information)
-    deviation = np.sqrt(np.diag(covariance))
-    correlation = covariance / np.outer(deviation, deviation)
-    np.fill_diagonal(correlation, 0.0)
-    labels = search.objective.free.labels
-    strongest = np.argmax(np.abs(jacobian) * np.sqrt(weights)[:, None], axis=0)
-    found = []
-    for i, ((prior, _), value) in enumerate(
-        zip(search.objective.free.columns, search.objective.free.numbers(z.tolist()))
-    ):
-        j = int(np.argmax(np.abs(correlation[i])))
-        found.append(
-            Determination(labels[i], value, prior.lo, prior.hi, float(z[i]), float(deviation[i]), labels[j],
-                          float(correlation[i, j]), search.objective.labels[int(strongest[i])])
-        )  # fmt: skip
-    return found
-
-
-def counted(errors: NDArray[np.float64]) -> str:
-    """`36 / 41 / 45 of 48` within 5, 10, 20 %."""
-    within = [int((np.abs(errors) <= p).sum()) for p in (0.05, 0.10, 0.20)]
-    return f"{within[0]} / {within[1]} / {within[2]} of {len(errors)}"
+from ..quantities import MODES
+from ..validation.paper import LEVELS
+from .determination import determinations
+from .identify import Search
+from .objective import Objective
+from .search_folder import Best
+from .soft_count import TOLERANCE
+from .targets import Fit, fit_of, landed, paper_targets, targets_of_tests
 
 
 def write_report(search: Search, parameters: Parameters) -> str:
-    """The report as Markdown."""
-    fit = fit_of(parameters)
-    known = determinations(search)
-    best = search.best
+    """The report as Markdown; `parameters` are those of the best point.
+
+    Raises:
+        LandingError: A landing cannot be run or read.
+    """
+    objective = search.objective
+    lines = ["# Identification", "", _story(search.best), ""]
+    if objective.targets:
+        lines += _fit_lines(objective, parameters)
+    lines += _determination_lines(search)
+    if objective.conditions:
+        lines += _condition_lines(objective, parameters)
+    return "\n".join(lines) + "\n"
+
+
+def _story(best: Best) -> str:
     story = (
-        f"rlv-landing {__version__}, seed {best.seed}, {best.evaluations} evaluations of both landings; "
-        f"loss {search.start_loss:.2f} at the start, {best.loss:.2f} at the best point (from the {best.stage}). "
-        f"The loss is the sum of ln(1 + misfit^2), a misfit of one being {100 * TOLERANCE:g} % of a scalar."
+        f"rlv-landing {__version__}, seed {best.seed}, {best.evaluations} evaluations of the "
+        f"landings; loss {best.start_loss:.2f} at the start, {best.loss:.2f} at the best point "
+        f"(from the {best.stage})."
     )
-    lines = ["# Identification", "", story, ""]
+    if best.counting:
+        story += (
+            f" {best.counted} of them counted misses: {best.start_missed:.2f} at the start, "
+            f"{best.missed:.2f} at the best point."
+        )
+    return (
+        f"{story} The loss is the sum of ln(1 + misfit^2), "
+        f"a misfit of one being {100 * TOLERANCE:g} % of a scalar."
+    )
+
+
+def _fit_lines(objective: Objective, parameters: Parameters) -> list[str]:
+    fits = fit_of(parameters, objective.targets, sensors=objective.sensors)
+    through = ", read through the tests' sensor chain" if objective.sensors else ""
+    beside = (
+        f"{len(objective.free)} free numbers stand beside {len(fits)} scalars{through}: "
+        "what follows is a fit, not a prediction."
+    )
+    lines = [beside, "", f"Scalars within 5 / 10 / 20 %: {counted_both_ways(fits)}.", ""]
+    if predicted := _other_mode_predicted(parameters, objective):
+        lines += [predicted, ""]
     lines += [
-        f"The paper's printed simulation scalars within 5 / 10 / 20 %: **{counted(np.array([e for *_, e in fit]))}**.",
+        "## Fit of every scalar",
         "",
+        "| scalar | wanted | ours | error | plain error |",
+        "|---|---:|---:|---:|---:|",
     ]
     lines += [
-        "## Fit of every printed scalar",
+        f"| {f.wanted.id} | {f.wanted.value:g} | {f.ours:.4g} | {100 * f.error:+.1f} % "
+        f"| {100 * f.plain_error:+.1f} % |"
+        for f in fits
+    ]
+    return [*lines, ""]
+
+
+def counted_both_ways(fits: list[Fit]) -> str:
+    """The counts on the scalars' scales, and by the plain relative error of every scalar."""
+    on_scale = _counted(np.array([f.error for f in fits]))
+    plain = _counted(np.array([f.plain_error for f in fits]))
+    return (
+        f"**{on_scale}** (near-zero scalars on their curve's scale; "
+        f"by the plain relative error {plain})"
+    )
+
+
+def _counted(errors: NDArray[np.float64]) -> str:
+    """`36 / 41 / 45 of 48` within 5, 10, 20 %."""
+    within = (int((np.abs(errors) <= level / 100.0).sum()) for level in LEVELS)
+    return f"{' / '.join(map(str, within))} of {len(errors)}"
+
+
+def _other_mode_predicted(parameters: Parameters, objective: Objective) -> str:
+    """A sentence on the landing mode that was not fitted; empty if both were.
+
+    It lands with this vehicle and the fitted mode's touchdown state. Table 2 gives both drop tests
+    the same state, so that nothing of the other mode enters the prediction.
+    """
+    if len(objective.modes) != 1:
+        return ""
+    (fitted,) = objective.modes
+    (other,) = (m for m in MODES if m != fitted)
+    drop = {
+        name: value
+        for name, value in parameters.for_mode(fitted).items()
+        if name.startswith("drop.") and name != "drop.mode"
+    }
+    printed = targets_of_tests() if objective.sensors else paper_targets()
+    fits = fit_of(
+        parameters.with_mode_values({other: drop}, "identified"),
+        [t for t in printed if t.mode == other],
+        sensors=objective.sensors,
+    )
+    return (
+        f"Prediction of {other}, none of whose scalars was used, from this vehicle and "
+        f"{fitted}'s touchdown state: {counted_both_ways(fits)}."
+    )
+
+
+def _determination_lines(search: Search) -> list[str]:
+    deviation = (
+        "Deviation: posterior standard deviation as a part of the bounds' width, "
+        "by the Jacobian there"
+    )
+    lines = [
+        "## How well each number is determined",
         "",
-        "| scalar | paper | ours | error |",
-        "|---|---:|---:|---:|",
-    ]
-    lines += [
-        f"| {name} | {wanted:g} | {ours:.4g} | {100 * error:+.1f} % |"
-        for name, wanted, ours, error in fit
-    ]
-    lines += ["", "## How well each number is determined", ""]
-    lines += [
-        "Deviation: posterior standard deviation as a part of the bounds' width, by the Jacobian there (0.29: the prior alone).",
+        f"{deviation} (0.29: the prior alone).",
         "",
-    ]
-    lines += [
         "| number | value | bounds | deviation | verdict | moves with | most sensitive |",
         "|---|---:|---|---:|---|---|---|",
     ]
-    for d in known:
+    for d in determinations(search):
         moves = f"{d.partner} ({d.correlation:+.2f})"
         lines.append(
-            f"| {d.label} | {d.value:.4g} | {d.lo:g} ... {d.hi:g} | {d.deviation:.3f} | {d.verdict} | {moves} | {d.scalar} |"
+            f"| {d.label} | {d.value:.4g} | {d.lo:g} ... {d.hi:g} | {d.deviation:.3f} "
+            f"| {d.verdict} | {moves} | {d.scalar} |"
         )
-    if search.objective.conditions:
-        lines += ["", "## Conditions", "", "| condition | at most | because |", "|---|---|---|"]
-        lines += [
-            f"| {c.name} | {c.limit:g} {c.unit} | {c.reason} |" for c in search.objective.conditions
-        ]
-    return "\n".join(lines) + "\n"
+    return lines
+
+
+def _condition_lines(objective: Objective, parameters: Parameters) -> list[str]:
+    modes = objective.modes
+    histories = [landed(parameters, mode) for mode in modes]
+    lines = [
+        "",
+        "## Conditions",
+        "",
+        f"| condition | at most | {' | '.join(modes)} | because |",
+        "|---|---|" + "---|" * len(modes) + "---|",
+    ]
+    for c in objective.conditions:
+        found = " | ".join(f"{c.measure(h):.3g} {c.unit}".rstrip() for h in histories)
+        lines.append(f"| {c.name} | {c.limit:g} {c.unit} | {found} | {c.reason} |")
+    return lines

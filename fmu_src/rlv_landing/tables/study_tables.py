@@ -37,6 +37,8 @@ def validation_tables(found: Validation) -> str:
         f"within 5 / 10 / 20 % of the paper's simulation: {counts_line(found.counts)}\n"
         "within 5 / 10 / 20 % of the paper's tests:      "
         f"{counts_line(found.counts_against_test)}\n"
+        "the same, read through the tests' sensor chain: "
+        f"{counts_line(found.counts_against_test_sensed)}\n"
         "the paper's own simulation of its tests:        "
         f"{counts_line(found.paper_counts_against_test)}\n"
     )

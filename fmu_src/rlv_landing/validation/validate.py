@@ -5,7 +5,6 @@ The user's own measured curves may be compared as well.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from math import isnan
@@ -17,15 +16,9 @@ from ..landing import DEFAULT_RTOL, Landing
 from ..parameters import Parameters
 from ..quantities import LEGS, MODES
 from .measures import DamperWork, damper_work, energy_discrepancy, leg_work, onset, rrms
-from .paper import LEVELS, Comparison, compare, counts, paper_counts_against_test
+from .paper import Comparison, compare, counts, paper_counts_against_test
 from .sensors import Phase, even_step, through_sensors
 from .whole_strokes import whole_strokes
-
-Bounds = tuple[int, int, int]
-
-# the counts that `yue2022-figures` is stated to reach: scalars within 5, 10, 20 % of the paper's
-# simulation, by mode
-STATED: dict[str, Bounds] = {"2-2": (18, 18, 20), "1-2-1": (20, 24, 28)}
 
 
 @dataclass(frozen=True)
@@ -89,6 +82,12 @@ class Validation:
         return counts(self.all_comparisons, "test")
 
     @property
+    def counts_against_test_sensed(self) -> dict[str, int]:
+        """The same numbers for the landings as the tests' sensors would have recorded them."""
+        sensed = [c for mode in self.modes for c in compare(self.sensed[mode], mode)]
+        return counts(sensed, "test")
+
+    @property
     def paper_counts_against_test(self) -> dict[str, int]:
         """The same numbers for the paper's own simulation."""
         return paper_counts_against_test(self.modes[0] if len(self.modes) == 1 else None)
@@ -142,6 +141,7 @@ class Validation:
             ],
             "counts": self.counts,
             "counts_against_test": self.counts_against_test,
+            "counts_against_test_sensed": self.counts_against_test_sensed,
             "paper_counts_against_test": self.paper_counts_against_test,
             "measures": {
                 mode: [self._leg_record(mode, leg) for leg in work]
@@ -243,52 +243,6 @@ def _curve_measures(
             raise LandingError(f"{name}, mode {mode}: {e}") from None
         found.append(CurveMeasure(mode, name, plain, filtered))
     return found
-
-
-def parse_bounds(text: str) -> Bounds:
-    """The least counts within 5, 10 and 20 % from a text such as `42/46/48`.
-
-    Raises:
-        LandingError: The text is anything else, or the counts fall.
-    """
-    match = re.fullmatch(r" *([0-9]{1,6}) */ *([0-9]{1,6}) */ *([0-9]{1,6}) *", text)
-    if match is None:
-        raise LandingError(
-            f"--require {text!r} is not three counts; "
-            "write the least within 5, 10 and 20 %: 36/41/45, or none"
-        )
-    a, b, c = (int(n) for n in match.groups())
-    if not a <= b <= c:
-        raise LandingError(
-            f"--require {text!r} falls: what is within 5 % is within 10 % too; "
-            "write them rising, for example 36/41/45"
-        )
-    return a, b, c
-
-
-def stated_bounds(modes: Iterable[str]) -> Bounds:
-    """The counts that `yue2022-figures` is stated to reach in `modes` together."""
-    a, b, c = (sum(STATED[mode][i] for mode in modes) for i in range(len(LEVELS)))
-    return a, b, c
-
-
-def missed_bounds(found: Mapping[str, int], bounds: Bounds) -> list[str]:
-    """A line for every count below its bound.
-
-    Raises:
-        LandingError: A bound is above the number of scalars.
-    """
-    if bounds[-1] > found["of"]:
-        raise LandingError(
-            f"--require asks for {bounds[-1]} scalars within 20 %, there are {found['of']}; "
-            "ask for at most that"
-        )
-    return [
-        f"within {level} % of the paper's simulation: {found[f'within_{level}']} of {found['of']}, "
-        f"at least {bound} are required"
-        for level, bound in zip(LEVELS, bounds)
-        if found[f"within_{level}"] < bound
-    ]
 
 
 def _or_none(value: float) -> float | None:

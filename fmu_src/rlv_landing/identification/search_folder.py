@@ -1,0 +1,150 @@
+"""The folder of an identification: its best point, and the state of its global search."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from ..durable import write_durably
+from ..errors import LandingError
+from .global_search import GlobalSearch
+from .objective import Objective
+
+NAN = float("nan")
+
+
+@dataclass
+class Best:
+    """The best point so far, and how it came about.
+
+    Attributes:
+        z: The point, on the unit cube.
+        loss: Its loss.
+        evaluations: The evaluations of the landings so far.
+        stage: The part of the identification that found it.
+        seed: The seed.
+        missed: Its softly counted misses, by which points are judged once the counting search has
+            begun; None before.
+        counted: The evaluations of the counting search.
+        rounds: The rounds of the counting search that have ended.
+        start_loss: The loss at the start.
+        start_missed: The softly counted misses at the start.
+    """
+
+    z: list[float]
+    loss: float
+    evaluations: int
+    stage: str
+    seed: int
+    missed: float | None = None
+    counted: int = 0
+    rounds: int = 0
+    start_loss: float = NAN
+    start_missed: float = NAN
+
+    @property
+    def counting(self) -> bool:
+        """Whether the counting search has begun."""
+        return self.missed is not None
+
+    @property
+    def improved(self) -> bool:
+        """Whether it is better than the start: by the count once that has begun, else by loss."""
+        if self.missed is None:
+            return self.loss < self.start_loss
+        return self.missed < self.start_missed
+
+
+class SearchFolder:
+    """The files of one identification, each written whole or not at all.
+
+    Args:
+        folder: The folder.
+        objective: What the identification makes small.
+    """
+
+    def __init__(self, folder: Path, objective: Objective) -> None:
+        self.folder = folder
+        self._best = folder / "best.json"
+        self._state = folder / "search.json"
+        free = objective.free
+        self._search: dict[str, Any] = {
+            "free numbers": {n: [p.lo, p.hi] for n, (p, _) in zip(free.labels, free.columns)},
+            "targets": {t.id: t.value for t in objective.targets},
+            "misfits": objective.labels,
+            "sensors": objective.sensors,
+        }
+
+    def create(self) -> None:
+        """Make the folder.
+
+        Raises:
+            LandingError: It holds an identification already.
+        """
+        if self._best.exists():
+            raise LandingError(
+                f"{self.folder} holds an identification; --resume goes on with it, "
+                "--work names another folder"
+            )
+        self.folder.mkdir(parents=True, exist_ok=True)
+
+    def load(self) -> tuple[Best, GlobalSearch | None]:
+        """The best point, and the global search where it has begun and no other search followed.
+
+        Raises:
+            LandingError: There is nothing to resume, a file is torn, or it is of another search.
+        """
+        try:
+            best = self._best_of(self._read(self._best))
+        except (OSError, ValueError, TypeError) as e:
+            raise LandingError(
+                f"{self._best} cannot be read ({e}); there is nothing to resume"
+            ) from None
+        if best.counting or not self._state.exists():
+            return best, None
+        try:
+            return best, GlobalSearch.restored(self._read(self._state))
+        except (OSError, ValueError) as e:
+            raise LandingError(
+                f"{self._state} cannot be resumed ({e}); "
+                f"remove it, and --resume searches anew from {self._best.name}"
+            ) from None
+
+    def _read(self, path: Path) -> dict[str, Any]:
+        kept = json.loads(path.read_text(encoding="utf-8"))
+        if not isinstance(kept, dict):
+            raise ValueError("it is no table")
+        own = kept.pop("search", None)
+        if not isinstance(own, dict) or own.keys() != self._search.keys():
+            raise ValueError("it does not say of which search it is")
+        for what, wanted in self._search.items():
+            if own[what] != wanted:
+                raise LandingError(
+                    f"{path} is of another search, with other {what}; "
+                    "resume with the same, or name another folder by --work"
+                )
+        return kept
+
+    def save_best(self, best: Best) -> None:
+        """Write the best point."""
+        self._write(self._best, asdict(best), indent=1)
+
+    def save_state(self, search: GlobalSearch) -> None:
+        """Write the state of the global search."""
+        self._write(self._state, search.state())
+
+    def _write(self, path: Path, content: Mapping[str, Any], indent: int | None = None) -> None:
+        text = json.dumps({**content, "search": self._search}, indent=indent)
+        write_durably(path, text.encode())
+
+    def _best_of(self, kept: dict[str, Any]) -> Best:
+        best = Best(**kept)
+        if len(best.z) != len(self._search["free numbers"]) or not all(map(isfinite, best.z)):
+            raise ValueError("its point is incomplete")
+        if not best.loss >= 0.0:
+            raise ValueError(f"its loss {best.loss} is none")
+        return best
