@@ -10,9 +10,15 @@ from pytest import approx
 
 from rlv_landing import LandingError, load_preset
 from rlv_landing.history import History
+from rlv_landing.identification.targets import fit_of, targets_of_tests
 from rlv_landing.validation.curves import read_curves
-from rlv_landing.validation.paper import printed_scalars
-from rlv_landing.validation.required_counts import missed_bounds, parse_bounds, stated_bounds
+from rlv_landing.validation.paper import paper_counts_against_test, printed_scalars
+from rlv_landing.validation.required_counts import (
+    STATED_OF_TESTS,
+    missed_bounds,
+    parse_bounds,
+    stated_bounds,
+)
 from rlv_landing.validation.validate import validate
 
 FORCE, STROKE = "leg[1].main_strut.force", "leg[1].main_strut.stroke"
@@ -73,6 +79,33 @@ def test_bounds_are_read_and_missed_as_written():
     )
     with pytest.raises(LandingError, match="asks for 49 scalars within 20 %, there are 48"):
         missed_bounds(found, (1, 2, 49))
+
+
+def test_a_preset_of_the_tests_has_to_reach_what_the_papers_own_simulation_reaches_of_them():
+    for modes in (("2-2",), ("1-2-1",), ("2-2", "1-2-1")):
+        paper = paper_counts_against_test(modes[0] if len(modes) == 1 else None)
+        of_paper = tuple(paper[f"within_{p}"] for p in (5, 10, 20))
+        assert stated_bounds(modes, STATED_OF_TESTS) == of_paper
+
+
+def test_counts_against_the_tests_are_those_of_what_the_sensors_record(validation):
+    fits = fit_of(load_preset("yue2022-figures"), targets_of_tests(), sensors=True)
+    errors = np.abs([f.error for f in fits])
+    assert validation.counts_against_test_sensed == {
+        **{f"within_{p}": int((errors <= p / 100).sum()) for p in (5, 10, 20)},
+        "of": 35,
+    }
+
+
+def test_a_preset_of_the_tests_is_judged_by_the_tests(command, monkeypatch):
+    monkeypatch.setattr("rlv_landing.commands.validate.TESTS_PRESET", "yue2022-figures")
+    done = command("validate", "--preset", "yue2022-figures", "--mode", "2-2", "--json")
+    required = tuple(json.loads(done.out)["required"].values())
+    assert required == stated_bounds(("2-2",), STATED_OF_TESTS)
+    counts = json.loads(done.out)["counts_against_test_sensed"]
+    missed = missed_bounds(counts, required, "the paper's tests")
+    assert done.err.splitlines() == [f"missed: {line}" for line in missed]
+    assert missed, "the preset of the simulation misses the tests; choose another that does"
 
 
 def test_curves_that_are_the_landings_own_times_a_factor_have_that_rrms(validation, tmp_path):
