@@ -44,8 +44,8 @@ TESTS_PRESET = "yue2022-tests"
 @click.option(
     "--require",
     metavar="A/B/C",
-    help="Least counts within 5, 10, 20 % of the simulation (with --preset yue2022-tests: of the "
-    "tests, through their sensors), or none [default: those that the preset is stated to reach].",
+    help="Least counts within 5, 10, 20 % of the simulation, or none "
+    "[default: those that the preset is stated to reach].",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print as JSON.")
 @click.option("--force", is_flag=True, help="Overwrite the report if it exists.")
