@@ -18,7 +18,7 @@ from pytest import approx
 from scipy.integrate import quad
 
 from rlv_landing import Landing, Parameters, core, load_preset
-from rlv_landing.assembly import new_solver
+from rlv_landing.assembly import begin, new_solver
 from rlv_landing.core.access import BODY, LEG, leg_state
 from rlv_landing.core.solvers import dormand_prince as dp
 from rlv_landing.core.solvers.phi import SMALL, phi1, phi2, phi3
@@ -222,6 +222,7 @@ def test_other_threads_run_during_a_run():
     solver = new_solver(Parameters(), DEFAULT_RTOL)
     rows = np.empty(1000 * solver.system.row)
     turns, waiting, done = [0], threading.Event(), threading.Event()
+    during = 0
 
     def other():
         while not done.is_set():
@@ -235,15 +236,20 @@ def test_other_threads_run_during_a_run():
     try:
         waiting.wait()
         sys.setswitchinterval(1000.0)
-        before = turns[0]
-        reached = solver.record(0.0, 1e-3, 0, 1000, rows)
-        after = turns[0]
+        # on a loaded machine the other thread may wait for a processor during a whole run
+        for _ in range(500):
+            begin(solver, Parameters())
+            before = turns[0]
+            reached = solver.record(0.0, 1e-3, 0, 1000, rows)
+            during += turns[0] - before
+            if during > 10:
+                break
     finally:
         sys.setswitchinterval(usual)
         done.set()
         thread.join()
     assert reached == 1000
-    assert after > before + 10
+    assert during > 10
 
 
 def test_landings_in_several_threads_are_the_same_as_one_by_one(mode):
