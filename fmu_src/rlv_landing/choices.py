@@ -13,7 +13,7 @@ from .errors import LandingError, unknown
 from .parameters import Parameters
 from .presets import DEFAULT_PRESET, load_preset, read_toml
 from .quantities import Quantity
-from .values import parse_value
+from .text.values import parse_value
 
 
 def split_pair(pair: str, what: str) -> tuple[str, str]:

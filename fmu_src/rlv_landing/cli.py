@@ -22,7 +22,7 @@ from .commands.simulate import simulate
 from .commands.sweep import sweep
 from .commands.validate import validate
 from .errors import LandingError, nearest, one_line
-from .terminal import make_legible
+from .text.terminal import make_legible
 
 FAILED = 1
 BAD_INPUT = 2

@@ -6,9 +6,9 @@ from pytest import approx
 
 from rlv_landing import Landing, Parameters, load_preset
 from rlv_landing.assembly import leg_models
+from rlv_landing.audit.energy import imbalance, largest_fall
 from rlv_landing.core.struts.elastic import elastic
 from rlv_landing.core.struts.kinds import auxiliary_strut, auxiliary_strut_energy
-from rlv_landing.validation.energy import imbalance, largest_fall
 
 BASE = leg_models(Parameters())[0]
 WITH_PLAY = {

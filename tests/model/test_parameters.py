@@ -12,8 +12,8 @@ from rlv_landing.choices import choose_parameters, parse_pairs
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.presets import preset_names, read_toml, to_toml
 from rlv_landing.quantities import BASE_UNITS, DISPLAY_UNITS, INPUT_QUANTITIES, OUTPUT_QUANTITIES
+from rlv_landing.text.values import parse_value
 from rlv_landing.touchdown import footpad_at_rest
-from rlv_landing.values import parse_value
 
 REALS = [q for q in PARAMETER_QUANTITIES.values() if not q.choices]
 

@@ -13,10 +13,10 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from rlv_landing import Landing, Parameters, load_preset
+from rlv_landing.audit.energy import DISSIPATED, largest_fall
+from rlv_landing.audit.rest import feet
 from rlv_landing.quantities import MODES
 from rlv_landing.studies.outcome import outcome
-from rlv_landing.validation.energy import DISSIPATED, largest_fall
-from rlv_landing.validation.rest import feet
 
 FIGURES = "yue2022-figures"
 SETTLED, TOPPLED = 2.0, 3.0

@@ -28,8 +28,8 @@ def audit(name: str | None, *, as_json: bool, **choice: Any) -> int:
     rlv-landing audit yue2022-figures
     rlv-landing audit --parameters mine.toml --mode 2-2 --json
     """
+    from ..audit.audit import audit as run
     from ..tables.study_tables import audit_tables, missed_lines
-    from ..validation.audit import audit as run
 
     if name is not None:
         if choice["preset"] is not None:

@@ -262,7 +262,7 @@ def _search(search: Search, options: dict[str, Any]) -> bool:
 
 def _bound(text: str) -> tuple[str, tuple[float, float]]:
     from ..identification.priors import quantity
-    from ..values import check_together, to_si
+    from ..text.values import check_together, to_si
 
     name, value = split_pair(text, "--bound")
     lo, dots, hi = (part.strip() for part in value.partition(".."))

@@ -1,6 +1,6 @@
 """Types of options: numbers, with or without a unit, and whole numbers.
 
-They read texts as `rlv_landing.units` does, which Python's own `float` and `int` do not: those take
+They read texts as `rlv_landing.text.units` does. Python's own `float` and `int` do not: those take
 underscores and digits of every script.
 """
 
@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from ..units import DIMENSIONLESS, UnitError, parse_unit, split
+from ..text.units import DIMENSIONLESS, UnitError, parse_unit, split
 
 # whole numbers of more digits are no count of anything
 MOST_DIGITS = 18

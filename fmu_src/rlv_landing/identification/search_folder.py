@@ -9,8 +9,8 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from ..durable import write_durably
 from ..errors import LandingError
+from ..text.durable import write_durably
 from .global_search import GlobalSearch
 from .objective import Objective
 

@@ -13,11 +13,11 @@ from ..history import History
 from ..landing import Landing
 from ..parameters import Parameters
 from ..quantities import MODES, Quantity
-from ..text_files import read_csv
-from ..units import parse_unit
+from ..text.files import read_csv
+from ..text.units import parse_unit
+from ..text.values import parse_value
 from ..validation.paper import MEANINGS, RUN_AFTER_CONTACT, Reading, printed_scalars
 from ..validation.sensors import SAMPLING, through_sensors
-from ..values import parse_value
 
 # peaks of a contact are read wrong by up to 10 % at 1 kHz: landings are read at the tests' sampling
 EVERY = 1.0 / SAMPLING

@@ -9,8 +9,8 @@ from typing import Any
 from ..errors import LandingError, unknown
 from ..parameters import GROUPS, PARAMETER_QUANTITIES, Parameters
 from ..quantities import MODES
-from ..text_files import parse_document, read_text, toml_text
-from ..values import parse_value
+from ..text.files import parse_document, read_text, toml_text
+from ..text.values import parse_value
 
 FOLDER = Path(__file__).parent
 DEFAULT_PRESET = "yue2022-figures"

@@ -12,8 +12,8 @@ from typing import Any
 from ..errors import LandingError, unknown
 from ..parameters import check_value
 from ..quantities import Quantity
-from ..text_files import parse_document, read_text
-from ..values import parse_value
+from ..text.files import parse_document, read_text
+from ..text.values import parse_value
 
 
 def read(path: Path) -> tuple[dict[str, Any], str]:

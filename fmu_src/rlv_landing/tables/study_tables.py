@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..validation.audit import Audit
-from ..validation.bounds import BOUNDS, Check
-from ..validation.convergence import Errors
+from ..audit.audit import Audit
+from ..audit.bounds import BOUNDS, Check
+from ..audit.convergence import Errors
 from ..validation.paper import Comparison
 from ..validation.validate import Validation
 from .landing import (

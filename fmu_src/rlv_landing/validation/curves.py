@@ -14,9 +14,9 @@ import numpy as np
 from ..errors import LandingError, unknown
 from ..history import History
 from ..quantities import OUTPUT_NAMES, OUTPUT_QUANTITIES, Quantity
-from ..text_files import read_csv
-from ..units import Unit, UnitError, parse_number
-from ..values import number_in_si, split_heading, unit_of
+from ..text.files import read_csv
+from ..text.units import Unit, UnitError, parse_number
+from ..text.values import number_in_si, split_heading, unit_of
 
 QUANTITIES = {"time": Quantity("s", "time", name="time"), **{q.name: q for q in OUTPUT_QUANTITIES}}
 

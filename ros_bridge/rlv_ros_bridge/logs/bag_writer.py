@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import IO, Any
 
 from rlv_landing import __version__
-from rlv_landing.durable import write_durably
 from rlv_landing.errors import LandingError
+from rlv_landing.text.durable import write_durably
 
 from .mcap_stream import LIBRARY
 from .reader import FINISHED, UNFINISHED

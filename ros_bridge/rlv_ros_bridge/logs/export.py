@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from rlv_landing.durable import write_durably
 from rlv_landing.errors import LandingError
 from rlv_landing.history import History
 from rlv_landing.presets import to_toml
 from rlv_landing.quantities import OUTPUT_NAMES, OUTPUT_QUANTITIES
+from rlv_landing.text.durable import write_durably
 
 ENDINGS = (".csv", ".parquet")
 UNITS = {"time": "s", **{name: q.unit for name, q in zip(OUTPUT_NAMES, OUTPUT_QUANTITIES)}}

@@ -22,7 +22,7 @@ from rlv_landing import Parameters
 from rlv_landing.choices import choose_parameters
 from rlv_landing.errors import LandingError, unknown
 from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.values import parse_value
+from rlv_landing.text.values import parse_value
 
 from ..ros.rclpy_internals import parameter_overrides
 from .settings import SETTINGS, Settings, check_setting, make_settings

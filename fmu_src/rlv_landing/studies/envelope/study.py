@@ -17,7 +17,7 @@ from ...errors import LandingError, unknown
 from ...parameters import PARAMETER_QUANTITIES, Parameters, check_value
 from ...presets import to_toml
 from ...quantities import Quantity
-from ...values import check_together, is_number, parse_value, parse_values
+from ...text.values import check_together, is_number, parse_value, parse_values
 from .. import toml_keys
 from ..limits import LIMITS
 from ..outcome import DEFAULT_SLIDE

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ...errors import LandingError, unknown
 from ...parameters import PARAMETER_QUANTITIES, check_value
 from ...quantities import INPUT_QUANTITIES, Quantity, shown
-from ...values import check_together, is_number, to_si, unit_of
+from ...text.values import check_together, is_number, to_si, unit_of
 from .. import toml_keys
 
 Array = NDArray[np.float64]

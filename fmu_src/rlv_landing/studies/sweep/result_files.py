@@ -26,9 +26,9 @@ import numpy
 import scipy
 
 from ... import __version__
-from ...durable import write_durably
 from ...errors import LandingError
 from ...quantities import Quantity
+from ...text.durable import write_durably
 from .extras import arrow
 from .sweep_row import Task
 

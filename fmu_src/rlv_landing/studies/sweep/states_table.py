@@ -12,9 +12,9 @@ from typing import Any
 from numpy.typing import NDArray
 
 from ...errors import LandingError
-from ...text_files import read_csv
-from ...units import UnitError, parse_number
-from ...values import number_in_si, split_heading, unit_of
+from ...text.files import read_csv
+from ...text.units import UnitError, parse_number
+from ...text.values import number_in_si, split_heading, unit_of
 from .design import Design
 from .extras import arrow
 from .factors import column, variable

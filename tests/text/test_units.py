@@ -23,7 +23,7 @@ from rlv_landing.quantities import (
     Quantity,
 )
 from rlv_landing.studies.limits import LIMITS
-from rlv_landing.units import (
+from rlv_landing.text.units import (
     AMBIGUOUS,
     LONGEST,
     PLAIN,
@@ -34,7 +34,7 @@ from rlv_landing.units import (
     parse_unit,
     split,
 )
-from rlv_landing.values import check_together, example, parse_value, to_si
+from rlv_landing.text.values import check_together, example, parse_value, to_si
 
 ROOT = Path(__file__).parents[2]
 SYMBOLS = sorted(

@@ -9,11 +9,11 @@ import pytest
 from pytest import approx
 
 from rlv_landing import Landing, LandingError, load_preset
+from rlv_landing.audit.bounds import BOUNDS
+from rlv_landing.audit.convergence import smooth_arc
+from rlv_landing.audit.energy import DISSIPATED, HELD, SUPPLIED
+from rlv_landing.audit.momentum import impulse, momentum
 from rlv_landing.history import History
-from rlv_landing.validation.bounds import BOUNDS
-from rlv_landing.validation.convergence import smooth_arc
-from rlv_landing.validation.energy import DISSIPATED, HELD, SUPPLIED
-from rlv_landing.validation.momentum import impulse, momentum
 
 FIGURES = "yue2022-figures"
 FOOTPAD = "vehicle.transverse_load_at=footpad"

@@ -6,9 +6,9 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-from .errors import LandingError
-from .parameters import check_value
-from .quantities import Quantity, shown
+from ..errors import LandingError
+from ..parameters import check_value
+from ..quantities import Quantity, shown
 from .units import DIMENSIONLESS, Unit, UnitError, parse_unit, split
 
 _HEADING = re.compile(r"\s*(\S+?)\s*(?:\[([^\[\]]*)\])?\s*")

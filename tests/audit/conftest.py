@@ -1,11 +1,11 @@
-"""One audit of the preset yue2022-figures, for all tests of validation."""
+"""One audit of the preset yue2022-figures, for all tests of the audit."""
 
 from __future__ import annotations
 
 import pytest
 
 from rlv_landing import load_preset
-from rlv_landing.validation.audit import Audit, audit
+from rlv_landing.audit.audit import Audit, audit
 
 
 @pytest.fixture(scope="session")

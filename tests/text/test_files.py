@@ -12,8 +12,8 @@ from rlv_landing import LandingError, Parameters
 from rlv_landing.errors import LONGEST_LINE, one_line
 from rlv_landing.presets import parse_toml, read_toml, to_toml
 from rlv_landing.studies.sweep.states_table import read_states
-from rlv_landing.text_files import LARGEST_TEXT, parse_document, read_csv, toml_text
-from rlv_landing.text_files import LONGEST_LINE as LONGEST_CSV_LINE
+from rlv_landing.text.files import LARGEST_TEXT, parse_document, read_csv, toml_text
+from rlv_landing.text.files import LONGEST_LINE as LONGEST_CSV_LINE
 from rlv_landing.validation.curves import read_curves
 
 CURVES = "time [ms],leg[1].main_strut.force [kN],body.pitch [deg]\n0,-1.5,1\n1,-2.5,2\n"

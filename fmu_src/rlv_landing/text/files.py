@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, TextIO
 
-from .errors import LandingError
+from ..errors import LandingError
 
 if sys.version_info >= (3, 11):
     import tomllib

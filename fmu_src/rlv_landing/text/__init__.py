@@ -1,0 +1,1 @@
+"""Numbers with units in text, text files, terminals, and files that are written whole."""
