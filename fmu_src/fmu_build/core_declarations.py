@@ -58,12 +58,17 @@ def is_record(node: ast.stmt) -> bool:
     return isinstance(node, ast.ClassDef) and "NamedTuple" in map(ast.unparse, node.bases)
 
 
+def is_law(node: ast.stmt) -> bool:
+    """Whether `node` adds a law to its table: `TABLE["name"] = Law(...)`."""
+    return isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Subscript)
+
+
 def defined_names(tree: ast.Module) -> Iterator[str]:
     """The names that a module defines."""
     for node in tree.body:
         if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
             yield node.name
-        elif isinstance(node, ast.Assign):
+        elif isinstance(node, ast.Assign) and not is_law(node):
             yield from _targets(node)
         elif isinstance(node, ast.AnnAssign):
             yield ast.unparse(node.target)
@@ -142,7 +147,7 @@ class Types:
     def module(self, tree: ast.Module) -> Iterator[str]:
         """The declarations of one kernel file's constants, functions and classes."""
         for node in tree.body:
-            if isinstance(node, ast.Assign):
+            if isinstance(node, ast.Assign) and not is_law(node):
                 yield f"cdef {_kind(node.value)} {', '.join(_targets(node))}\n"
             elif isinstance(node, ast.FunctionDef):
                 yield f"cdef {self.signature(node)} noexcept nogil\n"

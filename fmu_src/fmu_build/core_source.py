@@ -14,7 +14,10 @@ from collections.abc import Iterator
 from graphlib import TopologicalSorter
 from pathlib import Path
 
-from .core_declarations import TRANSLATED, declarations, defined_names, is_record
+from .core_declarations import TRANSLATED, declarations, defined_names, is_law, is_record
+
+# for each table of laws, of each law in the order of names: its functions by the member's name
+Laws = dict[str, list[dict[str, str]]]
 
 CORE = Path(__file__).parent.parent / "rlv_landing" / "core"
 MODULE = "compiled"
@@ -61,22 +64,21 @@ def kernels(core: Path = CORE) -> list[Path]:
 def _siblings(path: Path) -> Iterator[Path]:
     """The kernel files that `path` imports."""
     for node in ast.parse(path.read_text()).body:
-        if isinstance(node, ast.ImportFrom) and node.level and node.module:
-            found = (
-                path.parents[node.level - 1].joinpath(*node.module.split(".")).with_suffix(".py")
-            )
-            if found.stem not in TRANSLATED:
-                yield found
+        if isinstance(node, ast.ImportFrom) and node.level:
+            folder = path.parents[node.level - 1]
+            modules = [node.module] if node.module else [alias.name for alias in node.names]
+            for module in modules:
+                found = folder.joinpath(*module.split(".")).with_suffix(".py")
+                if found.stem not in TRANSLATED:
+                    yield found
 
 
-def translated(text: str) -> str:
-    """`text` without its imports and tables of laws; a choice of a law branches on its number."""
+def translated(text: str, laws: Laws) -> str:
+    """`text` without its imports and laws' tables; a choice of a law branches on its number."""
     lines = text.splitlines()
-    tree = ast.parse(text)
-    laws = tables(tree)
     # from the end, so that line numbers hold
-    for node in reversed(tree.body):
-        if isinstance(node, (ast.ImportFrom, ast.AnnAssign)) or is_record(node):
+    for node in reversed(ast.parse(text).body):
+        if isinstance(node, (ast.ImportFrom, ast.AnnAssign)) or is_record(node) or is_law(node):
             lines[node.lineno - 1 : node.end_lineno] = [""]
         elif isinstance(node, ast.FunctionDef) and (branches := _branches(node, laws)):
             last = node.body[-1]
@@ -84,32 +86,34 @@ def translated(text: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def tables(tree: ast.Module) -> dict[str, list[dict[str, str]]]:
-    """The tables of laws in a module: of each law, which function it has under which name."""
+def tables(sources: list[Path]) -> Laws:
+    """The tables of laws in `sources`, each sorted by the laws' names."""
+    nodes = [node for path in sources for node in ast.parse(path.read_text()).body]
     members = {
         node.name: [
             field.target.id
             for field in node.body
             if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name)
         ]
-        for node in tree.body
+        for node in nodes
         if isinstance(node, ast.ClassDef)
     }
-    found = {}
-    for node in tree.body:
+    found: dict[str, dict[str, dict[str, str]]] = {}
+    for node in nodes:
         if (
-            isinstance(node, ast.AnnAssign)
-            and isinstance(node.target, ast.Name)
-            and isinstance(node.value, ast.Dict)
+            isinstance(node, ast.Assign)
+            and isinstance(node.targets[0], ast.Subscript)
+            and isinstance(node.value, ast.Call)
         ):
-            calls = [law for law in node.value.values if isinstance(law, ast.Call)]
-            found[node.target.id] = [
-                dict(zip(members[ast.unparse(c.func)], map(ast.unparse, c.args))) for c in calls
-            ]
-    return found
+            table, name = node.targets[0].value, ast.literal_eval(node.targets[0].slice)
+            law = dict(
+                zip(members[ast.unparse(node.value.func)], map(ast.unparse, node.value.args))
+            )
+            found.setdefault(ast.unparse(table), {})[name] = law
+    return {table: [laws[name] for name in sorted(laws)] for table, laws in found.items()}
 
 
-def _branches(function: ast.FunctionDef, laws: dict[str, list[dict[str, str]]]) -> list[str]:
+def _branches(function: ast.FunctionDef, laws: Laws) -> list[str]:
     """The lines that replace `return chosen(TABLE, kind).member(arguments)`.
 
     Returns:
@@ -181,8 +185,9 @@ def write_source(folder: Path, core: Path = CORE) -> Path:
     """
     sources = kernels(core)
     check_names(sources)
+    laws = tables(sources)
     texts = "".join(
-        f"# {p.relative_to(core).as_posix()}\n{translated(p.read_text())}" for p in sources
+        f"# {p.relative_to(core).as_posix()}\n{translated(p.read_text(), laws)}" for p in sources
     )
     imports = "from array import array\n\nfrom cython import nogil\n\n"
     python = f'{imports}{MEMORY}\n{texts}SOURCE_DIGEST = "{digest(core)}"\n'

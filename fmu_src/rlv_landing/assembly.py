@@ -166,7 +166,7 @@ def begin(
 
 def _place(laws: Mapping[str, object], kind: str) -> float:
     """The number that a `LegModel` has for the law `kind`."""
-    return float(list(laws).index(kind))
+    return float(sorted(laws).index(kind))
 
 
 def _by_symbol(

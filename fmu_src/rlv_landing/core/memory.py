@@ -53,8 +53,8 @@ def room(count: int, size: int) -> Records[Any]:
 
 
 def chosen(laws: Mapping[str, Law], kind: float) -> Law:
-    """The law at place `kind` of `laws`.
+    """The law at place `kind` of `laws`, sorted by name.
 
     In the compiled core a function that returns what a chosen law gives branches on its kind.
     """
-    return list(laws.values())[int(kind)]
+    return laws[sorted(laws)[int(kind)]]

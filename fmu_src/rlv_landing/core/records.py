@@ -106,9 +106,9 @@ class LegModel(NamedTuple):
     `Lb`, `Ld` are heights, negative below the CG.
     """
 
-    main_kind: float  # place of the law in `struts.kinds.MAIN_STRUTS`
-    auxiliary_kind: float  # place of the law in `struts.kinds.AUXILIARY_STRUTS`
-    friction_kind: float  # place of the law in `ground.kinds.FRICTION_LAWS`
+    main_kind: float  # number of the law in `struts.laws.MAIN_STRUTS`
+    auxiliary_kind: float  # number of the law in `struts.laws.AUXILIARY_STRUTS`
+    friction_kind: float  # number of the law in `ground.laws.FRICTION_LAWS`
     m_d: float
     # main strut: joint and length, liquid spring, seal, end stops
     La: float

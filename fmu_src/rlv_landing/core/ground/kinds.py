@@ -1,37 +1,16 @@
-"""The ground under a footpad: the normal law, and the laws of friction.
+"""The ground under a footpad: the normal law, and friction by the law that each leg has.
 
-A new law is a file of its own, and its import and its line here.
-
-A law's place in the table is its number in a `LegModel`. Compiled, the functions that choose a law
-branch on that number.
+A new law is a file of its own, named in the first import below. Compiled, the functions that choose
+a law branch on its number.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple
-
 from ..memory import chosen
 from ..records import FootMotion, FrictionBound, FrictionForce, GroundForce, LegModel
+from . import paper_friction, passive_friction  # noqa: F401  each adds its law to the table
+from .laws import FRICTION_LAWS as FRICTION_LAWS
 from .normal import normal_force
-from .paper_friction import paper_friction, paper_friction_bound, paper_friction_energy
-from .passive_friction import passive_friction, passive_friction_bound, passive_friction_energy
-
-
-class FrictionLaw(NamedTuple):
-    """A law of friction: what it gives at (motion, normal force, q1, q2), where it lets (q1, q2) be
-    at the end of a step, and the energy [J] that it holds there.
-    """
-
-    force: Callable[[FootMotion, float, float, float, LegModel], FrictionForce]
-    bound: Callable[[float, float, LegModel], FrictionBound]
-    energy: Callable[[float, float, LegModel], float]
-
-
-FRICTION_LAWS: dict[str, FrictionLaw] = {
-    "passive": FrictionLaw(passive_friction, passive_friction_bound, passive_friction_energy),
-    "paper": FrictionLaw(paper_friction, paper_friction_bound, paper_friction_energy),
-}
 
 
 def friction(foot: FootMotion, Fn: float, q1: float, q2: float, p: LegModel) -> FrictionForce:

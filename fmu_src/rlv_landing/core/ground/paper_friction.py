@@ -12,6 +12,7 @@ from __future__ import annotations
 from math import exp, fabs, sqrt
 
 from ..records import FootMotion, Friction, FrictionBound, FrictionForce, LegModel
+from .laws import FRICTION_LAWS, FrictionLaw
 from .normal import damping_ramp
 
 
@@ -68,3 +69,6 @@ def paper_friction_bound(q1: float, q2: float, p: LegModel) -> FrictionBound:
 def paper_friction_energy(q1: float, q2: float, p: LegModel) -> float:
     """Nothing is called held."""
     return 0.0
+
+
+FRICTION_LAWS["paper"] = FrictionLaw(paper_friction, paper_friction_bound, paper_friction_energy)

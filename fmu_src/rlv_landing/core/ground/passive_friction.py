@@ -12,6 +12,7 @@ from __future__ import annotations
 from math import exp, sqrt
 
 from ..records import FootMotion, FrictionBound, FrictionForce, LegModel
+from .laws import FRICTION_LAWS, FrictionLaw
 from .normal import damping_ramp
 
 
@@ -106,3 +107,8 @@ def passive_friction_bound(q1: float, q2: float, p: LegModel) -> FrictionBound:
 def passive_friction_energy(q1: float, q2: float, p: LegModel) -> float:
     """Energy [J] that the spring holds."""
     return 0.5 * p.K_t * (q1 * q1 + q2 * q2)
+
+
+FRICTION_LAWS["passive"] = FrictionLaw(
+    passive_friction, passive_friction_bound, passive_friction_energy
+)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import fabs, pow
 
 from ..records import AxialForce, LegModel
+from .laws import AUXILIARY_STRUTS, AuxiliaryStrutLaw
 
 
 def elastic(s: float, v: float, p: LegModel) -> AxialForce:
@@ -18,3 +19,6 @@ def elastic(s: float, v: float, p: LegModel) -> AxialForce:
 def elastic_energy(s: float, p: LegModel) -> float:
     """Energy [J] that the spring holds at stroke `s` [m]."""
     return p.Ka * pow(fabs(s), p.ek + 1.0) / (p.ek + 1.0)
+
+
+AUXILIARY_STRUTS["elastic"] = AuxiliaryStrutLaw(elastic, elastic_energy)

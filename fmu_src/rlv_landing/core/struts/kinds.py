@@ -1,47 +1,16 @@
-"""The laws of struts. A new law is a file of its own, and its import and its line in a table here.
+"""The struts of a leg, by the law that each has.
 
-A law's place in its table is its number in a `LegModel`. Compiled, the functions below branch on
-that number.
+A new law is a file of its own, named in the first import below. Compiled, these functions branch on
+the law's number.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple
-
 from ..memory import chosen
 from ..records import AxialForce, LegModel, StrutForce, StrutStatus
-from .elastic import elastic, elastic_energy
-from .liquid_spring import liquid_spring, liquid_spring_status
-from .play import elastic_with_play, elastic_with_play_energy
-
-
-class MainStrutLaw(NamedTuple):
-    """A law of the main strut: what it gives at (stroke, rate, z1, z2), and what is read of it at
-    (stroke, z1, z2).
-    """
-
-    force: Callable[[float, float, float, float, LegModel], StrutForce]
-    status: Callable[[float, float, float, LegModel], StrutStatus]
-
-
-class AuxiliaryStrutLaw(NamedTuple):
-    """A law of the auxiliary strut: what it gives at (stroke, rate), and the energy [J] that it
-    holds at a stroke.
-    """
-
-    force: Callable[[float, float, LegModel], AxialForce]
-    energy: Callable[[float, LegModel], float]
-
-
-MAIN_STRUTS: dict[str, MainStrutLaw] = {
-    "liquid-spring": MainStrutLaw(liquid_spring, liquid_spring_status),
-}
-
-AUXILIARY_STRUTS: dict[str, AuxiliaryStrutLaw] = {
-    "elastic": AuxiliaryStrutLaw(elastic, elastic_energy),
-    "elastic-with-play": AuxiliaryStrutLaw(elastic_with_play, elastic_with_play_energy),
-}
+from . import elastic, liquid_spring, play  # noqa: F401  each adds its law to its table
+from .laws import AUXILIARY_STRUTS as AUXILIARY_STRUTS
+from .laws import MAIN_STRUTS as MAIN_STRUTS
 
 
 def main_strut(s: float, v: float, z1: float, z2: float, p: LegModel) -> StrutForce:

@@ -13,6 +13,7 @@ from math import exp, fabs, sqrt, tanh
 from ..records import LegModel, StrutForce, StrutStatus
 from .end_stops import stop_energy, stop_force
 from .fluid import fluid, strain_energy
+from .laws import MAIN_STRUTS, MainStrutLaw
 
 
 def orifice_flow(dP: float, density_ratio: float, p: LegModel) -> float:
@@ -89,3 +90,6 @@ def liquid_spring(s: float, v: float, P1: float, P2: float, p: LegModel) -> Stru
 def liquid_spring_status(s: float, P1: float, P2: float, p: LegModel) -> StrutStatus:
     """What the end stops hold at stroke `s` [m], and the pressures."""
     return StrutStatus(stop_energy(s, p), P1, P2)
+
+
+MAIN_STRUTS["liquid-spring"] = MainStrutLaw(liquid_spring, liquid_spring_status)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from math import pow, sqrt
 
 from ..records import AxialForce, Bearing, LegModel
+from .laws import AUXILIARY_STRUTS, AuxiliaryStrutLaw
 
 # part of the whole play over which the faces come to bear
 BEARING_PART = 0.03
@@ -50,3 +51,8 @@ def elastic_with_play_energy(s: float, p: LegModel) -> float:
     n = p.ek + 1.0
     borne = pow(bearing(-s - p.g_t, p).u, n) + pow(bearing(s - p.g_c, p).u, n)
     return p.Ka / n * borne + 0.5 * p.k_play * s * s
+
+
+AUXILIARY_STRUTS["elastic-with-play"] = AuxiliaryStrutLaw(
+    elastic_with_play, elastic_with_play_energy
+)
