@@ -8,6 +8,7 @@ from typing import Any
 
 import rclpy
 from bridge_tools import TIMEOUT
+from diagnostic_msgs.msg import DiagnosticArray
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 from rcl_interfaces.msg import (
@@ -51,6 +52,17 @@ class Remote:
         self.executor.add_node(self.node)
         self._clients: dict[str, Any] = {}
         return self
+
+    def diagnostics(self) -> list[dict[str, str]]:
+        """A growing list: the first status of each message of /diagnostics from now on."""
+        received: list[dict[str, str]] = []
+        self.node.create_subscription(
+            DiagnosticArray,
+            "/diagnostics",
+            lambda m: received.append({v.key: v.value for v in m.status[0].values}),
+            10,
+        )
+        return received
 
     def __exit__(
         self,

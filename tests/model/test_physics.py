@@ -190,14 +190,19 @@ def test_a_slope_falling_towards_x_lets_a_frictionless_vehicle_slide_that_way():
     assert along == approx(9.81 * sin(0.1) * cos(0.1), rel=0.1)
 
 
-def test_an_external_force_accelerates_the_whole_vehicle_as_newton_says():
+def in_flight() -> Landing:
+    """A vehicle that flies upright, without pitch rate, for longer than its tests look at it."""
     values = {
         "drop.pitch_rate": 0.0,
         "drop.tilt": 0.0,
         "drop.contact_time": 0.4,
         "drop.vertical_velocity": -5.0,
     }
-    landing = Landing(load_preset(FIGURES).with_values(values), rtol=1e-9)
+    return Landing(load_preset(FIGURES).with_values(values), rtol=1e-9)
+
+
+def test_an_external_force_accelerates_the_whole_vehicle_as_newton_says():
+    landing = in_flight()
     landing.set_inputs({"external.force_x": 300.0, "external.force_y": 200.0})
     history = landing.run(0.3, 1e-2)
     mass = 178.0 + 4 * 4.2
@@ -210,13 +215,7 @@ def test_an_external_force_accelerates_the_whole_vehicle_as_newton_says():
 
 
 def test_a_force_that_grows_steadily_moves_the_whole_vehicle_as_newton_says():
-    values = {
-        "drop.pitch_rate": 0.0,
-        "drop.tilt": 0.0,
-        "drop.contact_time": 0.4,
-        "drop.vertical_velocity": -5.0,
-    }
-    landing = Landing(load_preset(FIGURES).with_values(values), rtol=1e-9)
+    landing = in_flight()
     landing.set_inputs({"external.force_x": 100.0}, {"external.force_x": 900.0})
     history = landing.run(0.3, 1e-2)
     t, x = history.time, centre(history, "x")

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import pytest
 from bridge_tools import TIMEOUT, start
-from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from hypothesis import given
 from hypothesis import strategies as st
@@ -214,13 +213,7 @@ def test_bad_inputs_are_counted_in_the_diagnostics_and_change_nothing(
 ) -> None:
     node, remote = stepped
     assert remote.set(step_count=100)[0].successful
-    diagnostics: list[dict[str, str]] = []
-    remote.node.create_subscription(
-        DiagnosticArray,
-        "/diagnostics",
-        lambda m: diagnostics.append({v.key: v.value for v in m.status[0].values}),
-        10,
-    )
+    diagnostics = remote.diagnostics()
     pushing = remote.node.create_publisher(WrenchStamped, "/landing/external_wrench", 10)
     remote.until(lambda: pushing.get_subscription_count() > 0)
     for _ in range(5):

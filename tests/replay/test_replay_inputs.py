@@ -7,7 +7,6 @@ import subprocess
 from pathlib import Path
 
 from bridge_tools import TIMEOUT, start
-from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.serialization import serialize_message
 from remote import ACTIVATE, CLEANUP, CONFIGURE, DEACTIVATE, Remote
 
@@ -22,6 +21,12 @@ from rlv_ros_bridge.messages.topics import APPLIED, APPLIED_GROUND, APPLIED_WREN
 from rlv_ros_bridge.node.input_queue import InputChange
 
 Change = tuple[str, dict[str, float]]
+# plays the inputs that a node applied to the topics on which a node takes them
+REMAP = [
+    argument
+    for t in APPLIED
+    for argument in ("--remap", f"{t.name}:={t.name.removeprefix('applied/')}")
+]
 
 
 def make_inputs(folder: Path) -> list[Change]:
@@ -74,11 +79,6 @@ def test_the_inputs_of_a_log_act_on_another_landing(
         "input_timeout:=0.0",
     )
     node = start("node", "--managed", "--fmu", fmu, *slowly, domain=domain)
-    remap = [
-        argument
-        for t in APPLIED
-        for argument in ("--remap", f"{t.name}:={t.name.removeprefix('applied/')}")
-    ]
     replay = start(
         "replay",
         tmp_path / "inputs",
@@ -87,19 +87,13 @@ def test_the_inputs_of_a_log_act_on_another_landing(
         "--start-paused",
         "--wait-for-subscribers",
         1,
-        *remap,
+        *REMAP,
         domain=domain,
     )
     processes += [node, replay]
     with Remote(domain) as remote, Remote(domain, "/replay_node") as player:
         assert remote.change(CONFIGURE)
-        diagnostics: list[dict[str, str]] = []
-        remote.node.create_subscription(
-            DiagnosticArray,
-            "/diagnostics",
-            lambda m: diagnostics.append({v.key: v.value for v in m.status[0].values}),
-            10,
-        )
+        diagnostics = remote.diagnostics()
         assert player.trigger("pause") == (False, "the replay is paused already")
         assert remote.change(ACTIVATE)
         assert player.trigger("resume")[0]
@@ -145,18 +139,13 @@ def test_inputs_are_played_one_by_one_in_lock_step_with_a_landing(
         "input_timeout:=0.0",
         domain=domain,
     )
-    remap = [
-        argument
-        for t in APPLIED
-        for argument in ("--remap", f"{t.name}:={t.name.removeprefix('applied/')}")
-    ]
     replay = start(
         "replay",
         tmp_path / "inputs",
         "--start-paused",
         "--wait-for-subscribers",
         1,
-        *remap,
+        *REMAP,
         domain=domain,
     )
     processes += [node, replay]

@@ -14,7 +14,7 @@ from ..core import Phase
 from ..errors import LandingError
 from ..history import History
 from ..parameters import azimuth
-from ..quantities import MODES
+from ..quantities import MODES, Quantity
 from ..touchdown import AT_REST
 from .limits import PassedLimit, first_limit_passed
 
@@ -26,6 +26,14 @@ SETTLED, TOPPLED = float(Phase.SETTLED), float(Phase.TOPPLED)
 # the paper does not print its footpads' diameter; a leg's spreading alone moves a footpad by some
 # centimetres
 DEFAULT_SLIDE = 0.3
+SLIDE = Quantity(
+    "m",
+    "largest distance that a footpad may move without having slid",
+    0.0,
+    1e3,
+    name="slide",
+    default=DEFAULT_SLIDE,
+)
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from ...quantities import Quantity
 from ...text.values import check_together, is_number, parse_value, parse_values
 from .. import toml_keys
 from ..limits import LIMITS
-from ..outcome import DEFAULT_SLIDE
+from ..outcome import DEFAULT_SLIDE, SLIDE
 from ..sweep.factors import VARIABLES, variable
 from .boundary import Lattice
 
@@ -48,14 +48,7 @@ NUMBERS = {
         Quantity(
             "", "relative tolerance of the integrator", 1e-12, 1e-2, name="rtol", default=1e-5
         ),
-        Quantity(
-            "m",
-            "largest distance that a footpad may move without having slid",
-            0.0,
-            1e3,
-            name="slide",
-            default=DEFAULT_SLIDE,
-        ),
+        SLIDE,
     )
 }
 KEYS = ("preset", "parameters", "mode", "criterion", "cells", "levels", *NUMBERS)

@@ -18,7 +18,7 @@ from ...presets import to_toml
 from ...quantities import MODES, Quantity
 from .. import toml_keys
 from ..limits import LIMITS
-from ..outcome import DEFAULT_SLIDE
+from ..outcome import SLIDE
 from ..whole_landing import LATEST
 from .design import Design, drawn, grid
 from .factors import LARGEST, VARIABLES, Factor, read_factor
@@ -37,14 +37,7 @@ NUMBERS = {
         Quantity(
             "", "relative tolerance of the integrator", 1e-12, 1e-2, name="rtol", default=1e-4
         ),
-        Quantity(
-            "m",
-            "largest distance that a footpad may move without having slid",
-            0.0,
-            1e3,
-            name="slide",
-            default=DEFAULT_SLIDE,
-        ),
+        SLIDE,
     )
 }
 KEYS = (
