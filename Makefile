@@ -8,7 +8,7 @@ COFMUPY := build/cofmupy/.packages
 CHROMIUM := build/chromium/.packages
 CORE := $(shell find fmu_src/rlv_landing/core -name '*.py')
 SLAVE := fmu_src/landing_fmu.py $(wildcard fmu_src/fmu_build/*.py fmu_src/fmu_build/*.j2 fmu_src/fmu_front/*) CHANGELOG.md LICENSE \
-  $(addprefix fmu_src/rlv_landing/,__init__.py errors.py quantities.py parameters.py touchdown.py assembly.py extremes.py state.py landing.py figures/plots.py)
+  $(addprefix fmu_src/rlv_landing/,__init__.py errors.py quantities.py parameters.py touchdown.py assembly.py extremes.py state.py stints.py landing.py figures/plots.py)
 
 .PHONY: help run test lint torture bench annotate coverage docs clean
 help:

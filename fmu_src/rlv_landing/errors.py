@@ -11,6 +11,20 @@ class LandingError(ValueError):
     """Something the user gave cannot be used; the message is one line and says what to do."""
 
 
+class IntegrationError(LandingError):
+    """The integrator cannot go on. All that would go on raises it again, until the landing is reset
+    or given another state.
+    """
+
+
+class StepSizeError(IntegrationError):
+    """No step is short enough: forces grow without bound, or are no numbers any more."""
+
+
+class StepLimitError(IntegrationError):
+    """More steps are needed for a second of landing than `solver.max_steps_per_second` allows."""
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """`; did you mean X?` for the known name nearest to `name`, or nothing where none is near.
 

@@ -1,11 +1,30 @@
-"""The extremes of a landing's outputs, by name."""
+"""The kernel's outputs by name, and their extremes."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from .quantities import OUTPUT_NAMES
+from .quantities import LEG_QUANTITIES, MODES, OUTPUT_NAMES, SHARED_QUANTITIES, Z_TURNS
+
+
+def output_order(mode: str) -> list[tuple[int, float]]:
+    """For each of OUTPUT_NAMES: where the kernel's outputs hold it, and the factor (-1 turns Z of a
+    mirror image).
+    """
+    shared = len(SHARED_QUANTITIES)
+    order = [(i, 1.0) for i in range(shared)]
+    where = {leg: (group, side) for group, g in enumerate(MODES[mode]) for leg, side in g.legs}
+    for leg in sorted(where):
+        group, side = where[leg]
+        for i, q in enumerate(LEG_QUANTITIES):
+            order.append(
+                (
+                    shared + len(LEG_QUANTITIES) * group + i,
+                    float(side) if q.name in Z_TURNS else 1.0,
+                )
+            )
+    return order
 
 
 class Extreme(NamedTuple):
@@ -23,7 +42,7 @@ class Extreme(NamedTuple):
 
 def by_name(found: Sequence[float], order: Sequence[tuple[int, float]]) -> dict[str, Extreme]:
     """The extremes by output, from the four blocks that `Solver.extremes` writes; `order` as
-    `rlv_landing.landing.output_order`.
+    `output_order`.
     """
     row = len(found) // 4
     extremes = {}

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from math import inf, isfinite
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any
@@ -11,18 +12,15 @@ from typing import TYPE_CHECKING, Any
 from .assembly import begin, build_system
 from .core import DormandPrince, Exponential, Solver
 from .errors import LandingError, unknown
-from .extremes import Extreme, by_name
+from .extremes import Extreme, by_name, output_order
 from .parameters import Parameters, check_value
 from .quantities import (
     INPUT_NAMES,
     INPUT_QUANTITIES,
-    LEG_QUANTITIES,
-    MODES,
     OUTPUT_NAMES,
-    SHARED_QUANTITIES,
-    Z_TURNS,
 )
-from .state import state_of, take_up
+from .state import LATEST, state_of, take_up
+from .stints import LIMIT, advance, check_going, record
 
 if TYPE_CHECKING:
     from numpy import float64
@@ -33,29 +31,8 @@ if TYPE_CHECKING:
 DEFAULT_RTOL = 1e-5
 # the integration methods: see `rlv_landing.core.solvers`
 METHODS: dict[str, type[Solver]] = {"exponential": Exponential, "dormand-prince": DormandPrince}
-# samples between two looks at signals and two calls of `progress` in a run
-SLICE = 250
 # where a ground motion's rate is an input of its own
 RATE_INPUTS = {"ground.heave": "ground.heave_rate", "ground.tilt": "ground.tilt_rate"}
-
-
-def output_order(mode: str) -> list[tuple[int, float]]:
-    """For each of OUTPUT_NAMES: where the kernel's outputs hold it, and the factor (-1 turns Z of a
-    mirror image).
-    """
-    shared = len(SHARED_QUANTITIES)
-    order = [(i, 1.0) for i in range(shared)]
-    where = {leg: (group, side) for group, g in enumerate(MODES[mode]) for leg, side in g.legs}
-    for leg in sorted(where):
-        group, side = where[leg]
-        for i, q in enumerate(LEG_QUANTITIES):
-            order.append(
-                (
-                    shared + len(LEG_QUANTITIES) * group + i,
-                    float(side) if q.name in Z_TURNS else 1.0,
-                )
-            )
-    return order
 
 
 def _input_index(name: str) -> int:
@@ -74,10 +51,17 @@ class Landing:
             strokes to 0.05 %.
         method: `exponential`, or `dormand-prince`, the paper's ode45: slower, but not below rtol =
             1e-7.
+        max_steps_per_second: the parameter `solver.max_steps_per_second`, default that of the
+            parameters.
+
+    A landing is copied and pickled whole; the copy goes on by itself, with the very same digits.
 
     Raises:
         LandingError: a value is out of bounds, not finite or of the wrong type, or the mode or
             method is unknown.
+        IntegrationError: by `step`, `advance_to`, `run` and `set_inputs`, where the integrator cannot go
+            on, and by all of them from then on, until `reset` or `restore`. The landing has ended at
+            `time`.
     """
 
     def __init__(
@@ -86,16 +70,20 @@ class Landing:
         mode: str | None = None,
         rtol: float = DEFAULT_RTOL,
         method: str = "exponential",
+        max_steps_per_second: float | None = None,
     ) -> None:
         parameters = parameters if parameters is not None else Parameters()
+        if max_steps_per_second is not None:
+            parameters = parameters.with_values({LIMIT: max_steps_per_second})
         self.parameters = parameters.for_mode(mode if mode is not None else parameters.drop.mode)
         if not 1e-12 <= rtol <= 1e-2:
             raise LandingError(f"rtol = {rtol:g} is outside [1e-12, 1e-2]")
         if method not in METHODS:
             raise unknown("integration method", method, METHODS)
-        self._rtol = rtol
+        self._rtol, self._method = rtol, method
         self._system = build_system(self.parameters)
         self._solver: Solver = METHODS[method](self._system, rtol)
+        self._solver.limit = self.parameters.solver.max_steps_per_second
         self._y = array("d", bytes(8 * self._system.n))
         self._out = array("d", bytes(8 * self._system.row))
         self._out_time = inf
@@ -122,6 +110,9 @@ class Landing:
         s = self._solver
         return {"steps": int(s.steps), "rejected": int(s.rejected), "rhs_calls": int(s.rhs_calls)}
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _revived, (type(self), self.parameters, self._rtol, self._method, self.state())
+
     def reset(self) -> None:
         """Go back to the start: time 0, inputs 0, the flight before the first contact."""
         self._system.energy_start = 0.0
@@ -142,6 +133,7 @@ class Landing:
         Raises LandingError for an unknown name, NaN, or a value out of bounds; nothing is changed
         then.
         """
+        check_going(self._solver)
         solver = self._solver
         solver.inputs_at(self._time)
         new, new_rates = list(solver.u_now), list(solver.u_rate)
@@ -185,12 +177,12 @@ class Landing:
 
         Results do not depend on the steps by which one gets there.
         """
-        if not (isfinite(time) and time >= self._time):
+        if not self._time <= time <= LATEST:
             raise LandingError(
-                f"time = {time:g} s is not a time from {self._time:g} s on; reset() starts again"
+                f"time = {time:g} s is not a time from {self._time:g} to {LATEST:g} s; reset() starts again"
             )
-        if not self._solver.advance(time):
-            raise self._collapsed()
+        with self._until(time):
+            advance(self._solver, time)
         self._time = time
 
     def values(self) -> list[float]:
@@ -260,16 +252,24 @@ class Landing:
 
         if not 0.0 < every < inf:
             raise LandingError(f"every = {every:g} s must be finite and above 0 s")
-        if not (isfinite(until) and until > self._time):
+        if not self._time < until <= LATEST:
             raise LandingError(
-                f"until = {until:g} s must be finite and after the present time, {self._time:g} s"
+                f"until = {until:g} s must be finite, after the present time, {self._time:g} s, and at most {LATEST:g} s"
             )
+        check_going(self._solver)
         start = self._time
         samples = int((until - start) / every * (1.0 + 1e-12) + 1e-9) + 1
         rows = np.empty((samples, self._system.row))
+
+        def told(time: float) -> None:
+            self._time = time
+            if progress is not None:
+                progress(time)
+
         self._solver.open_span(start)
         try:
-            self._record(rows.reshape(-1), start, every, samples, progress)
+            with self._until(start + (samples - 1) * every):
+                record(self._solver, rows.reshape(-1), start, every, samples, told)
             found = array("d", bytes(8 * 4 * self._system.row))
             self._solver.extremes_of_span(self._time, found)
         finally:
@@ -282,26 +282,23 @@ class Landing:
         extremes = by_name(found, self._order)
         return History(time, OUTPUT_NAMES, columns.T, self.parameters, extremes)
 
-    def _record(
-        self,
-        rows: NDArray[float64],
-        start: float,
-        every: float,
-        samples: int,
-        progress: Callable[[float], object] | None,
-    ) -> None:
-        """Write the outputs at so many `samples` from `start` [s] on, `every` [s], to `rows`."""
-        reached = 0
-        while reached < samples:
-            goal = min(reached + SLICE, samples)
-            reached = self._solver.record(start, every, reached, goal, rows)
-            if reached < goal:
-                raise self._collapsed()
-            self._time = start + (reached - 1) * every
-            if progress is not None:
-                progress(self._time)
+    @contextmanager
+    def _until(self, time: float) -> Iterator[None]:
+        """Where what goes on to `time` [s] ends before it, by a fault or by Ctrl-C, the landing is at
+        the end of the last internal step.
+        """
+        try:
+            yield
+        except BaseException:
+            self._time = max(self._time, min(self._solver.t, time))
+            self._out_time = inf
+            raise
 
-    def _collapsed(self) -> LandingError:
-        return LandingError(
-            f"the integrator's step size has collapsed at t = {self._solver.t:g} s; soften the parameters or the loads"
-        )
+
+def _revived(
+    kind: type[Landing], parameters: Parameters, rtol: float, method: str, state: array[float]
+) -> Landing:
+    """The landing that was pickled."""
+    landing = kind(parameters, rtol=rtol, method=method)
+    landing.restore(state)
+    return landing

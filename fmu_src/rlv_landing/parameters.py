@@ -106,6 +106,13 @@ class Drop:
     horizontal_velocity: Annotated[float, Q("m/s", "velocity of the CG along inertial x at first contact", -50.0, 50.0, source="identified")] = 0.3416442
     vertical_velocity: Annotated[float, Q("m/s", "velocity of the CG along inertial y (up) at first contact", -50.0, 50.0, source="identified")] = -1.379071
 
+
+@dataclass(frozen=True)
+class Integration:
+    """What the integrator may spend."""
+
+    max_steps_per_second: Annotated[float, Q("1/s", "integrator steps, rejected ones included, that a simulated second may take on average; a landing that needs more is an error", 100.0, 1e9)] = 5e5
+
 # fmt: on
 
 GROUPS: dict[str, type] = {
@@ -114,6 +121,7 @@ GROUPS: dict[str, type] = {
     "auxiliary_strut": AuxiliaryStrut,
     "ground": Ground,
     "drop": Drop,
+    "solver": Integration,
 }
 
 
@@ -172,6 +180,7 @@ class Parameters:
     auxiliary_strut: AuxiliaryStrut = field(default_factory=AuxiliaryStrut)
     ground: Ground = field(default_factory=Ground)
     drop: Drop = field(default_factory=Drop)
+    solver: Integration = field(default_factory=Integration)
     by_mode: Mapping[str, Mapping[str, float | str]] = field(default_factory=dict)
     sources: Mapping[str, str] = field(default_factory=dict)
 

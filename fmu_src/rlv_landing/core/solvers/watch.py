@@ -113,6 +113,8 @@ class Watch(Path):
         self.seen = 1
         self.noted = True
         self.system.read(y, data(self.u_now), dy, data(self.last), 0)
+        copy(data(self.last), data(self.middle), self.row)
+        copy(data(self.last), data(self.before), self.row)
         if self.t == self.t_start:
             self._begin(data(self.last), self.t, data(self.kept))
 
