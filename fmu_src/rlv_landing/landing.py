@@ -106,9 +106,19 @@ class Landing:
 
     @property
     def statistics(self) -> dict[str, int]:
-        """What the integrator has done so far: steps, rejected steps, calls of the right-hand side."""
+        """What the integrator has done so far: steps, rejected steps, calls of the right-hand side;
+        and whether the landing sleeps (1, else 0).
+
+        A landing that has come to rest under loads and a ground that do not change sleeps: time
+        passes without steps, until `set_inputs` changes something.
+        """
         s = self._solver
-        return {"steps": int(s.steps), "rejected": int(s.rejected), "rhs_calls": int(s.rhs_calls)}
+        return {
+            "steps": int(s.steps),
+            "rejected": int(s.rejected),
+            "rhs_calls": int(s.rhs_calls),
+            "asleep": int(s.asleep),
+        }
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _revived, (type(self), self.parameters, self._rtol, self._method, self.state())

@@ -257,7 +257,7 @@ OUTPUT_QUANTITIES: tuple[Quantity, ...] = SHARED_QUANTITIES + tuple(
     _leg_quantity(leg, q) for leg in LEGS for q in LEG_QUANTITIES
 )
 OUTPUT_NAMES: tuple[str, ...] = tuple(q.name for q in OUTPUT_QUANTITIES)
-# What the integrator has done: `Landing.statistics`.
+# What the integrator has done and does: `Landing.statistics`.
 STATISTIC_QUANTITIES: tuple[Quantity, ...] = (
     Quantity(
         "", "steps of the integrator since the start", 0.0, name="solver.steps", kind="integer"
@@ -274,6 +274,14 @@ STATISTIC_QUANTITIES: tuple[Quantity, ...] = (
         "calls of the right-hand side since the start",
         0.0,
         name="solver.rhs_calls",
+        kind="integer",
+    ),
+    Quantity(
+        "",
+        "whether the landing sleeps: at rest under inputs that do not change, time passes without steps",
+        0.0,
+        1.0,
+        name="solver.asleep",
         kind="integer",
     ),
 )

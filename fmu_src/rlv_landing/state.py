@@ -14,6 +14,8 @@ from .errors import LandingError
 
 # a count that doubles tell from the next one
 LARGEST_COUNT = 2.0**53
+# steps: no landing counts so many at rest
+MOST_STILL = 1e6
 # [s]: not long after it, a landing's first step would be nothing beside its time
 LATEST = 1e9
 
@@ -38,11 +40,14 @@ class StateHeader(NamedTuple):
     dense_at: float  # where the last step's interpolant begins
     seen: float  # see `rlv_landing.core.solvers.watch`
     noted: float
+    asleep: float  # see `rlv_landing.core.solvers.rest`
+    still: float
+    waited: float
 
 
 # which fields are the solver's own, by the same name
 OF_SOLVER = tuple(name for name in StateHeader._fields if name not in ("time", "energy_start"))
-WHOLE = ("fault", "dense_at", "seen")
+WHOLE = ("fault", "dense_at", "seen", "still", "waited")
 
 
 def _arrays(solver: Solver) -> tuple[Buffer, ...]:
@@ -86,7 +91,7 @@ def take_up(solver: Solver, state: array[float]) -> StateHeader:
     for name in OF_SOLVER:
         value = getattr(header, name)
         setattr(solver, name, int(value) if name in WHOLE else value)
-    solver.noted = bool(header.noted)
+    solver.noted, solver.asleep = bool(header.noted), bool(header.asleep)
     return header
 
 
@@ -102,16 +107,19 @@ def _faults(h: StateHeader, dense: int) -> Iterator[str]:
         yield f"a next step of {h.h:g} s, outside (0, {LONGEST_STEP:g}] s"
     if not LEAST_PREVIOUS_ERROR <= h.error_old <= 1.0:
         yield f"an error of the last step of {h.error_old:g}, outside [{LEAST_PREVIOUS_ERROR:g}, 1]"
-    for name in ("steps", "rejected", "rhs_calls"):
+    for name in ("steps", "rejected", "rhs_calls", "still", "waited"):
         value = getattr(h, name)
         if not (0.0 <= value < LARGEST_COUNT and value.is_integer()):
             yield f"{name} = {value:g}, which is not a count"
+    if max(h.still, h.waited) >= MOST_STILL:
+        yield f"still = {h.still:g}, waited = {h.waited:g}, which none has"
     if not 0.0 <= h.spent < LARGEST_COUNT:
         yield f"{h.spent:g} steps spent"
     for name, allowed in (
         ("fault", tuple(Fault)),
         ("seen", (1, 2, 3)),
         ("noted", (0, 1)),
+        ("asleep", (0, 1)),
         ("dense_at", (0, dense)),
     ):
         if getattr(h, name) not in allowed:

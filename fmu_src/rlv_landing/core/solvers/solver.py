@@ -11,6 +11,7 @@ from math import fabs, inf, sqrt
 from ..bodies.system import System
 from ..memory import Buffer, Doubles, data, nogil
 from ..records import Fault
+from .rest import Rest
 from .step_control import (
     FIRST_STEP,
     LEAST_PREVIOUS_ERROR,
@@ -18,13 +19,12 @@ from .step_control import (
     SHORTEST_STEP,
     step_factor,
 )
-from .watch import Watch
 
 # tries of a step that a start or a jump of an input may take beside the limit
 FREE_TRIES = 10.0
 
 
-class Solver(Watch):
+class Solver(Rest):
     """The state of one `System` in time: the present state, and the internal step that reaches
     ahead of it.
 
@@ -40,7 +40,6 @@ class Solver(Watch):
     error.
     """
 
-    rtol: float
     exponent: float
     limit: float
     spent: float
@@ -61,9 +60,8 @@ class Solver(Watch):
     deviation: Buffer
 
     def __init__(self, system: System, rtol: float) -> None:
-        super().__init__(system)
+        super().__init__(system, rtol)
         n = system.n
-        self.rtol = rtol
         self.exponent = 0.0
         self.limit = inf
         self.spent = 0.0
@@ -110,13 +108,17 @@ class Solver(Watch):
         """End the path at time `t` [s], inside the last internal step: write the state there to
         `y`, from which `restart` goes on.
         """
-        self._watch_until(t, data(self.kept), self.t_start)
-        if self.t_span < inf:
-            self._watch_until(t, data(self.span), self.t_span)
+        self._cut(t)
+
+    def _cut(self, t: float) -> None:
+        self._watch(t)
         self._interpolate(t, data(self.y))
 
     def restart(self, t: float) -> None:
         """Go on from time `t` [s] from the state in `y` and the inputs in `u`, with no step behind."""
+        self._restart(t)
+
+    def _restart(self, t: float) -> None:
         self.t = t
         self.t_old = t
         self.t_before = t
@@ -125,11 +127,15 @@ class Solver(Watch):
         self._stand_still(data(self.y))
         self.h = min(self.h, FIRST_STEP)
         self.spent = max(self.spent - FREE_TRIES, 0.0)
-        self.recompute_derived()
+        self._recompute_derived()
         self._start_rows(data(self.y), data(self.k1))
+        self._awake()
 
     def recompute_derived(self) -> None:
         """Work out again, after the stored numbers were overwritten, what is not stored."""
+        self._recompute_derived()
+
+    def _recompute_derived(self) -> None:
         self._derivatives(self.t, data(self.y), data(self.k1))
         self._start_step()
 
@@ -212,8 +218,23 @@ class Solver(Watch):
                 return False
             if not self.noted:
                 self._note_step()
-            self._step()
+                self._fall_asleep()
+            if self.asleep:
+                self._sleep_until(t_end)
+            else:
+                self._step()
         return True
+
+    def _fall_asleep(self) -> None:
+        """Where the system has come to rest, be there, and sleep."""
+        y, place = data(self.y), data(self._place)
+        if self._found_rest(y):
+            self._cut(self.t)
+            for i in range(self.n):
+                y[i] = place[i]
+            self._restart(self.t)
+            self._watch(self.t)
+            self.asleep = True
 
     def _step(self) -> None:
         """Try a step, and choose the next one's length."""
