@@ -41,6 +41,7 @@ MODULES = (
     "assembly.py",
     "extremes.py",
     "state.py",
+    "stints.py",
     "landing.py",
 )
 # pythonfmu's command line, CSV tool and builder, which no slave needs

@@ -36,6 +36,7 @@ PHYSICAL_KINDS = {
     "m/s": "Velocity",
     "m/s2": "Acceleration",
     "s/m": "TimePerLength",
+    "1/s": "Rate",
     "N": "Force",
     "N.m": "Torque",
     "N/m": "TranslationalSpringConstant",

@@ -30,6 +30,9 @@ BODY_SCALE = BodyState(x=0.1, y=0.1, pitch=0.1, vx=1.0, vy=1.0, pitch_rate=1.0)
 LEG_SCALE = LegState(r=0.1, h=0.1, vr=1.0, vh=1.0, z1=1e5, z2=1e5, q1=1e-3, q2=1e-3)
 # [m/s2], so that a footpad's stiffness does not depend on where the vehicle lands
 STANDARD_GRAVITY = 9.80665
+# A smaller friction coefficient counts as 0: it is less than the integrator's tolerance, and its
+# displacement of some nanometres would need millions of steps.
+LEAST_FRICTION = 1e-7
 NO_ENERGY = Accounts(*(0.0 for _ in Accounts._fields))
 NO_INPUTS = Inputs(*(0.0 for _ in Inputs._fields))
 # the states whose error is relative to their own size as well: the liquid's pressures
@@ -56,10 +59,12 @@ def leg_models(parameters: Parameters) -> list[LegModel]:
     """The numbers of each leg group of the parameters' landing mode."""
     strut = parameters.auxiliary_strut
     play = strut.play_tension + strut.play_compression > 0.0
+    mu = parameters.ground.friction
     own = {
         "main_kind": _place(MAIN_STRUTS, "liquid-spring"),
         "auxiliary_kind": _place(AUXILIARY_STRUTS, "elastic-with-play" if play else "elastic"),
         "friction_kind": _place(FRICTION_LAWS, parameters.ground.friction_law),
+        "mu": mu if mu >= LEAST_FRICTION else 0.0,
         "K_t": tangential_stiffness(parameters),
         "zone": parameters.ground.slip_zone * parameters.ground.stick_displacement,
         "Lb": -parameters.main_strut.joint_depth,

@@ -44,6 +44,21 @@ def _cut(text: str, longest: int) -> str:
     return f"{text[: longest - 3 - end]}...{text[-end:]}"
 
 
+class IntegrationError(LandingError):
+    """The integrator cannot go on.
+
+    All that would go on raises it again, until the landing is reset or given another state.
+    """
+
+
+class StepSizeError(IntegrationError):
+    """No step is short enough: forces grow without bound, or are no numbers any more."""
+
+
+class StepLimitError(IntegrationError):
+    """More steps are needed for a second of landing than `solver.max_steps_per_second` allows."""
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """`; did you mean X?` for the known name nearest to `name`; empty where none is near.
 

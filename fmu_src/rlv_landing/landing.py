@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Mapping
-from math import inf, isfinite
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from math import inf
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 from .assembly import NO_INPUTS, begin, build_system
 from .core import DormandPrince, Exponential, Inputs, Solver
-from .driven_inputs import DrivenInputs, changed_setting
+from .driven_inputs import RATE_INPUTS, DrivenInputs, Setting, changed_setting
 from .errors import LandingError, unknown
-from .extremes import Extreme, by_name
+from .extremes import Extreme, by_name, output_order
 from .parameters import Parameters
-from .quantities import (
-    LEG_QUANTITIES,
-    MIRRORED,
-    MODES,
-    OUTPUT_NAMES,
-    SHARED_QUANTITIES,
-)
-from .state import state_of, take_up
+from .quantities import INPUT_NAMES, OUTPUT_NAMES
+from .state import LATEST, state_of, take_up
+from .stints import advance, check_going, record
 
 if TYPE_CHECKING:
     from numpy import float64
@@ -32,27 +28,8 @@ if TYPE_CHECKING:
 DEFAULT_RTOL = 1e-5
 # the integration methods: see `rlv_landing.core.solvers`
 METHODS: dict[str, type[Solver]] = {"exponential": Exponential, "dormand-prince": DormandPrince}
-# samples between two looks at signals and two calls of `progress` in a run
+# samples between two calls of `progress` in a run
 SLICE = 250
-
-
-def output_order(mode: str) -> list[tuple[int, float]]:
-    """For each of OUTPUT_NAMES: where the kernel's outputs hold it, and the factor (-1 turns Z of a
-    mirror image).
-    """
-    shared = len(SHARED_QUANTITIES)
-    order = [(i, 1.0) for i in range(shared)]
-    where = {leg: (group, side) for group, g in enumerate(MODES[mode]) for leg, side in g.legs}
-    for leg in sorted(where):
-        group, side = where[leg]
-        for i, q in enumerate(LEG_QUANTITIES):
-            order.append(
-                (
-                    shared + len(LEG_QUANTITIES) * group + i,
-                    float(side) if q.name in MIRRORED else 1.0,
-                )
-            )
-    return order
 
 
 class Landing:
@@ -67,9 +44,14 @@ class Landing:
             1e-7.
         inputs, rates: inputs at the start, and their rates, as for `set_inputs`; default is 0.
 
+    A landing is copied and pickled whole. The copy continues by itself, with the same digits.
+
     Raises:
         LandingError: a value is out of bounds, not finite or of the wrong type, or the mode or
             method is unknown, or a footpad would pass below the ground in the free flight.
+        IntegrationError: by `step`, `advance_to` and `run` if the integrator cannot go on. The
+            landing has then ended at `time`: these and `set_inputs` raise it until `reset` or
+            `restore`.
     """
 
     def __init__(
@@ -87,9 +69,10 @@ class Landing:
             raise LandingError(f"rtol = {rtol:g} is outside [1e-12, 1e-2]")
         if method not in METHODS:
             raise unknown("integration method", method, METHODS)
-        self._rtol = rtol
+        self._rtol, self._method = rtol, method
         self._system = build_system(self.parameters)
         self._solver: Solver = METHODS[method](self._system, rtol)
+        self._solver.limit = self.parameters.solver.max_steps_per_second
         self._y = array("d", bytes(8 * self._system.n))
         self._out = array("d", bytes(8 * self._system.row))
         self._out_time = inf
@@ -114,9 +97,23 @@ class Landing:
 
     @property
     def statistics(self) -> dict[str, int]:
-        """What the integrator has done so far: steps, rejected steps, calls of the right-hand side."""
+        """What the integrator has done so far: steps, rejected steps, calls of the right-hand side;
+        and whether the landing sleeps (1, else 0).
+
+        A landing sleeps at rest under loads and a ground that do not change: time passes without
+        steps, until `set_inputs` changes something.
+        """
         s = self._solver
-        return {"steps": int(s.steps), "rejected": int(s.rejected), "rhs_calls": int(s.rhs_calls)}
+        return {
+            "steps": int(s.steps),
+            "rejected": int(s.rejected),
+            "rhs_calls": int(s.rhs_calls),
+            "asleep": int(s.asleep),
+        }
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        made = (self.parameters, self._rtol, self._method, self._first, self.state())
+        return _revived, (type(self), *made)
 
     def reset(self) -> None:
         """Go back to the start: time 0, the first inputs, the flight before the first contact.
@@ -154,6 +151,7 @@ class Landing:
         Raises LandingError for an unknown name, NaN, a value out of bounds, or, at time 0, a flight
         in which a footpad would pass below the ground; nothing is changed then.
         """
+        check_going(self._solver)
         present = self._inputs.setting(self._time)
         new = changed_setting(present, values, rates or {})
         if new == present:
@@ -176,14 +174,15 @@ class Landing:
         Results do not depend on the steps by which one gets there. The exception is a ground whose
         position was set anew: it is there at the end of the next step.
         """
-        if not (isfinite(time) and time >= self._time):
+        if not self._time <= time <= LATEST:
             raise LandingError(
-                f"time = {time:g} s is not a time from {self._time:g} s on; reset() starts again"
+                f"time = {time:g} s is not a time from {self._time:g} to {LATEST:g} s; "
+                "reset() starts again"
             )
         if self._inputs.pending and time > self._time:
             self._inputs.begin_step(self._time, time - self._time)
-        if not self._solver.advance(time):
-            raise self._collapsed()
+        with self._until(time):
+            advance(self._solver, time)
         self._time = time
 
     def values(self) -> list[float]:
@@ -226,8 +225,8 @@ class Landing:
     def restore(self, state: array[float]) -> None:
         """Take up a state that `state()` of a landing with the same parameters gave.
 
-        Raises LandingError if its length is not that of this landing's state or a number in it is
-        not finite.
+        Raises LandingError if its length is not that of this landing's state, a number in it is not
+        finite, or no landing has such numbers; nothing is changed then.
         """
         header = take_up(self._solver, state)
         self._time = header.time
@@ -254,10 +253,12 @@ class Landing:
 
         if not 0.0 < every < inf:
             raise LandingError(f"every = {every:g} s must be finite and above 0 s")
-        if not (isfinite(until) and until > self._time):
+        if not self._time < until <= LATEST:
             raise LandingError(
-                f"until = {until:g} s must be finite and after the present time, {self._time:g} s"
+                f"until = {until:g} s must be finite, after the present time, {self._time:g} s, "
+                f"and at most {LATEST:g} s"
             )
+        check_going(self._solver)
         start, ground = self._time, self._inputs.ground(self._time)
         samples = int((until - start) / every * (1.0 + 1e-12) + 1e-9) + 1
         rows = np.empty((samples, self._system.row))
@@ -293,14 +294,38 @@ class Landing:
                 goal = reached + 1
                 if reached > 0:
                     self._inputs.begin_step(self._time, start + reached * every - self._time)
-            reached = self._solver.record(start, every, reached, goal, rows)
-            if reached < goal:
-                raise self._collapsed()
-            self._time = start + (reached - 1) * every
+            time = start + (goal - 1) * every
+            with self._until(time):
+                record(self._solver, rows, start, every, reached, goal)
+            self._time, reached = time, goal
             if progress is not None:
-                progress(self._time)
+                progress(time)
 
-    def _collapsed(self) -> LandingError:
-        return LandingError(
-            f"the integrator's step size has collapsed at t = {self._solver.t:g} s; soften the parameters or the loads"
-        )
+    @contextmanager
+    def _until(self, time: float) -> Iterator[None]:
+        """Go on to `time` [s].
+
+        If a fault or Ctrl-C ends that earlier, the landing is at the end of the last internal step.
+        """
+        try:
+            yield
+        except BaseException:
+            self._time = max(self._time, min(self._solver.t, time))
+            self._out_time = inf
+            raise
+
+
+def _revived(
+    kind: type[Landing],
+    parameters: Parameters,
+    rtol: float,
+    method: str,
+    first: Setting,
+    state: array[float],
+) -> Landing:
+    """The landing that was pickled."""
+    inputs, rates = (dict(zip(INPUT_NAMES, numbers)) for numbers in first)
+    own = {name: rate for name, rate in rates.items() if name not in RATE_INPUTS}
+    landing = kind(parameters, rtol=rtol, method=method, inputs=inputs, rates=own)
+    landing.restore(state)
+    return landing

@@ -88,7 +88,7 @@ class Ground:
     exponent: Annotated[float, Q("", "exponent en of the normal stiffness", 1.0, 3.0, "en", "identified")] = 1.624252
     damping: Annotated[float, Q("N.s/m", "normal damping Cgmax at full depth", 0.0, 1e8, "Cgmax", "identified")] = 6950.935
     damping_depth: Annotated[float, Q("m", "penetration at which the normal damping is full", 1e-7, 0.1, "d_ramp", "identified", "mm")] = 0.0001397513
-    friction: Annotated[float, Q("", "friction coefficient mu", 0.0, 3.0, "mu", "identified")] = 0.2882521
+    friction: Annotated[float, Q("", "friction coefficient mu; below 1e-7 it counts as 0", 0.0, 3.0, "mu", "identified")] = 0.2882521
     friction_law: Annotated[str, Q("", "passive: an elastic displacement of constant stiffness and a slider, which never supplies energy; paper: Eqs. (16), (17), which may", choices=("passive", "paper"))] = "passive"
     stick_displacement: Annotated[float, Q("m", "displacement s_r0 of a sticking footpad: where friction_law = paper starts to slip; of which tangential_stiffness = 0 and slip_zone are made", 1e-6, 0.1, "s_r0", "identified", "mm")] = 0.0012289
     tangential_stiffness: Annotated[float, Q("N/m", "stiffness K of a sticking footpad along the ground, friction_law = passive; 0: the whole vehicle's mass times 9.80665 m/s2 over stick_displacement", 0.0, 1e12, "K_t", "closure")] = 0.0
@@ -111,6 +111,13 @@ class Drop:
     horizontal_velocity: Annotated[float, Q("m/s", "velocity of the CG along inertial x at first contact", -50.0, 50.0, source="identified")] = 0.3416442
     vertical_velocity: Annotated[float, Q("m/s", "velocity of the CG along inertial y (up) at first contact", -50.0, 50.0, source="identified")] = -1.379071
 
+
+@dataclass(frozen=True)
+class Integration:
+    """What the integrator may spend."""
+
+    max_steps_per_second: Annotated[float, Q("1/s", "integrator steps, rejected ones included, that a simulated second may take on average; a landing that needs more is an error", 100.0, 1e9)] = 5e5
+
 # fmt: on
 
 GROUPS: dict[str, type] = {
@@ -119,6 +126,7 @@ GROUPS: dict[str, type] = {
     "auxiliary_strut": AuxiliaryStrut,
     "ground": Ground,
     "drop": Drop,
+    "solver": Integration,
 }
 
 
@@ -197,6 +205,7 @@ class Parameters:
     auxiliary_strut: AuxiliaryStrut = field(default_factory=AuxiliaryStrut)
     ground: Ground = field(default_factory=Ground)
     drop: Drop = field(default_factory=Drop)
+    solver: Integration = field(default_factory=Integration)
     by_mode: Mapping[str, Mapping[str, float | str]] = field(default_factory=dict)
     sources: Mapping[str, str] = field(default_factory=dict)
 

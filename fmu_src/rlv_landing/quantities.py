@@ -97,6 +97,7 @@ BASE_UNITS: dict[str, dict[str, int]] = {
     "m/s": {"m": 1, "s": -1},
     "m/s2": {"m": 1, "s": -2},
     "s/m": {"s": 1, "m": -1},
+    "1/s": {"s": -1},
     "N": {"kg": 1, "m": 1, "s": -2},
     "N.m": {"kg": 1, "m": 2, "s": -2},
     "N/m": {"kg": 1, "s": -2},
@@ -332,7 +333,7 @@ OUTPUT_QUANTITIES: tuple[Quantity, ...] = SHARED_QUANTITIES + tuple(
     _leg_quantity(leg, q) for leg in LEGS for q in LEG_QUANTITIES
 )
 OUTPUT_NAMES: tuple[str, ...] = tuple(q.name for q in OUTPUT_QUANTITIES)
-# counts of the integrator's work: `Landing.statistics`
+# counts of the integrator's work, and whether it sleeps: `Landing.statistics`
 STATISTIC_QUANTITIES: tuple[Quantity, ...] = (
     Quantity(
         "", "steps of the integrator since the start", 0.0, name="solver.steps", kind="integer"
@@ -349,6 +350,15 @@ STATISTIC_QUANTITIES: tuple[Quantity, ...] = (
         "calls of the right-hand side since the start",
         0.0,
         name="solver.rhs_calls",
+        kind="integer",
+    ),
+    Quantity(
+        "",
+        "whether the landing sleeps: at rest under inputs that do not change, time passes "
+        "without steps",
+        0.0,
+        1.0,
+        name="solver.asleep",
         kind="integer",
     ),
 )

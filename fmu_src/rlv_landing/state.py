@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterator
 from math import isfinite
 from typing import NamedTuple
 
-from .core import Solver
+from .core import Fault, Solver
 from .core.memory import Buffer
+from .core.solvers.step_control import LEAST_PREVIOUS_ERROR, LONGEST_STEP
 from .errors import LandingError
+
+# a count that doubles tell from the next one
+LARGEST_COUNT = 2.0**53
+# steps: no landing counts so many at rest
+MOST_STILL = 1e6
+# [s]: not long after it, a landing's first step would be nothing beside its time
+LATEST = 1e9
 
 
 class StateHeader(NamedTuple):
@@ -26,11 +35,22 @@ class StateHeader(NamedTuple):
     steps: float
     rejected: float
     rhs_calls: float
+    spent: float  # steps beyond the rate that is allowed
+    fault: float  # a `Fault`
     dense_at: float  # where the last step's interpolant begins
     seen: float  # see `rlv_landing.core.solvers.watch`
     noted: float
+    asleep: float  # see `rlv_landing.core.solvers.rest`
+    still: float
+    waited: float
     heave: float  # of the ground at t_input, as it was set [m]
     tilt: float  # of the ground at t_input, as it was set [rad]
+
+
+# fields that the solver does not have by the same name
+OF_LANDING = ("time", "energy_start", "heave", "tilt")
+OF_SOLVER = tuple(name for name in StateHeader._fields if name not in OF_LANDING)
+WHOLE = ("fault", "dense_at", "seen", "still", "waited")
 
 
 def _arrays(solver: Solver) -> tuple[Buffer, ...]:
@@ -50,35 +70,20 @@ def state_of(
         energy_start: The system's energy at the start [J].
         goal: Heave [m] and tilt [rad] of the ground as they were set.
     """
-    s = solver
-    header = StateHeader(
-        time,
-        s.t,
-        s.t_old,
-        s.t_before,
-        s.t_start,
-        s.t_input,
-        s.h,
-        s.error_old,
-        energy_start,
-        s.steps,
-        s.rejected,
-        s.rhs_calls,
-        float(s.dense_at),
-        float(s.seen),
-        float(s.noted),
-        *goal,
-    )
-    return array("d", [*header, *(number for numbers in _arrays(s) for number in numbers)])
+    kept = {name: float(getattr(solver, name)) for name in OF_SOLVER}
+    heave, tilt = goal
+    header = StateHeader(time=time, energy_start=energy_start, heave=heave, tilt=tilt, **kept)
+    return array("d", [*header, *(number for numbers in _arrays(solver) for number in numbers)])
 
 
 def take_up(solver: Solver, state: array[float]) -> StateHeader:
     """Give the `solver` the state; return its header.
 
     Raises:
-        LandingError: The length is not that of this solver's state, or a number is not finite.
+        LandingError: The length is not that of this solver's state, a number is not finite, or the
+            header is not that of a landing; nothing is changed then.
     """
-    s, targets = solver, _arrays(solver)
+    targets = _arrays(solver)
     at = len(StateHeader._fields)
     expected = at + sum(map(len, targets))
     if len(state) != expected:
@@ -89,18 +94,49 @@ def take_up(solver: Solver, state: array[float]) -> StateHeader:
     if not all(map(isfinite, state)):
         raise LandingError("state holds numbers that are not finite; take one that state() gave")
     header = StateHeader(*state[:at])
-    s.t, s.t_old, s.t_before, s.t_start = header.t, header.t_old, header.t_before, header.t_start
-    s.t_input, s.h = header.t_input, header.h
-    s.dense_at, s.seen, s.noted = int(header.dense_at), int(header.seen), bool(header.noted)
+    for told in _faults(header, len(solver.dense) // 2):
+        raise LandingError(f"state holds {told}; take one that state() gave")
     for target in targets:
         for i in range(len(target)):
             target[i] = state[at + i]
         at += len(target)
-    s.recompute_derived()
-    s.error_old, s.steps, s.rejected, s.rhs_calls = (
-        header.error_old,
-        header.steps,
-        header.rejected,
-        header.rhs_calls,
-    )
+    for name in ("t", "t_input"):
+        setattr(solver, name, getattr(header, name))
+    solver.recompute_derived()
+    for name in OF_SOLVER:
+        value = getattr(header, name)
+        setattr(solver, name, int(value) if name in WHOLE else value)
+    solver.noted, solver.asleep = bool(header.noted), bool(header.asleep)
     return header
+
+
+def _faults(h: StateHeader, dense: int) -> Iterator[str]:
+    """What is wrong with a header; `dense` is the length of one interpolant."""
+    if not 0.0 <= h.t_start <= h.t_before <= h.t_old <= h.time <= h.t <= LATEST:
+        yield (
+            f"times that are not in order: start {h.t_start:g}, steps {h.t_before:g}, "
+            f"{h.t_old:g}, {h.t:g}, present {h.time:g} s"
+        )
+    if not h.t_start <= h.t_input <= h.time:
+        yield f"inputs set at {h.t_input:g} s, which is not a time until {h.time:g} s"
+    if not 0.0 < h.h <= LONGEST_STEP:
+        yield f"a next step of {h.h:g} s, outside (0, {LONGEST_STEP:g}] s"
+    if not LEAST_PREVIOUS_ERROR <= h.error_old <= 1.0:
+        yield f"an error of the last step of {h.error_old:g}, outside [{LEAST_PREVIOUS_ERROR:g}, 1]"
+    for name in ("steps", "rejected", "rhs_calls", "still", "waited"):
+        value = getattr(h, name)
+        if not (0.0 <= value < LARGEST_COUNT and value.is_integer()):
+            yield f"{name} = {value:g}, which is not a count"
+    if max(h.still, h.waited) >= MOST_STILL:
+        yield f"still = {h.still:g}, waited = {h.waited:g}, which none has"
+    if not 0.0 <= h.spent < LARGEST_COUNT:
+        yield f"{h.spent:g} steps spent"
+    for name, allowed in (
+        ("fault", tuple(Fault)),
+        ("seen", (1, 2, 3)),
+        ("noted", (0, 1)),
+        ("asleep", (0, 1)),
+        ("dense_at", (0, dense)),
+    ):
+        if getattr(h, name) not in allowed:
+            yield f"{name} = {getattr(h, name):g}, which none has"

@@ -119,6 +119,9 @@ instance.start()
 instance.steps(0, 2)
 try:
     print("stepping", flush=True)
+    if sys.argv[3] == "one long step":
+        instance.set_rate("external.force_x", 1e-3)  # a load that grows lets nothing rest
+        instance.step(2e-3, 1e8)
     for k in range(2, 10**9):
         instance.step(k * 1e-3, 1e-3)
         instance.get("body.y") if instance.log == [] else None
@@ -133,9 +136,11 @@ print("landed again", flush=True)
 """
 
 
-def test_ctrl_c_reaches_the_hosts_python_and_the_instance_can_be_reset(unpacked):
+@pytest.mark.parametrize("how", ["many short steps", "one long step"])
+def test_ctrl_c_reaches_the_hosts_python_and_the_instance_can_be_reset(unpacked, how):
     for _ in range(5):
-        command = [sys.executable, "-c", STEPPING, str(Path(__file__).parent), str(unpacked)]
+        tools = str(Path(__file__).parent)
+        command = [sys.executable, "-c", STEPPING, tools, str(unpacked), how]
         with subprocess.Popen(
             command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         ) as process:

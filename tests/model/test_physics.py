@@ -372,3 +372,14 @@ def test_newton_and_euler_hold_for_the_whole_vehicle(mode, time):
 
 def test_defaults_are_the_preset():
     assert dict(Parameters().items()) == dict(load_preset(FIGURES).items())
+
+
+def test_a_friction_below_the_tolerance_counts_as_none(mode):
+    """A displacement of 1e-200 m would need more steps than any landing may take."""
+    landings = [
+        Landing(load_preset(FIGURES, mode).with_values({"ground.friction": mu}), rtol=1e-8)
+        for mu in (0.0, 1e-200, 9e-8)
+    ]
+    for landing in landings:
+        landing.advance_to(0.3)
+    assert landings[1].values() == landings[2].values() == landings[0].values()

@@ -246,6 +246,18 @@ def test_a_parquet_column_takes_its_unit_from_its_metadata(tmp_path):
     assert design.columns["drop.tilt"][0] == pytest.approx(radians(2.0))
 
 
+def test_a_landing_that_takes_too_many_steps_is_its_rows_error(tmp_path, command):
+    (tmp_path / "s.toml").write_text(
+        '[study]\nmethod = "grid"\nuntil = 0.2\n[set]\nsolver.max_steps_per_second = 2e4\n'
+        '[[factor]]\nname = "main_strut.seal_coulomb"\nvalues = [100.0, 1e6]\n'
+    )
+    done = command("sweep", str(tmp_path / "s.toml"), "--results", str(tmp_path / "r"))
+    assert done.code == 0, done.err
+    errors = [row["error"] for row in rows(tmp_path / "r" / "results.parquet")]
+    assert errors[0] is None
+    assert "takes more than solver.max_steps_per_second = 20000 1/s at t = 0." in errors[1]
+
+
 def test_rows_that_cannot_be_landed_say_why_and_the_others_are_landed(tmp_path, command):
     lines = states(STATES).splitlines()
     lines[2] = "2.0,nan,0.2,-1.2"

@@ -12,7 +12,17 @@ import os
 from typing import TYPE_CHECKING
 
 from .ground.kinds import FRICTION_LAWS
-from .records import Accounts, BodyModel, BodyState, Inputs, LegModel, LegPlace, LegState, Phase
+from .records import (
+    Accounts,
+    BodyModel,
+    BodyState,
+    Fault,
+    Inputs,
+    LegModel,
+    LegPlace,
+    LegState,
+    Phase,
+)
 from .struts.kinds import AUXILIARY_STRUTS, MAIN_STRUTS
 
 COMPILED = False
@@ -40,6 +50,7 @@ __all__ = [
     "BodyState",
     "DormandPrince",
     "Exponential",
+    "Fault",
     "Inputs",
     "LegModel",
     "LegPlace",

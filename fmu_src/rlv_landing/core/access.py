@@ -72,6 +72,11 @@ def inputs(u: Doubles, at: int) -> Inputs:
     return Inputs(*u[at : at + INPUTS])
 
 
+def status_outputs(y: Doubles, at: int) -> StatusOutputs:
+    """The outputs `status.*` that stand at `y[at:]`."""
+    return StatusOutputs(*y[at : at + STATUS_OUTPUTS])
+
+
 def put(record: tuple[float, ...], y: Doubles, at: int) -> None:
     """Write a record to `y[at:]`."""
     for i, value in enumerate(record):

@@ -26,6 +26,14 @@ class Phase(IntEnum):
     TOPPLED = 3
 
 
+class Fault(IntEnum):
+    """Why a solver cannot go on."""
+
+    NONE = 0
+    COLLAPSED = 1
+    TOO_MANY_STEPS = 2
+
+
 # ---- the state of a vehicle: the body, each leg group, then the accounts; and its inputs
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import fabs
 
 from ..access import (
     BODY,
     BODY_OUTPUTS,
     ENERGY_OUTPUTS,
+    INPUTS,
     LEG,
     LEG_OUTPUTS,
     LEG_STATUS,
@@ -16,6 +18,7 @@ from ..access import (
     attitude_of,
     body_model,
     body_state,
+    inputs,
     keep,
     leg_forces_of,
     leg_model,
@@ -24,6 +27,7 @@ from ..access import (
     leg_status_of,
     planar_loads_of,
     put,
+    status_outputs,
 )
 from ..leg import leg_status
 from ..memory import Buffer, Doubles, Records, room
@@ -36,12 +40,13 @@ from ..records import (
     LegOutputs,
     LegPlace,
     LegStatus,
+    Phase,
     StatusOutputs,
     Turn,
 )
 from .planar_legs import footpad_kinetic_energy, footpad_moment
 from .planar_motion import PlanarMotion
-from .planar_status import phase_of
+from .planar_status import is_phase, phase_of
 
 
 class Planar(PlanarMotion):
@@ -91,6 +96,26 @@ class Planar(PlanarMotion):
         at += STATUS_OUTPUTS
         for i in range(self.groups):
             self._put_leg(i, out, at + LEG_OUTPUTS * i)
+
+    def may_rest(self, u: Doubles, rates: Doubles, outputs: Doubles) -> bool:
+        """Where it has settled, with loads and ground that do not change."""
+        status = status_outputs(outputs, BODY_OUTPUTS + ENERGY_OUTPUTS)
+        if not is_phase(status.phase, Phase.SETTLED):
+            return False
+        for i in range(INPUTS):
+            if rates[i] != 0.0:
+                return False
+        now = inputs(u, 0)
+        return now.heave_rate == 0.0 and now.tilt_rate == 0.0
+
+    def distance(self, shift: Doubles) -> float:
+        """The way of the body, turns of which count a metre a radian, or of a footpad."""
+        body = body_state(shift, 0)
+        way = max(fabs(body.x), fabs(body.y), fabs(body.pitch))
+        for i in range(self.groups):
+            leg = leg_state(shift, BODY + LEG * i)
+            way = max(way, fabs(leg.r), fabs(leg.h))
+        return way
 
     def _put_body(self, y: Doubles, rates: Doubles, out: Doubles, at: int) -> None:
         s = body_state(y, 0)

@@ -32,3 +32,8 @@ def phase_of(
     if fabs(rates.vx) + fabs(rates.vy) + fabs(rates.pitch_rate) > REST_ACCELERATION:
         return Phase.CONTACT
     return Phase.SETTLED
+
+
+def is_phase(told: float, phase: int) -> bool:
+    """Whether the output `status.phase` that is `told` is the `phase`."""
+    return told == phase

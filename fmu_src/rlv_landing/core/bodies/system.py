@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from array import array
+from math import inf
 
 from ..memory import Buffer, Doubles, data
 from ..records import StiffPair
@@ -66,6 +67,16 @@ class System:
         rates = data(self._rates)
         self.rhs(y, u, rates)
         self.read(y, u, rates, out, at)
+
+    def may_rest(self, u: Doubles, rates: Doubles, outputs: Doubles) -> bool:
+        """Whether the system may be at rest with these `outputs`, and the inputs `u` with their
+        `rates` stay what they are.
+        """
+        return False
+
+    def distance(self, shift: Doubles) -> float:
+        """The farthest way [m] of all that a `shift` of the state moves."""
+        return inf
 
     def read(self, y: Doubles, u: Doubles, dy: Doubles, out: Doubles, at: int) -> None:
         """Write the outputs to `out[at:]` at the state `y` and the inputs `u` where `rhs` was called

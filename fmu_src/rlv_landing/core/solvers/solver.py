@@ -10,14 +10,21 @@ from math import fabs, inf, sqrt
 
 from ..bodies.system import System
 from ..memory import Buffer, Doubles, data, nogil
-from .step_control import LEAST_PREVIOUS_ERROR, step_factor
-from .watch import Watch
+from ..records import Fault
+from .rest import Rest
+from .step_control import (
+    FIRST_STEP,
+    LEAST_PREVIOUS_ERROR,
+    LONGEST_STEP,
+    SHORTEST_STEP,
+    step_factor,
+)
 
-# the shortest step must be able to pass a jump of the friction force at the tightest tolerance
-FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 1e-5, 2e-3, 1e-16
+# tries of a step that a start or a jump of an input may take beside the limit
+FREE_TRIES = 10.0
 
 
-class Solver(Watch):
+class Solver(Rest):
     """The state of one `System` in time: the present state, and the internal step that reaches
     ahead of it.
 
@@ -25,13 +32,18 @@ class Solver(Watch):
     past a time, `interpolate` gives the state at any time inside the last step. `exponent` of the
     step control is the method's.
 
+    `limit` is how many tries of a step a second may take: `spent` counts those beyond that rate,
+    which may be as many as a second has. `fault` is a `Fault`: with one, no more steps are taken.
+
     Forces that switch do so inside steps: the error control finds them. The system takes off at a
     step's end what the step has gathered beyond where a state may be, which would be a first-order
     error.
     """
 
-    rtol: float
     exponent: float
+    limit: float
+    spent: float
+    fault: int
     h: float
     error_old: float
     steps: float
@@ -48,10 +60,12 @@ class Solver(Watch):
     deviation: Buffer
 
     def __init__(self, system: System, rtol: float) -> None:
-        super().__init__(system)
+        super().__init__(system, rtol)
         n = system.n
-        self.rtol = rtol
         self.exponent = 0.0
+        self.limit = inf
+        self.spent = 0.0
+        self.fault = Fault.NONE
         self.y = array("d", bytes(8 * n))
         self.y_new = array("d", bytes(8 * n))
         self.y_stage = array("d", bytes(8 * n))
@@ -85,6 +99,8 @@ class Solver(Watch):
         self.steps = 0.0
         self.rejected = 0.0
         self.rhs_calls = 0.0
+        self.spent = 0.0
+        self.fault = Fault.NONE
         self.h = FIRST_STEP
         self.restart(t)
 
@@ -92,26 +108,34 @@ class Solver(Watch):
         """End the path at time `t` [s], inside the last internal step: write the state there to
         `y`, from which `restart` goes on.
         """
-        self._watch_until(t, data(self.kept), self.t_start)
-        if self.t_span < inf:
-            self._watch_until(t, data(self.span), self.t_span)
+        self._cut(t)
+
+    def _cut(self, t: float) -> None:
+        self._watch(t)
         self._interpolate(t, data(self.y))
 
     def restart(self, t: float) -> None:
         """Go on from time `t` [s] from the state in `y` and the inputs in `u`, with no step behind."""
+        self._restart(t)
+
+    def _restart(self, t: float) -> None:
         self.t = t
         self.t_old = t
         self.t_before = t
         self.t_input = t
         self.error_old = LEAST_PREVIOUS_ERROR
         self._stand_still(data(self.y))
-        if self.h > FIRST_STEP:
-            self.h = FIRST_STEP
-        self.recompute_derived()
+        self.h = min(self.h, FIRST_STEP)
+        self.spent = max(self.spent - FREE_TRIES, 0.0)
+        self._recompute_derived()
         self._start_rows(data(self.y), data(self.k1))
+        self._awake()
 
     def recompute_derived(self) -> None:
         """Work out again, after the stored numbers were overwritten, what is not stored."""
+        self._recompute_derived()
+
+    def _recompute_derived(self) -> None:
         self._derivatives(self.t, data(self.y), data(self.k1))
         self._start_step()
 
@@ -180,45 +204,87 @@ class Solver(Watch):
     def advance(self, t_end: float) -> bool:
         """Take internal steps until `t` is at or past `t_end` [s].
 
-        Returns False if the step size has collapsed.
+        Returns False if there is a fault.
         """
-        return self._advance(t_end)
+        return self._advance(t_end, inf)
 
-    def _advance(self, t_end: float) -> bool:
+    def advance_some(self, t_end: float, tries: int) -> bool:
+        """The same with at most so many `tries` of a step; False if it takes more, too."""
+        return self._advance(t_end, self.steps + self.rejected + tries)
+
+    def _advance(self, t_end: float, last_try: float) -> bool:
         while self.t < t_end:
-            h = self.h
-            if h < SHORTEST_STEP:
+            if self.fault != Fault.NONE or self.steps + self.rejected >= last_try:
                 return False
             if not self.noted:
                 self._note_step()
-            self._try_step(h)
-            error = self._error()
-            self.h = h * step_factor(error, self.error_old, self.exponent)
-            if error <= 1.0:
-                self._accept(h)
-                self.h = min(self.h, LONGEST_STEP)
-                self.error_old = max(error, LEAST_PREVIOUS_ERROR)
+                self._fall_asleep()
+            if self.asleep:
+                self._sleep_until(t_end)
             else:
-                self.rejected += 1.0
+                self._step()
         return True
+
+    def _fall_asleep(self) -> None:
+        """Where the system has come to rest, be there, and sleep."""
+        y, place = data(self.y), data(self._place)
+        if self._found_rest(y):
+            self._cut(self.t)
+            for i in range(self.n):
+                y[i] = place[i]
+            self._restart(self.t)
+            self._watch(self.t)
+            self.asleep = True
+
+    def _step(self) -> None:
+        """Try a step, and choose the next one's length."""
+        h = self.h
+        if h < SHORTEST_STEP or self.t + h <= self.t:
+            self.fault = Fault.COLLAPSED
+            return
+        self._try_step(h)
+        error = self._error()
+        self.h = h * step_factor(error, self.error_old, self.exponent)
+        self.spent += 1.0
+        if error <= 1.0:
+            self._accept(h)
+            self.h = min(self.h, LONGEST_STEP)
+            self.error_old = max(error, LEAST_PREVIOUS_ERROR)
+            self.spent = max(self.spent - self.limit * h, 0.0)
+        else:
+            self.rejected += 1.0
+        if self.spent > self.limit:
+            self.fault = Fault.TOO_MANY_STEPS
 
     def record(self, start: float, every: float, first: int, last: int, rows: Buffer) -> int:
         """Go on and write the outputs at times start + k every [s], k from `first` to `last` - 1,
         to `rows`: row k begins at k times `row`.
 
-        Returns the first k that was not reached: `last`, or earlier if the step size has collapsed.
-            Other threads run meanwhile.
+        Returns the first k that was not reached: `last`, or earlier if there is a fault. Other
+            threads run meanwhile.
         """
         numbers = data(rows)
         with nogil:
-            reached = self._record(start, every, first, last, numbers)
+            reached = self._record(start, every, first, last, numbers, inf)
         return reached
 
-    def _record(self, start: float, every: float, first: int, last: int, rows: Doubles) -> int:
+    def record_some(
+        self, start: float, every: float, first: int, last: int, rows: Buffer, tries: int
+    ) -> int:
+        """The same with at most so many `tries` of a step."""
+        numbers = data(rows)
+        last_try = self.steps + self.rejected + tries
+        with nogil:
+            reached = self._record(start, every, first, last, numbers, last_try)
+        return reached
+
+    def _record(
+        self, start: float, every: float, first: int, last: int, rows: Doubles, last_try: float
+    ) -> int:
         y = data(self.y_stage)
         for k in range(first, last):
             t = start + k * every
-            if not self._advance(t):
+            if not self._advance(t, last_try):
                 return k
             self._interpolate(t, y)
             self._outputs_at(t, y, rows, k * self.system.row)

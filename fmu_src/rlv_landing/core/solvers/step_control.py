@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from math import pow
 
+# [s]: the shortest step must be able to pass a jump of the friction force at the tightest tolerance
+FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 1e-5, 2e-3, 1e-16
 # part of the step that the error would allow, and how much shorter and longer the next step is at
 # most
 SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0

@@ -136,6 +136,14 @@ class Watch(Path):
         if self.t_span < inf:
             self._judge_middle(data(self.last), self.t, data(self.span), self.t_span)
 
+    def _watch(self, t: float) -> None:
+        """Bring the extremes that are kept to the time `t` [s] inside the last step, where the path
+        ends or stays.
+        """
+        self._watch_until(t, data(self.kept), self.t_start)
+        if self.t_span < inf:
+            self._watch_until(t, data(self.span), self.t_span)
+
     def _watch_until(self, t: float, found: Doubles, since: float) -> None:
         """Bring the extremes `found`, kept since a time, to the time `t` [s] inside the last step."""
         half, now = data(self._half), data(self._now)

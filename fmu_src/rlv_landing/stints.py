@@ -1,0 +1,63 @@
+"""A solver goes on in stints, between which Python looks at signals.
+
+So Ctrl-C also ends a step that takes hours.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .core import Fault, Solver
+from .errors import StepLimitError, StepSizeError
+
+if TYPE_CHECKING:
+    from numpy import float64
+    from numpy.typing import NDArray
+
+# tries of a step in a stint: some 20 ms
+STINT = 10_000
+# the parameter that limits the steps
+LIMIT = "solver.max_steps_per_second"
+
+
+def check_going(solver: Solver) -> None:
+    """Check that the solver can go on.
+
+    Raises:
+        IntegrationError: It cannot.
+    """
+    s = solver
+    if s.fault == Fault.COLLAPSED:
+        raise StepSizeError(
+            f"the integrator's step size has collapsed at t = {s.t:g} s; "
+            "soften the parameters or the loads"
+        )
+    if s.fault == Fault.TOO_MANY_STEPS:
+        raise StepLimitError(
+            f"the integrator takes more than {LIMIT} = {s.limit:g} 1/s at t = {s.t:g} s; "
+            "soften the parameters, loosen rtol, or raise the limit"
+        )
+
+
+def advance(solver: Solver, time: float) -> None:
+    """Take the solver to or past `time` [s].
+
+    Raises:
+        IntegrationError: The solver cannot go on.
+    """
+    check_going(solver)
+    while not solver.advance_some(time, STINT):
+        check_going(solver)
+
+
+def record(
+    solver: Solver, rows: NDArray[float64], start: float, every: float, first: int, last: int
+) -> None:
+    """Write the outputs at start + k every [s], k from `first` to `last` - 1, to `rows`.
+
+    Raises:
+        IntegrationError: The solver cannot go on.
+    """
+    while first < last:
+        check_going(solver)
+        first = solver.record_some(start, every, first, last, rows, STINT)
