@@ -153,11 +153,11 @@ static double auxiliary(double s, double v, const Parameters *p, Loads *w)
         double slope_t, slope_c;
         double u_t = bearing(-s - p->g_t, p, &slope_t), u_c = bearing(s - p->g_c, p, &slope_c);
         double pushes = pow(u_c, p->ek) * slope_c;
-        double spring = p->Ka * (pushes - pow(u_t, p->ek) * slope_t) + p->k_play * s;
+        double spring = p->Ka * (pushes - pow(u_t, p->ek) * slope_t) - p->F_0;
         double bears = MIN(1.0, slope_t + slope_c);
         double damping = p->Ca * (p->c_play + (1.0 - p->c_play) * bears);
         w->auxiliary = damping * v * v;
-        return spring + damping * v;
+        return spring + p->k_play * s + damping * v;
     }
     double spring = p->Ka * pow(fabs(s), p->ek);
     if (s < 0.0)

@@ -106,14 +106,14 @@ def worse_than(percent: str) -> float:
 
 @quick
 def created(mode: str) -> float:
-    """Energy that the transverse load at the joint creates in 1 s [J]."""
-    return float(landing(mode)["energy.work_transverse"][-1])
+    """Energy that the transverse load creates in 1 s where it acts at the joint [J]."""
+    return float(found(FIGURES, "joint").histories[mode]["energy.work_transverse"][-1])
 
 
 @quick
 def dissipated(mode: str) -> float:
-    """Energy that is dissipated in 1 s [J]."""
-    return float(landing(mode)["energy.dissipated"][-1])
+    """Energy that is dissipated in 1 s with the transverse load at the joint [J]."""
+    return float(found(FIGURES, "joint").histories[mode]["energy.dissipated"][-1])
 
 
 @quick

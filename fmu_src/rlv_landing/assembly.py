@@ -20,6 +20,7 @@ from .core import (
     Planar,
     Solver,
 )
+from .core.struts.kinds import auxiliary_strut, auxiliary_strut_energy
 from .parameters import PARAMETER_QUANTITIES, Parameters, azimuth
 from .quantities import LEGS, MODES
 from .touchdown import AT_REST, FreeFlight, GroundMotion
@@ -70,11 +71,19 @@ def leg_models(parameters: Parameters) -> list[LegModel]:
         "Lb": -parameters.main_strut.joint_depth,
         "Ld": -parameters.auxiliary_strut.joint_depth,
     }
-    common = LegModel(**_by_symbol(parameters, LegModel._fields, {**own, "share_1": 0.5}))
+    own |= {"F_0": 0.0, "U_0": 0.0, "share_1": 0.5}
+    common = bearing_nothing_at_rest(LegModel(**_by_symbol(parameters, LegModel._fields, own)))
     return [
         common._replace(share_1=1.0 if place.sin_g == 0.0 else 0.5)
         for place in leg_places(parameters)
     ]
+
+
+def bearing_nothing_at_rest(leg: LegModel) -> LegModel:
+    """The leg with the constants that free its auxiliary strut of force and energy at stroke 0."""
+    plain = leg._replace(F_0=0.0, U_0=0.0)
+    force = auxiliary_strut(0.0, 0.0, plain).force
+    return plain._replace(F_0=force, U_0=auxiliary_strut_energy(0.0, plain))
 
 
 def tangential_stiffness(parameters: Parameters) -> float:

@@ -28,7 +28,7 @@ class Vehicle:
     inertia: Annotated[float, Q("kg.m2", "rotational inertia of the upper mass about z through its CG", 0.1, 1e9, "I_u", "identified")] = 202.9365
     footpad_mass: Annotated[float, Q("kg", "lower (inelastic) mass of one leg, at its footpad", 0.01, 1e4, "m_d", "paper")] = 4.2
     top_height: Annotated[float, Q("m", "height of the top acceleration sensor above the CG", 0.0, 100.0, "H", "identified")] = 0.5609749
-    transverse_load_at: Annotated[str, Q("", "where the body feels the auxiliary struts' transverse force: footpad (consistent) or joint (the paper's assumption C; creates energy)", source="paper", choices=("footpad", "joint"))] = "joint"
+    transverse_load_at: Annotated[str, Q("", "where the body feels the auxiliary struts' transverse force: footpad (consistent) or joint (the paper's assumption C; creates energy)", source="derived", choices=("footpad", "joint"))] = "footpad"
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from rlv_landing import Landing, Parameters, load_preset
-from rlv_landing.assembly import leg_models
+from rlv_landing.assembly import bearing_nothing_at_rest, leg_models
 from rlv_landing.audit.energy import imbalance, largest_fall
 from rlv_landing.core.struts.elastic import elastic
 from rlv_landing.core.struts.kinds import auxiliary_strut, auxiliary_strut_energy
@@ -21,8 +21,8 @@ strokes = st.floats(-0.01, 0.01)
 speeds = st.floats(-5.0, 5.0)
 plays = st.one_of(st.just(0.0), st.floats(1e-5, 5e-3))
 models = st.builds(
-    lambda g_t, g_c, ek, k_play, c_play: BASE._replace(
-        auxiliary_kind=1.0, g_t=g_t, g_c=g_c, ek=ek, k_play=k_play, c_play=c_play
+    lambda g_t, g_c, ek, k_play, c_play: bearing_nothing_at_rest(
+        BASE._replace(auxiliary_kind=1.0, g_t=g_t, g_c=g_c, ek=ek, k_play=k_play, c_play=c_play)
     ),
     plays,
     st.floats(1e-5, 5e-3),
@@ -50,9 +50,22 @@ def test_energy_is_never_negative_and_damping_only_dissipates(s, v, p):
     assert moving.dissipated <= p.Ca * v * v * (1.0 + 1e-12)
 
 
+@given(models)
+def test_at_stroke_zero_the_strut_bears_and_holds_exactly_nothing_however_unequal_the_plays(p):
+    assert auxiliary_strut(0.0, 0.0, p).force == 0.0
+    assert auxiliary_strut_energy(0.0, p) == 0.0
+
+
+@given(strokes, strokes, models)
+def test_the_spring_hardens_so_that_its_energy_is_convex(s, t, p):
+    s, t = min(s, t), max(s, t)
+    lower, higher = (auxiliary_strut(x, 0.0, p).force for x in (s, t))
+    assert higher >= lower - 1e-12 * p.Ka * (p.g_t + p.g_c) ** p.ek
+
+
 @given(st.floats(-0.9, 0.9), models)
 def test_well_inside_the_play_the_strut_hardly_bears(part, p):
-    p = p._replace(k_play=0.0, g_t=p.g_c, ek=1.0)
+    p = bearing_nothing_at_rest(p._replace(k_play=0.0, g_t=p.g_c, ek=1.0))
     assert abs(auxiliary_strut(part * p.g_c, 0.0, p).force) < 0.05 * p.Ka * p.g_c
 
 

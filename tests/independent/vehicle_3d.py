@@ -184,19 +184,26 @@ class Vehicle3D:
     def auxiliary(self, s: Array, v: Array) -> Array:
         """Axial force [N], compression positive: a spring and a damper.
 
-        They bear where the play of the joints is taken up, softly within 3 % of it.
+        They bear where the play of the joints is taken up, softly within 3 % of it. What the
+        faces would bear at stroke 0 is taken off.
         """
         a = self.strut
-        play = a.play_tension + a.play_compression
-        if play == 0.0:
+        if a.play_tension + a.play_compression == 0.0:
             return a.stiffness * np.abs(s) ** a.exponent * np.sign(s) + a.damping * v
+        faces, bears = self.faces(s)
+        at_rest, _ = self.faces(np.zeros_like(s))
+        part = np.minimum(bears, 1.0)
+        damping = a.damping * (a.play_damping * (1.0 - part) + part)
+        return faces - at_rest + a.play_stiffness * s + damping * v
+
+    def faces(self, s: Array) -> tuple[Array, Array]:
+        """Force [N] between the joints' faces, compression positive, and how far they bear."""
+        a = self.strut
         past = np.array([-s - a.play_tension, s - a.play_compression])
-        root = np.hypot(past, 0.03 * play)
+        root = np.hypot(past, 0.03 * (a.play_tension + a.play_compression))
         pressed, bears = 0.5 * (past + root), 0.5 * (1.0 + past / root)
         out, into = a.stiffness * pressed**a.exponent * bears
-        part = np.minimum(bears.sum(axis=0), 1.0)
-        damping = a.damping * (a.play_damping * (1.0 - part) + part)
-        return into - out + a.play_stiffness * s + damping * v
+        return into - out, bears.sum(axis=0)
 
     def ramp(self, d: Array) -> Array:
         """0 to 1 over the ground's damping depth."""

@@ -32,8 +32,10 @@ def centre(history: History, axis: str) -> np.ndarray:
     )
 
 
-def test_free_fall_is_a_parabola_to_1e10_m(mode):
-    values = {"drop.pitch_rate": 0.0, "drop.contact_time": 0.5, "drop.vertical_velocity": -5.2}
+@pytest.mark.parametrize("tension", [0.0, 1e-4, 9e-4])
+def test_free_fall_is_a_parabola_to_1e10_m_whatever_the_play_of_the_joints(mode, tension):
+    values = {"auxiliary_strut.play_tension": tension, "auxiliary_strut.play_compression": 4e-4}
+    values |= {"drop.pitch_rate": 0.0, "drop.contact_time": 0.5, "drop.vertical_velocity": -5.2}
     values["main_strut.charge_pressure"] = (
         101300.0  # a charged strut pushes its piston a micrometre into the stop
     )

@@ -320,6 +320,18 @@ def test_settings_come_by_ros_arguments_too(fmu: Path, tmp_path: Path) -> None:
     assert reader.namespace == "/tests"
 
 
+@pytest.mark.parametrize(("at", "count"), [("joint", 1), ("footpad", 0)])
+def test_the_node_warns_once_of_a_transverse_load_that_creates_energy(
+    fmu: Path, at: str, count: int
+) -> None:
+    setting = f"vehicle.transverse_load_at={at}"
+    done = run("node", "--fmu", fmu, "--no-record", "--realtime-factor", 0, "--set", setting)
+    assert done.returncode == 0, done.stderr
+    printed = done.stdout + done.stderr
+    assert printed.count("J dissipated in a 2-2 landing") == count
+    assert printed.count("set vehicle.transverse_load_at = footpad") == count
+
+
 def test_help_shows_without_loading_ros(tmp_path: Path) -> None:
     code = (
         "import sys; from rlv_ros_bridge.__main__ import main\n"

@@ -13,7 +13,7 @@ from ..choices import parse_pairs, split_pair
 from ..errors import LandingError, one_line
 from .number_types import Number, WholeNumber
 from .options import HELP_NAMES, check_writable, parameter_options
-from .printing import print_json
+from .printing import print_json, print_warning
 
 if TYPE_CHECKING:
     from ..studies.envelope.search import Envelope
@@ -125,6 +125,7 @@ def envelope(
     Exit codes: 0 done, 1 no family has a boundary in the range (all stable or all lost), 2 bad
     input, 130 interrupted.
     """
+    from ..audit.transverse import joint_warning
     from ..studies.envelope.results import record
     from ..tables.envelope_tables import envelope_tables
     from ..workers import default_workers
@@ -132,6 +133,7 @@ def envelope(
     ending = ".svg" if plot is not None and plot.suffix == ".svg" else ".png"
     check_writable(plot, ending, force=options["force"])
     asked = _study(study, options)
+    print_warning(joint_warning(map(asked.parameters_with, asked.families), asked.inputs))
     store = _open_store(asked, work, resume=resume)
     try:
         found = _search(asked, store, options["workers"] or default_workers())

@@ -13,6 +13,7 @@ from ..choices import split_pair
 from ..errors import LandingError
 from .number_types import NumberRange, WholeNumber
 from .options import HELP_NAMES, choose, parameter_options
+from .printing import print_warning
 
 if TYPE_CHECKING:
     from ..identification.identify import Search
@@ -141,6 +142,7 @@ def identify(work: Path, *, list_priors: bool, **options: Any) -> None:
     Exit codes: 0 done, 1 nothing better than the start was found, 2 bad input, 130 interrupted
     (the best so far is written).
     """
+    from ..audit.transverse import joint_warning
     from ..identification.identify import Search
     from ..identification.identify_report import write_report
     from ..presets import to_toml
@@ -149,6 +151,7 @@ def identify(work: Path, *, list_priors: bool, **options: Any) -> None:
         _print_priors()
         return
     objective = _objective(options)
+    print_warning(joint_warning(map(objective.free.base.for_mode, objective.modes)))
     # SIGTERM ends as Ctrl-C does: with everything written
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     with Search(

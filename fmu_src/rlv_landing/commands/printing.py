@@ -18,6 +18,12 @@ def print_json(record: Any) -> None:
     click.echo(json.dumps(record, indent=1, allow_nan=False))
 
 
+def print_warning(text: str | None) -> None:
+    """Print a warning on standard error, as one line; nothing where it is None."""
+    if text is not None:
+        click.echo(one_line(f"warning: {text}"), err=True)
+
+
 def print_checked(
     record: dict[str, Any], tables: Callable[[], str], missed: Sequence[str], *, as_json: bool
 ) -> int:

@@ -10,7 +10,7 @@ import click
 from .number_types import NumberRange, WholeNumber
 from .options import HELP_NAMES, check_writable
 from .printing import print_json
-from .study_run import RunOptions, run_options, run_task
+from .study_run import RunOptions, run_options, run_task, warn_of_joint
 from .sweep import show_plan
 
 
@@ -74,6 +74,7 @@ def sensitivity(
     read = read_study(study)
     wanted = numeric_responses(read, responses)
     task = Task(read, sobol_design(read))
+    warn_of_joint(task)
     if run.dry_run:
         show_plan(task, run)
         return

@@ -12,7 +12,7 @@ from ..errors import LandingError
 from ..landing import DEFAULT_RTOL, METHODS, Landing
 from .number_types import Number
 from .options import HELP_NAMES, check_writable, chosen_parameters, parameter_options
-from .printing import print_json
+from .printing import print_json, print_warning
 
 if TYPE_CHECKING:
     from ..history import History
@@ -75,11 +75,14 @@ def simulate(output: Path | None, plot: Path | None, *, force: bool, **options: 
     rlv-landing simulate --preset yue2022-table2 --plot landing.png
     rlv-landing simulate --set ground.friction=0.4 --set ground.slope="3 deg" --output landing.csv
     """
+    from ..audit.transverse import warning_of
+
     for path, ending in ((output, ".csv"), (plot, ".png")):
         check_writable(path, ending, force=force)
     landing = _landing(options)
     mode = landing.parameters.drop.mode
     history = _run(landing, options["until"], options["every"])
+    print_warning(warning_of(history))
     if options["as_json"]:
         from ..summary import summarise
 

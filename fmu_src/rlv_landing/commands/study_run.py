@@ -15,6 +15,7 @@ import click
 from ..errors import LandingError, one_line
 from .number_types import NumberRange, WholeNumber
 from .options import add_options
+from .printing import print_warning
 
 if TYPE_CHECKING:
     from ..studies.sweep.result_files import Results
@@ -107,6 +108,18 @@ def engine_for(plan: Plan, options: RunOptions) -> Iterator[Engine]:
             )
         with cluster(plan, options.scheduler, options.timeout) as engine:
             yield engine
+
+
+def warn_of_joint(task: Task) -> None:
+    """Print a warning where landings of the study have the transverse load at the joint."""
+    from ..audit.transverse import NAME, joint_warning
+
+    study, varied = task.study, task.design.columns.get(NAME)
+    base = study.parameters.for_mode(study.modes[0]) if study.modes else study.parameters
+    values = [base[NAME]] if varied is None else sorted(set(varied.tolist()))
+    print_warning(
+        joint_warning([base.with_values({NAME: value}) for value in values], task.plan.inputs)
+    )
 
 
 def run_task(task: Task, folder: Path, options: RunOptions) -> Path:

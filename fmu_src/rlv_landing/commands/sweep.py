@@ -11,7 +11,7 @@ import click
 
 from .options import HELP_NAMES
 from .printing import print_json
-from .study_run import RunOptions, run_options, run_task
+from .study_run import RunOptions, run_options, run_task, warn_of_joint
 
 if TYPE_CHECKING:
     from ..studies.sweep.sweep_row import Task
@@ -61,6 +61,7 @@ def sweep(study: Path, **options: Any) -> None:
     run = RunOptions(**options)
     read = read_study(study)
     task = Task(read, read.design)
+    warn_of_joint(task)
     if run.dry_run:
         show_plan(task, run)
         return

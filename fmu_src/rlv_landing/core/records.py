@@ -154,6 +154,8 @@ class LegModel(NamedTuple):
     g_c: float
     k_play: float
     c_play: float
+    F_0: float  # force of the joints' faces at stroke 0, which the law leaves out [N]
+    U_0: float  # energy of the joints' faces at stroke 0, which the law leaves out [J]
     # ground
     Kg: float
     en: float

@@ -17,6 +17,7 @@ from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
+from rlv_landing.audit.transverse import joint_warning
 from rlv_landing.errors import LandingError
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES
@@ -153,6 +154,9 @@ class LandingNode(LifecycleNode):
             on_error=lambda text: self.get_logger().error(text),
         )
         self._describe(self.landing)
+        warning = joint_warning([settings.parameters])
+        if warning is not None:
+            self.get_logger().warning(warning)
 
     def _describe(self, landing: LandingRun) -> None:
         """Publishes the FMU's variables and the vehicle's description."""

@@ -2,6 +2,7 @@
 up the play, g_t in tension or g_c in compression. [closure]
 
 The faces come to bear over a part of the play, smoothly, so that forces have slopes everywhere.
+What they would bear at elongation 0 is left out, so that a strut in free flight bears nothing.
 """
 
 from __future__ import annotations
@@ -31,26 +32,29 @@ def elastic_with_play(s: float, v: float, p: LegModel) -> AxialForce:
     """The strut at stroke `s` [m] and stroke rate `v` [m/s]; with the elongation e = -s, tension
     positive,
 
-    F = Ka (u+^ek u+' - u-^ek u-') + k_play e + Ca e' [c_play + (1 - c_play) min(1, u+' + u-')],
-    u+ of e - g_t and u- of -e - g_c. The factor u' makes the spring's energy a closed form for
-    every ek.
+    F = T(e) - T(0) + k_play e + Ca e' [c_play + (1 - c_play) min(1, u+' + u-')],
+    T(e) = Ka (u+^ek u+' - u-^ek u-'), u+ of e - g_t and u- of -e - g_c. The factor u' makes the
+    spring's energy a closed form for every ek.
     """
     tension = bearing(-s - p.g_t, p)
     compression = bearing(s - p.g_c, p)
     pushes = pow(compression.u, p.ek) * compression.slope
-    spring = p.Ka * (pushes - pow(tension.u, p.ek) * tension.slope) + p.k_play * s
+    faces = p.Ka * (pushes - pow(tension.u, p.ek) * tension.slope) - p.F_0
     borne = min(1.0, tension.slope + compression.slope)
     damping = p.Ca * (p.c_play + (1.0 - p.c_play) * borne)
-    return AxialForce(spring + damping * v, damping * v * v)
+    return AxialForce(faces + p.k_play * s + damping * v, damping * v * v)
 
 
 def elastic_with_play_energy(s: float, p: LegModel) -> float:
-    """Energy [J] that the spring holds at stroke `s` [m]:
-    Ka/(ek + 1) (u+^(ek + 1) + u-^(ek + 1)) + k_play s^2/2.
+    """Energy [J] that the spring holds at stroke `s` [m], with the elongation e = -s:
+    H(e) - H(0) - T(0) e + k_play e^2/2, H = Ka/(ek + 1) (u+^(ek + 1) + u-^(ek + 1)).
+
+    H is convex and its slope is T, so that it is never negative; rounding near e = 0 is cut off.
     """
     n = p.ek + 1.0
     borne = pow(bearing(-s - p.g_t, p).u, n) + pow(bearing(s - p.g_c, p).u, n)
-    return p.Ka / n * borne + 0.5 * p.k_play * s * s
+    faces = p.Ka / n * borne - p.U_0 - p.F_0 * s
+    return max(0.0, faces) + 0.5 * p.k_play * s * s
 
 
 AUXILIARY_STRUTS["elastic-with-play"] = AuxiliaryStrutLaw(
