@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import sqrt
 
 from ..access import (
     BODY,
@@ -225,6 +226,11 @@ class Planar(PlanarMotion):
                 contact_force_x=loads.contact_x,
                 contact_force_y=loads.contact_y,
                 contact_force_z=loads.contact_z,
+                contact_force=sqrt(
+                    loads.contact_x * loads.contact_x
+                    + loads.contact_y * loads.contact_y
+                    + loads.contact_z * loads.contact_z
+                ),
                 contact_penetration=loads.depth,
                 contact_active=1.0 if loads.depth > 0.0 else 0.0,
             ),
