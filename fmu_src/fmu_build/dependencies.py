@@ -58,6 +58,7 @@ INPUTS: dict[str, frozenset[str]] = {
     "contact.force_x": RATES,
     "contact.force_y": RATES,
     "contact.force_z": RATES,
+    "contact.force": RATES,
 }
 
 START_INPUTS: dict[str, frozenset[str]] = {

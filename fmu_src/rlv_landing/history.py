@@ -74,6 +74,45 @@ class History:
     def __len__(self) -> int:
         return len(self.time)
 
+    def extreme(self, name: str) -> Extreme:
+        """The extremes of a column and when it first has them.
+
+        They are those of the landing, between the samples too; of the samples where `extremes` is
+        None.
+
+        Raises:
+            LandingError: The column is unknown.
+        """
+        if self.extremes is not None and name in self.extremes:
+            return self.extremes[name]
+        values = self[name]
+        low, high = int(values.argmin()), int(values.argmax())
+        return Extreme(
+            float(values[low]), float(self.time[low]), float(values[high]), float(self.time[high])
+        )
+
+    def until(self, samples: int, extremes: Mapping[str, Extreme] | None = None) -> History:
+        """The landing until the last of so many `samples`.
+
+        Args:
+            samples: How many samples, at least one.
+            extremes: The extremes until then; None: those of the whole that were before, and those
+                of the samples where the whole's came later.
+        """
+        part = History(
+            self.time[:samples], self.names, self.data[:samples], self.parameters, self.ground
+        )
+        if extremes is None and self.extremes is not None:
+            end = float(part.time[-1])
+            extremes = {
+                name: found
+                if max(found.minimum_time, found.maximum_time) <= end
+                else _earlier(found, part.extreme(name), end)
+                for name, found in self.extremes.items()
+            }
+        part.extremes = extremes
+        return part
+
     def to_csv(self, path: str | Path) -> None:
         """Write all columns to a CSV file, SI units, full precision."""
         with Path(path).open("w", newline="", encoding="utf-8") as f:
@@ -85,3 +124,10 @@ class History:
         writer.writerow(list(self))
         for t, row in zip(self.time.tolist(), self.data.tolist()):
             writer.writerow([repr(t), *map(repr, row)])
+
+
+def _earlier(whole: Extreme, sampled: Extreme, end: float) -> Extreme:
+    """The extremes of the `whole` that were before the `end` [s], else the `sampled` ones."""
+    low = whole if whole.minimum_time <= end else sampled
+    high = whole if whole.maximum_time <= end else sampled
+    return Extreme(low.minimum, low.minimum_time, high.maximum, high.maximum_time)

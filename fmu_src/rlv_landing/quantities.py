@@ -301,6 +301,13 @@ LEG_QUANTITIES: tuple[Quantity, ...] = (
         display_unit="kN",
     ),
     Quantity(
+        "N",
+        "force between ground and footpad, all directions together",
+        0.0,
+        name="contact.force",
+        display_unit="kN",
+    ),
+    Quantity(
         "m",
         "penetration of the ground, positive in contact",
         name="contact.penetration",

@@ -17,6 +17,7 @@ from rlv_landing.studies.envelope.search import Envelope, envelope
 from rlv_landing.studies.envelope.store import Store
 from rlv_landing.studies.envelope.study import CRITERIA, Axis, EnvelopeStudy, study_from
 from rlv_landing.studies.outcome import SEVERITY, outcome
+from rlv_landing.studies.whole_landing import whole_landing
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -87,7 +88,8 @@ def test_on_level_ground_a_landing_from_the_other_side_is_as_stable(found):
 def test_the_critical_condition_is_that_of_the_lost_landing(found):
     c = found.families[0].lines[0][0]
     x, y = c.lost
-    alone = outcome(Landing(GRIPPING.with_values({V: x, TILT: y})).run(2.0), LIMITS)
+    landing = Landing(GRIPPING.with_values({V: x, TILT: y}), rtol=found.study.rtol)
+    alone = outcome(whole_landing(landing, found.study.until, found.study.every), LIMITS)
     assert (c.landing.name, c.landing.time, c.landing.first_limit) == (
         alone.name,
         approx(alone.time),

@@ -485,6 +485,7 @@ class LegOutputs(NamedTuple):
     contact_force_x: float
     contact_force_y: float
     contact_force_z: float
+    contact_force: float
     contact_penetration: float
     contact_active: float
 

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import unknown
+from ..extremes import Extreme
 from ..history import History
+from ..landing import Landing
 from ..parameters import check_value
 from ..quantities import Quantity
-
-Array = NDArray[np.float64]
+from .replay import ReplayedHistory
 
 # the quantities that may have a limit, by output name; the largest value is compared, of a load its
 # magnitude
@@ -86,7 +87,7 @@ class PassedLimit:
     Attributes:
         name: The limit's name in LIMITS.
         leg: The leg; None for the body.
-        time: Time of the first sample beyond the limit [s].
+        time: When it was first passed [s].
         limit: The limit itself [SI unit of the quantity].
     """
 
@@ -96,28 +97,9 @@ class PassedLimit:
     limit: float
 
 
-def _resultant(history: History, leg: int) -> Array:
-    x, y, z = (history[f"leg[{leg}].contact.force_{axis}"] for axis in "xyz")
-    force: Array = np.sqrt(x * x + y * y + z * z)
-    return force
-
-
-def _magnitude(name: str) -> Callable[[History, int], Array]:
-    return lambda history, leg: np.abs(history[f"leg[{leg}].{name}"])
-
-
-def _plain(name: str) -> Callable[[History, int], Array]:
-    return lambda history, leg: history[f"leg[{leg}].{name}"]
-
-
-COMPARED: dict[str, Callable[[History, int], Array]] = {
-    "main_strut.force": _magnitude("main_strut.force"),
-    "auxiliary_strut.force": _magnitude("auxiliary_strut.force"),
-    "main_strut.stroke": _plain("main_strut.stroke"),
-    "main_strut.pressure_upper": _plain("main_strut.pressure_upper"),
-    "main_strut.pressure_lower": _plain("main_strut.pressure_lower"),
-    "contact.force": _resultant,
-}
+# of these either sign counts
+EITHER_SIGN = ("main_strut.force", "auxiliary_strut.force")
+OF_THE_BODY = ("body.top_axial_acceleration",)
 
 
 def check_limits(limits: Mapping[str, float]) -> dict[str, float]:
@@ -135,18 +117,81 @@ def check_limits(limits: Mapping[str, float]) -> dict[str, float]:
 def first_limit_passed(
     history: History, legs: tuple[int, ...], limits: Mapping[str, float]
 ) -> PassedLimit | None:
-    """The limit that is passed at the earliest sample.
+    """The limit that the landing passed first.
 
-    Of several passed at that sample, it is the one exceeded by the largest part of itself.
+    Of several passed at that time, it is the one exceeded by the largest part of itself. The
+    landing's extremes decide, between the samples too. The time is as in `time_passed`.
     """
-    found: list[tuple[int, float, PassedLimit]] = []
-    for name, limit in check_limits(limits).items():
-        whose = legs if name in COMPARED else (None,)
-        for leg in whose:
-            values = COMPARED[name](history, leg) if leg is not None else history[name]
-            if not values.max() > limit:
-                continue
-            i = int(np.argmax(values > limit))
-            excess = float(values[i]) / limit if limit > 0.0 else np.inf
-            found.append((i, -excess, PassedLimit(name, leg, float(history.time[i]), limit)))
-    return min(found, key=lambda f: f[:2])[2] if found else None
+    limits = check_limits(limits)
+    passed = _beyond(history.extreme, legs, limits)
+    if not passed:
+        return None
+    if isinstance(history, ReplayedHistory):
+        time = history.first_time(
+            lambda landing: bool(_beyond(landing.extremes().__getitem__, legs, limits)),
+            float(history.time[0]),
+            float(history.time[-1]),
+        )
+        passed = _beyond(history.extremes_at(time).__getitem__, legs, limits)
+        _, name, leg = max(passed, key=lambda p: p[0])
+        return PassedLimit(name, leg, time, limits[name])
+    timed = [
+        (_time_beyond(history, name, leg, limits[name]), -excess, name, leg)
+        for excess, name, leg in passed
+    ]
+    time, _, name, leg = min(timed, key=lambda p: p[:2])
+    return PassedLimit(name, leg, time, limits[name])
+
+
+def _beyond(
+    extreme: Callable[[str], Extreme], legs: tuple[int, ...], limits: Mapping[str, float]
+) -> list[tuple[float, str, int | None]]:
+    """The limits that the extremes are beyond: by what factor, name, and leg."""
+    found: list[tuple[float, str, int | None]] = []
+    for name, limit in limits.items():
+        for leg in (None,) if name in OF_THE_BODY else legs:
+            reached = _largest(extreme(_output(name, leg)), magnitude=name in EITHER_SIGN)
+            if reached > limit:
+                found.append((reached / limit if limit > 0.0 else inf, name, leg))
+    return found
+
+
+def _output(name: str, leg: int | None) -> str:
+    return name if leg is None else f"leg[{leg}].{name}"
+
+
+def _time_beyond(history: History, name: str, leg: int | None, limit: float) -> float:
+    return time_passed(history, _output(name, leg), limit, magnitude=name in EITHER_SIGN)
+
+
+def time_passed(history: History, output: str, limit: float, *, magnitude: bool = False) -> float:
+    """When an output first passed a `limit` that it has passed [s].
+
+    Exact for a `ReplayedHistory`, else the time of the first sample beyond, or of the extreme where
+    that is earlier.
+
+    Args:
+        history: The landing.
+        output: The output's name.
+        limit: The limit [SI].
+        magnitude: Whether its magnitude is compared.
+    """
+    found, values = history.extreme(output), history[output]
+    sides = [(found.maximum, found.maximum_time)]
+    if magnitude:
+        sides.append((-found.minimum, found.minimum_time))
+        values = np.abs(values)
+    beyond = np.flatnonzero(values > limit)[:1]
+    latest: float = min([*(t for v, t in sides if v > limit), *history.time[beyond].tolist()])
+    if not isinstance(history, ReplayedHistory) or latest <= history.time[0]:
+        return latest
+
+    def passed(landing: Landing) -> bool:
+        return _largest(landing.extremes()[output], magnitude=magnitude) > limit
+
+    return history.first_time(passed, float(history.time[0]), latest)
+
+
+def _largest(found: Extreme, *, magnitude: bool) -> float:
+    """The largest value, or the largest magnitude."""
+    return max(found.maximum, -found.minimum) if magnitude else found.maximum

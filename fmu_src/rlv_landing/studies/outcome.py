@@ -13,10 +13,12 @@ from numpy.typing import NDArray
 from ..core import Phase
 from ..errors import LandingError
 from ..history import History
+from ..landing import Landing
 from ..parameters import azimuth
 from ..quantities import MODES, Quantity
 from ..touchdown import AT_REST
-from .limits import PassedLimit, first_limit_passed
+from .limits import PassedLimit, first_limit_passed, time_passed
+from .replay import ReplayedHistory
 
 Array = NDArray[np.float64]
 Name = Literal["toppled", "bottomed out", "slid", "moving", "settled"]
@@ -54,13 +56,15 @@ class Outcome:
 
     `leg` is the first that bottomed out, whatever the name, else None. Of legs that are mirror
     images the lower number stands for both. The motion after toppling is meaningless and counts in
-    the stability margins only.
+    the stability margins only. Times are those of samples; for a `ReplayedHistory` those of
+    toppling and bottoming out are exact.
 
     `margins` [m]: `stability_min` and `stability_end`, the smallest and the last
     `status.stability_margin`; `stroke_left` to the stop; `slid`, the farthest that a footpad lies
     at the end from its first contact, relative to the ground, which may move (the legs' spreading
     is in it); `joint_clearance`, the least height above the ground of the body's lowest leg joints,
-    the lowest of the body that the model knows. Peaks between samples are not included.
+    the lowest of the body that the model knows. The least margins are those of the landing, between
+    its samples too.
     """
 
     name: Name
@@ -84,6 +88,13 @@ def outcome(
         LandingError: The history has no parameters, a limit is unknown, or a limit or `slide` is
             negative or NaN.
     """
+    return judged(history, limits, slide)[0]
+
+
+def judged(
+    history: History, limits: Mapping[str, float] | None = None, slide: float = DEFAULT_SLIDE
+) -> tuple[Outcome, History]:
+    """The outcome as `outcome` gives it, and the landing until it toppled, if it did."""
     if history.parameters is None:
         raise LandingError(
             "this history does not know its parameters; give one that Landing.run returned"
@@ -93,39 +104,58 @@ def outcome(
     p = history.parameters
     legs, joints = _legs(p.drop.mode)
     phase, margin = history["status.phase"], history["status.stability_margin"]
+    least_margin = history.extreme("status.stability_margin").minimum
     toppled = bool(phase[-1] == TOPPLED)
+    end = float(history.time[-1])
     if toppled:
-        over = _first_of_last_period(phase, TOPPLED) + 1
-        history = History(
-            history.time[:over], history.names, history.data[:over], p, history.ground
-        )
+        end, history = _until_toppled(history)
     stop = p.main_strut.stroke_max
-    strokes = {leg: history[f"leg[{leg}].main_strut.stroke"] for leg in legs}
+    strokes = {leg: history.extreme(_stroke(leg)).maximum for leg in legs}
     slips = [_slip(history, leg) for leg in legs]
     bottomed = sorted(
-        (int(np.argmax(s > stop)), leg) for leg, s in strokes.items() if s.max() > stop
+        (time_passed(history, _stroke(leg), stop), leg) for leg, s in strokes.items() if s > stop
     )
     margins = {
-        "stability_min": float(margin.min()),
+        "stability_min": least_margin,
         "stability_end": float(margin[-1]),
-        "stroke_left": stop - max(float(s.max()) for s in strokes.values()),
+        "stroke_left": stop - max(strokes.values()),
         "slid": max((float(s[-1]) for s in slips if len(s)), default=0.0),
         "joint_clearance": _joint_clearance(history, joints),
     }
     name: Name
     if toppled:
-        name, i = "toppled", len(history) - 1
+        name, time = "toppled", end
     elif bottomed:
-        name, i = "bottomed out", bottomed[0][0]
+        name, time = "bottomed out", bottomed[0][0]
     elif any(len(s) and s.max() > slide for s in slips):
-        name, i = "slid", min(_first_beyond(s, slide, len(history)) for s in slips)
+        first = min(_first_beyond(s, slide, len(history)) for s in slips)
+        name, time = "slid", float(history.time[first])
     elif phase[-1] == SETTLED:
-        name, i = "settled", _first_of_last_period(phase, SETTLED)
+        name, time = "settled", float(history.time[_first_of_last_period(phase, SETTLED)])
     else:
-        name, i = "moving", len(history) - 1
+        name, time = "moving", end
     leg = bottomed[0][1] if bottomed else None
     first_limit = first_limit_passed(history, legs, limits) if limits else None
-    return Outcome(name, float(history.time[i]), leg, margins, first_limit)
+    return Outcome(name, time, leg, margins, first_limit), history
+
+
+def _stroke(leg: int) -> str:
+    """The output that is the stroke of a leg's damper."""
+    return f"leg[{leg}].main_strut.stroke"
+
+
+def _until_toppled(history: History) -> tuple[float, History]:
+    """When a landing that has toppled did so [s], and the landing until the sample at that time."""
+    first = _first_of_last_period(history["status.phase"], TOPPLED)
+    time = float(history.time[first])
+    if not isinstance(history, ReplayedHistory) or first == 0:
+        return time, history.until(first + 1)
+
+    def over(landing: Landing) -> bool:
+        return landing.get("status.phase") == TOPPLED
+
+    time = history.first_time(over, float(history.time[first - 1]), time)
+    return time, history.until(first + 1, history.extremes_at(time))
 
 
 def _first_beyond(slip: Array, slide: float, samples: int) -> int:
@@ -185,7 +215,17 @@ def _joint_clearance(history: History, cosines: tuple[float, ...]) -> float:
     turned = history["body.pitch"] - slope
     height = height - depth * np.cos(turned)
     sine = np.sin(turned)
-    return min(float((height - radius * c * sine).min()) for c in cosines)
+    return min(_least(height - radius * c * sine) for c in cosines)
+
+
+def _least(values: Array) -> float:
+    """The least of a smooth quantity at even times, by the parabola through the three lowest."""
+    i = int(values.argmin())
+    if not 0 < i < len(values) - 1:
+        return float(values[i])
+    before, least, after = values[i - 1 : i + 2].tolist()
+    bend = before - 2.0 * least + after
+    return float(least - 0.125 * (after - before) ** 2 / bend) if bend > 0.0 else float(least)
 
 
 def _first_of_last_period(phase: Array, which: float) -> int:

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from array import array
+
 import numpy as np
 
+from ..extremes import Extreme
 from ..history import History
 from ..landing import Landing
 from .outcome import SETTLED, TOPPLED
+from .replay import ReplayedHistory
 
 CHECK_EVERY = 0.25
 # the end [s after the first contact] of a landing that is not decided before
 LATEST = 10.0
 
 
-def whole_landing(landing: Landing, until: float, every: float = 1e-3) -> History:
+def whole_landing(
+    landing: Landing, until: float, every: float = 1e-3, *, decided: bool = True
+) -> ReplayedHistory:
     """Land from now until the vehicle is at rest, has toppled, or `until` [s].
 
     The state is checked every 0.25 s. The vehicle is at rest where `status.phase` is settled then.
@@ -24,20 +30,42 @@ def whole_landing(landing: Landing, until: float, every: float = 1e-3) -> Histor
         landing: The landing; its state moves on.
         until: The latest end [s].
         every: Time between samples [s].
+        decided: Whether the landing may end before `until`.
 
     Raises:
         LandingError: As `Landing.run`.
     """
+    states: list[tuple[float, array[float]]] = [(landing.time, landing.state())]
+
+    def keep(_time: float) -> None:
+        states.append((landing.time, landing.state()))
+
+    if not decided:
+        return ReplayedHistory(landing.run(until, every, keep), landing, states)
     samples = max(1, round(CHECK_EVERY / every))
     start, checks = landing.time, 0
     parts: list[History] = []
     while not parts or landing.time + 0.5 * every < until:
         checks += 1
-        part = landing.run(min(start + checks * samples * every, until), every)
+        part = landing.run(min(start + checks * samples * every, until), every, keep)
         parts.append(part)
         phase = part["status.phase"]
         if phase[-1] == SETTLED or np.all(phase == TOPPLED):
             break
-    time = np.concatenate([parts[0].time, *(p.time[1:] for p in parts[1:])])
-    data = np.concatenate([parts[0].data, *(p.data[1:] for p in parts[1:])])
-    return History(time, parts[0].names, data, landing.parameters, parts[0].ground)
+    return ReplayedHistory(_joined(parts), landing, states)
+
+
+def _joined(parts: list[History]) -> History:
+    """One history of all `parts`, each of which begins with the last sample of that before."""
+    first, *later = parts
+    time = np.concatenate([first.time, *(p.time[1:] for p in later)])
+    data = np.concatenate([first.data, *(p.data[1:] for p in later)])
+    extremes = {name: _widest([p.extreme(name) for p in parts]) for name in first.names}
+    return History(time, first.names, data, first.parameters, first.ground, extremes)
+
+
+def _widest(found: list[Extreme]) -> Extreme:
+    """The extremes over all spans, the first of equal ones."""
+    low = min(found, key=lambda e: e.minimum)
+    high = max(found, key=lambda e: e.maximum)
+    return Extreme(low.minimum, low.minimum_time, high.maximum, high.maximum_time)

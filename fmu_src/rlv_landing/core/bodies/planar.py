@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import fabs
+from math import fabs, sqrt
 
 from ..access import (
     BODY,
@@ -250,6 +250,11 @@ class Planar(PlanarMotion):
                 contact_force_x=loads.contact_x,
                 contact_force_y=loads.contact_y,
                 contact_force_z=loads.contact_z,
+                contact_force=sqrt(
+                    loads.contact_x * loads.contact_x
+                    + loads.contact_y * loads.contact_y
+                    + loads.contact_z * loads.contact_z
+                ),
                 contact_penetration=loads.depth,
                 contact_active=1.0 if loads.depth > 0.0 else 0.0,
             ),

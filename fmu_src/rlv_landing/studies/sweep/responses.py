@@ -6,26 +6,23 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ...errors import LandingError, unknown
+from ...extremes import Extreme
 from ...history import History
-from ...quantities import LEG_QUANTITIES, LEGS, MODES, OUTPUT_NAMES, OUTPUT_QUANTITIES, Quantity
+from ...quantities import LEG_QUANTITIES, LEGS, MODES, OUTPUT_QUANTITIES, Quantity
 from ...validation.measures import first_push, leg_work
-from ..outcome import TOPPLED, Outcome, outcome
+from ..outcome import TOPPLED, Outcome, judged
 
-Array = NDArray[np.float64]
-Reduction = Callable[[Array, Array], Array]
-# reductions over the n samples: columns (n, k) and times (n,) to k numbers
-REDUCTIONS: dict[str, tuple[str, Reduction]] = {
-    "min": ("smallest", lambda a, t: a.min(axis=0)),
-    "max": ("largest", lambda a, t: a.max(axis=0)),
-    "abs_max": ("largest magnitude of", lambda a, t: np.abs(a).max(axis=0)),
-    "final": ("last", lambda a, t: a[-1]),
-    "min_time": ("time of the smallest", lambda a, t: t[a.argmin(axis=0)]),
-    "max_time": ("time of the largest", lambda a, t: t[a.argmax(axis=0)]),
+Reduction = Callable[[Extreme], float]
+# what is taken of an output's extremes
+EXTREMES: dict[str, tuple[str, Reduction]] = {
+    "min": ("smallest", lambda e: e.minimum),
+    "max": ("largest", lambda e: e.maximum),
+    "abs_max": ("largest magnitude of", lambda e: max(e.maximum, -e.minimum)),
+    "min_time": ("time of the smallest", lambda e: e.minimum_time),
+    "max_time": ("time of the largest", lambda e: e.maximum_time),
 }
+REDUCTIONS = {name: words for name, (words, _) in EXTREMES.items()} | {"final": "last"}
 OVER_LEGS: dict[str, Callable[[Iterable[float]], float]] = {"min": min, "max": max, "abs_max": max}
 WORK = {"absorbed": "J", "dissipated": "J", "efficiency": ""}
 MARGINS = ("stability_min", "stability_end", "stroke_left", "slid", "joint_clearance")
@@ -88,7 +85,7 @@ def known_responses() -> Mapping[str, Quantity]:
     """Every response by name.
 
     - `OUTPUT.min`, `.max`, `.abs_max`, `.final`, `.min_time`, `.max_time` of every output; `legs.…`
-      is the extreme over the four legs.
+      is the extreme over the four legs. Extremes are those of the landing, between its samples too.
     - `leg[N].main_strut.absorbed`, `.dissipated`, `.efficiency` are of a damper's first compression
       and rebound, found in its stroke's curve; `legs.…` is their sum over the legs.
     - `leg[N].main_strut.first_stroke` says how far the landing shows them: `complete`,
@@ -98,7 +95,7 @@ def known_responses() -> Mapping[str, Quantity]:
     """
     found = {q.name: q for q in OUTCOME}
     for q in OUTPUT_QUANTITIES:
-        for name, (words, _) in REDUCTIONS.items():
+        for name, words in REDUCTIONS.items():
             unit = "s" if name.endswith("time") else q.unit
             found[f"{q.name}.{name}"] = Quantity(
                 unit, f"{words} {q.meaning}", name=f"{q.name}.{name}"
@@ -107,7 +104,7 @@ def known_responses() -> Mapping[str, Quantity]:
         for name in OVER_LEGS:
             full = f"legs.{q.name}.{name}"
             found[full] = Quantity(
-                q.unit, f"{REDUCTIONS[name][0]} of all legs: {q.meaning}", name=full
+                q.unit, f"{REDUCTIONS[name]} of all legs: {q.meaning}", name=full
             )
     for what, unit in WORK.items():
         for leg in LEGS:
@@ -173,34 +170,12 @@ class Measure:
         self.names = tuple(names)
         self._slide = {} if slide is None else {"slide": slide}
         self._limits = dict(limits or {})
-        self._columns: dict[str, list[int]] = {}
-        self._reductions: list[tuple[str, list[int]] | None] = [
-            self._reduction_of(name) for name in names
-        ]
+        self._reductions = [_reduction_of(name) for name in names]
         self._with_outcome = any(name.partition(".")[0] in ("outcome", "margin") for name in names)
         self._with_work = any(
             name.rpartition(".")[2] in (*WORK, "first_stroke") and "main_strut" in name
             for name in names
         )
-
-    def _reduction_of(self, name: str) -> tuple[str, list[int]] | None:
-        """The reduction of a response and the columns of its results; None for other responses."""
-        output, _, reduction = name.rpartition(".")
-        if reduction not in REDUCTIONS or output.partition(".")[0] in ("outcome", "margin"):
-            return None
-        outputs = (
-            [output.replace("legs.", f"leg[{leg}].", 1) for leg in LEGS]
-            if output.startswith("legs.")
-            else [output]
-        )
-        columns = self._columns.setdefault(reduction, [])
-        positions = []
-        for one in outputs:
-            index = OUTPUT_NAMES.index(one)
-            if index not in columns:
-                columns.append(index)
-            positions.append(columns.index(index))
-        return reduction, positions
 
     def __call__(self, history: History, rhs_calls: int) -> list[Any]:
         """The responses in the order of `names`.
@@ -218,17 +193,8 @@ class Measure:
         others: dict[str, Any] = {"rhs_calls": rhs_calls}
         toppled = history["status.phase"][-1] == TOPPLED
         if self._with_outcome or toppled:
-            found = outcome(history, self._limits or None, **self._slide)
+            found, history = judged(history, self._limits or None, **self._slide)
             others.update(_outcome_values(found))
-            if toppled:
-                end = int(np.searchsorted(history.time, found.time, "right"))
-                history = History(
-                    history.time[:end], history.names, history.data[:end], history.parameters
-                )
-        reduced = {
-            reduction: REDUCTIONS[reduction][1](history.data[:, columns], history.time).tolist()
-            for reduction, columns in self._columns.items()
-        }
         if self._with_work:
             others.update(_work_values(history))
         values: list[Any] = []
@@ -236,10 +202,26 @@ class Measure:
             if taken is None:
                 values.append(others[name] if name in others else _contact_time(history, name))
             else:
-                reduction, positions = taken
-                numbers = [reduced[reduction][i] for i in positions]
+                reduction, outputs = taken
+                numbers = [_reduced(history, output, reduction) for output in outputs]
                 values.append(numbers[0] if len(numbers) == 1 else OVER_LEGS[reduction](numbers))
         return values
+
+
+def _reduction_of(name: str) -> tuple[str, list[str]] | None:
+    """The reduction of a response and the outputs that it is of; None for other responses."""
+    output, _, reduction = name.rpartition(".")
+    if reduction not in REDUCTIONS or output.partition(".")[0] in ("outcome", "margin"):
+        return None
+    if output.startswith("legs."):
+        return reduction, [output.replace("legs.", f"leg[{leg}].", 1) for leg in LEGS]
+    return reduction, [output]
+
+
+def _reduced(history: History, output: str, reduction: str) -> float:
+    if reduction == "final":
+        return float(history[output][-1])
+    return EXTREMES[reduction][1](history.extreme(output))
 
 
 def _outcome_values(found: Outcome) -> dict[str, Any]:

@@ -91,7 +91,7 @@ class Plan:
             LandingError: As `Landing.run`.
         """
         if self.until is not None:
-            return landing.run(self.until, self.every)
+            return whole_landing(landing, self.until, self.every, decided=False)
         latest = landing.parameters.drop.contact_time + LATEST
         return whole_landing(landing, latest, self.every)
 
