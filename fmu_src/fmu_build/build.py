@@ -38,6 +38,7 @@ MODULES = (
     "parameters.py",
     "touchdown.py",
     "driven_inputs.py",
+    "ground_way.py",
     "assembly.py",
     "landing.py",
 )

@@ -49,8 +49,6 @@ class StateHeader(NamedTuple):
     steps: float
     rejected: float
     rhs_calls: float
-    heave: float  # of the ground at t_input, as it was set [m]
-    tilt: float  # of the ground at t_input, as it was set [rad]
 
 
 def output_order(mode: str) -> list[tuple[int, float]]:
@@ -145,7 +143,7 @@ class Landing:
     def _begin(self, inputs: Inputs, rates: Inputs) -> None:
         """Place the vehicle above the ground of the inputs, at time 0."""
         begin(self._solver, self.parameters, inputs, rates)
-        self._inputs.adopt((inputs.heave, inputs.tilt))
+        self._inputs.begin()
         self._time = 0.0
         self._system.energy_start = 0.0
         self._out_time = inf
@@ -162,22 +160,24 @@ class Landing:
         At time 0 they set the ground of the first contact: the vehicle is placed so that its lowest
         footpad touches the moving ground at `drop.contact_time`, with the drop's pitch and
         velocities in the inertial frame. Later the ground does not jump: if heave or tilt is set to
-        another value than the ground has, it moves there at a constant rate over the next step (of
-        `step`, `advance_to`, or the first `every` of `run`), on top of its own rates. So positions
-        that are set at each step, without rates, are a motion that is linear between them, one step
-        late.
+        another value than the ground has, it moves there at a constant rate, on top of its own
+        rates. That takes as long as the time since the last such position, at least the next step
+        (of `step`, `advance_to`, or the first `every` of `run`). So positions without rates are a
+        motion that is linear between them, one interval late, also if a position is set again at
+        each step until it changes. If intervals vary, the longest counts, until one is less than
+        0.45 of it. After more than 0.25 s without a new position the interval from before counts,
+        or, if there was none, the next step. A position that is set again, unchanged, together with
+        its rate is no new position, unless the rate is 0.
 
         Raises LandingError for an unknown name, NaN, a value out of bounds, or, at time 0, a flight
         in which a footpad would pass below the ground; nothing is changed then.
         """
-        present = self._inputs.setting(self._time)
-        new = changed_setting(present, values, rates or {})
-        if new == present:
-            return
         if self._time == 0.0:
-            self._begin(*new)
-        else:
-            self._inputs.set(self._time, new)
+            present = self._inputs.setting(0.0)
+            new = changed_setting(present, values, rates or {})
+            if new != present:
+                self._begin(*new)
+        elif self._inputs.set(self._time, values, rates or {}):
             self._out_time = inf
 
     def step(self, dt: float) -> None:
@@ -189,18 +189,25 @@ class Landing:
     def advance_to(self, time: float) -> None:
         """Go on to `time` [s], not before the present time.
 
-        Results do not depend on the steps by which one gets there. The exception is a ground whose
-        position was set anew: it is there at the end of the next step.
+        Results do not depend on the steps by which one gets there. The exception is a ground that
+        reaches a new position over the next step: that is longer than the interval of positions.
         """
         if not (isfinite(time) and time >= self._time):
             raise LandingError(
                 f"time = {time:g} s is not a time from {self._time:g} s on; reset() starts again"
             )
-        if self._inputs.pending and time > self._time:
-            self._inputs.begin_step(self._time, time - self._time)
-        if not self._solver.advance(time):
+        if not (self._move_ground(time) and self._solver.advance(time)):
             raise self._collapsed()
         self._time = time
+
+    def _move_ground(self, time: float) -> bool:
+        """Begin and end motions of the ground to new positions until `time` [s].
+
+        Returns False if the step size has collapsed.
+        """
+        if not self._inputs.pending or time == self._time:
+            return True
+        return self._inputs.advance(self._time, time)
 
     def values(self) -> list[float]:
         """All outputs at the present time, in the order of `rlv_landing.quantities.OUTPUT_NAMES`."""
@@ -239,9 +246,8 @@ class Landing:
             s.steps,
             s.rejected,
             s.rhs_calls,
-            *self._inputs.goal,
         )
-        return array("d", [*header, *s.u, *s.u_rate, *s.y, *s.dense])
+        return array("d", [*header, *self._inputs.state(), *s.u, *s.u_rate, *s.y, *s.dense])
 
     def restore(self, state: array[float]) -> None:
         """Take up a state that `state()` of a landing with the same parameters gave.
@@ -251,7 +257,8 @@ class Landing:
         """
         s = self._solver
         targets = (s.u, s.u_rate, s.y, s.dense)
-        at = len(StateHeader._fields)
+        ways = len(StateHeader._fields)
+        at = ways + len(self._inputs.state())
         expected = at + sum(map(len, targets))
         if len(state) != expected:
             raise LandingError(
@@ -261,7 +268,7 @@ class Landing:
             raise LandingError(
                 "state holds numbers that are not finite; take one that state() gave"
             )
-        header = StateHeader(*state[:at])
+        header, driven = StateHeader(*state[:ways]), state[ways:at]
         self._time, s.t, s.t_old, s.t_input, s.h = (
             header.time,
             header.t,
@@ -281,7 +288,7 @@ class Landing:
             header.rejected,
             header.rhs_calls,
         )
-        self._inputs.adopt((header.heave, header.tilt))
+        self._inputs.restore(driven)
         self._out_time = inf
 
     def run(
@@ -315,10 +322,9 @@ class Landing:
         while reached < samples:
             goal = min(reached + SLICE, samples)
             if self._inputs.pending:
-                # a motion to a new ground position begins at the first sample, ends at the second
                 goal = reached + 1
-                if reached > 0:
-                    self._inputs.begin_step(self._time, start + reached * every - self._time)
+                if not self._move_ground(start + reached * every):
+                    raise self._collapsed()
             reached = solver.record(start, every, reached, goal, flat)
             if reached < goal:
                 raise self._collapsed()

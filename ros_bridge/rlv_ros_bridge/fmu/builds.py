@@ -13,7 +13,7 @@ import rlv_landing
 
 # The source files that decide the computed bits. The FMU carries the same files.
 MODEL_FILE = re.compile(
-    r"(?:^|/)rlv_landing[^/]*/((?:core/(?:\w+/)*\w+|assembly|driven_inputs|landing|parameters|quantities|touchdown)\.py)$"
+    r"(?:^|/)rlv_landing[^/]*/((?:core/(?:\w+/)*\w+|assembly|driven_inputs|ground_way|landing|parameters|quantities|touchdown)\.py)$"
 )
 
 

@@ -1,0 +1,46 @@
+"""The way of the ground to a position that was set, and the time that it takes."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+# longest time between two positions that counts as their interval [s]; longer, the ground stood
+LONGEST_INTERVAL = 0.25
+# A shorter part of the interval before is the interval of another source. Positions of one source
+# that the caller looks for at each step come n or n + 1 steps apart, so at least half.
+OTHER_SOURCE = 0.45
+# so much longer than the one before an interval may be; longer, the ground stood
+GROWTH = 2.0
+
+
+class Way(NamedTuple):
+    """The way of the ground to the heave [m] or tilt [rad] that was set last. Times are in s."""
+
+    goal: float  # heave or tilt as it was set, at the solver's t_input
+    told: float  # the last value that was set
+    since: float  # time at which the goal was last set to another place
+    interval: float  # time between such settings; 0 if it is not known
+    end: float  # time at which the ground is at the goal
+
+
+def next_interval(before: float, spacing: float) -> float:
+    """The time that the way to a new position takes [s].
+
+    It is the spacing of positions. If that varies, the longest counts, until one is that of another
+    source: so the ground does not arrive early and stand. After a stand the interval from before
+    it counts, or 0 if there was none.
+
+    Args:
+        before: That of the last way [s]; 0 if there was none.
+        spacing: Time since the last new position [s].
+    """
+    if spacing > LONGEST_INTERVAL:
+        return before
+    if before == 0.0 or spacing < OTHER_SOURCE * before:
+        return spacing
+    return max(before, min(spacing, GROWTH * before))
+
+
+def reached(end: float, t: float) -> bool:
+    """Whether the time `end` [s] is not after `t` [s], but for the rounding of sums of steps."""
+    return end <= t + 1e-12 * (1.0 + t)
