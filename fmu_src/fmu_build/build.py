@@ -37,7 +37,9 @@ MODULES = (
     "quantities.py",
     "parameters.py",
     "touchdown.py",
-    "driven_inputs.py",
+    "inputs/__init__.py",
+    "inputs/ground_way.py",
+    "inputs/driven.py",
     "assembly.py",
     "extremes.py",
     "state.py",
@@ -106,7 +108,9 @@ def copy_sources(folder: Path) -> tuple[Path, Path]:
     package = folder / name
     package.mkdir()
     for module in MODULES:
-        shutil.copy(PACKAGE / module, package / module)
+        target = package / module
+        target.parent.mkdir(exist_ok=True)
+        shutil.copy(PACKAGE / module, target)
     for file in sorted((PACKAGE / "core").rglob("*")):
         # the compiled cores for all Python versions, but none that older kernels were compiled to
         if file.suffix == ".py" or (

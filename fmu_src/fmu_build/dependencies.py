@@ -5,7 +5,7 @@ on the parameters that change it, and on the inputs that do: these place the veh
 The sets are derived from the equations. `tests/fmu/test_dependencies.py` finds the same ones by
 changing every input and parameter. Outputs that are not named here are states, or follow from
 states alone: no input changes them at once. Heave and tilt of the ground change no output at once
-either: the ground moves to a new position over the next step.
+either: the ground moves to a new position from the next step on.
 """
 
 from __future__ import annotations

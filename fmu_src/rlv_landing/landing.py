@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from .assembly import NO_INPUTS, begin, build_system
 from .core import DormandPrince, Exponential, Inputs, Solver
-from .driven_inputs import RATE_INPUTS, DrivenInputs, Setting, changed_setting
 from .errors import LandingError, unknown
 from .extremes import Extreme, by_name, output_order
+from .inputs.driven import RATE_INPUTS, DrivenInputs, Setting, changed_setting
 from .parameters import Parameters
 from .quantities import INPUT_NAMES, OUTPUT_NAMES
 from .state import LATEST, state_of, take_up
@@ -125,7 +125,7 @@ class Landing:
     def _begin(self, inputs: Inputs, rates: Inputs) -> None:
         """Place the vehicle above the ground of the inputs, at time 0."""
         begin(self._solver, self.parameters, inputs, rates)
-        self._inputs.adopt((inputs.heave, inputs.tilt))
+        self._inputs.begin()
         self._time = 0.0
         self._system.energy_start = 0.0
         self._out_time = inf
@@ -143,23 +143,25 @@ class Landing:
         At time 0 they set the ground of the first contact: the vehicle is placed so that its lowest
         footpad touches the moving ground at `drop.contact_time`, with the drop's pitch and
         velocities in the inertial frame. Later the ground does not jump: if heave or tilt is set to
-        another value than the ground has, it moves there at a constant rate over the next step (of
-        `step`, `advance_to`, or the first `every` of `run`), on top of its own rates. So positions
-        that are set at each step, without rates, are a motion that is linear between them, one step
-        late.
+        another value than the ground has, it moves there at a constant rate, on top of its own
+        rates. That takes as long as the time since the last such position, at least the next step
+        (of `step`, `advance_to`, or the first `every` of `run`). So positions without rates are a
+        motion that is linear between them, one interval late, also if a position is set again at
+        each step until it changes. If intervals vary, the longest counts, until one is less than
+        0.45 of it. After more than 0.25 s without a new position the interval from before counts,
+        or, if there was none, the next step. A position that is set again, unchanged, together with
+        its rate is no new position, unless the rate is 0.
 
         Raises LandingError for an unknown name, NaN, a value out of bounds, or, at time 0, a flight
         in which a footpad would pass below the ground; nothing is changed then.
         """
         check_going(self._solver)
-        present = self._inputs.setting(self._time)
-        new = changed_setting(present, values, rates or {})
-        if new == present:
-            return
         if self._time == 0.0:
-            self._begin(*new)
-        else:
-            self._inputs.set(self._time, new)
+            present = self._inputs.setting(0.0)
+            new = changed_setting(present, values, rates or {})
+            if new != present:
+                self._begin(*new)
+        elif self._inputs.set(self._time, values, rates or {}):
             self._out_time = inf
 
     def step(self, dt: float) -> None:
@@ -171,19 +173,34 @@ class Landing:
     def advance_to(self, time: float) -> None:
         """Go on to `time` [s], not before the present time.
 
-        Results do not depend on the steps by which one gets there. The exception is a ground whose
-        position was set anew: it is there at the end of the next step.
+        Results do not depend on the steps by which one gets there. The exception is a ground that
+        reaches a new position over the next step: that is longer than the interval of positions.
         """
         if not self._time <= time <= LATEST:
             raise LandingError(
                 f"time = {time:g} s is not a time from {self._time:g} to {LATEST:g} s; "
                 "reset() starts again"
             )
-        if self._inputs.pending and time > self._time:
-            self._inputs.begin_step(self._time, time - self._time)
+        self._move_ground(time)
+        self._go_on(time)
+
+    def _go_on(self, time: float) -> None:
+        """Go on to `time` [s]; the ground begins and ends no motion until then."""
         with self._until(time):
             advance(self._solver, time)
         self._time = time
+
+    def _move_ground(self, time: float) -> None:
+        """Begin and end motions of the ground to new positions until `time` [s].
+
+        The landing goes on to the last end before it.
+        """
+        if not self._inputs.pending or time == self._time:
+            return
+        self._inputs.begin_step(self._time, time)
+        while (end := self._inputs.next_end(time)) is not None:
+            self._go_on(end)
+            self._inputs.begin_step(end, time)
 
     def values(self) -> list[float]:
         """All outputs at the present time, in the order of `rlv_landing.quantities.OUTPUT_NAMES`."""
@@ -220,7 +237,8 @@ class Landing:
         """The whole state, the integrator's included: what `restore` needs to go on with the very
         same digits.
         """
-        return state_of(self._solver, self._time, self._system.energy_start, self._inputs.goal)
+        ways = self._inputs.state()
+        return state_of(self._solver, self._time, self._system.energy_start, ways)
 
     def restore(self, state: array[float]) -> None:
         """Take up a state that `state()` of a landing with the same parameters gave.
@@ -228,10 +246,10 @@ class Landing:
         Raises LandingError if its length is not that of this landing's state, a number in it is not
         finite, or no landing has such numbers; nothing is changed then.
         """
-        header = take_up(self._solver, state)
+        header, ways = take_up(self._solver, state)
         self._time = header.time
         self._system.energy_start = header.energy_start
-        self._inputs.adopt((header.heave, header.tilt))
+        self._inputs.restore(ways)
         self._out_time = inf
 
     def run(
@@ -290,10 +308,8 @@ class Landing:
         while reached < samples:
             goal = min(reached + SLICE, samples)
             if self._inputs.pending:
-                # a motion to a new ground position begins at the first sample, ends at the second
                 goal = reached + 1
-                if reached > 0:
-                    self._inputs.begin_step(self._time, start + reached * every - self._time)
+                self._move_ground(start + reached * every)
             time = start + (goal - 1) * every
             with self._until(time):
                 record(self._solver, rows, start, every, reached, goal)

@@ -135,7 +135,8 @@ INPUT_QUANTITIES: tuple[Quantity, ...] = (
     ),
     Quantity(
         "m",
-        "lift of the ground along inertial y; after the start it is reached over the next step",
+        "lift of the ground along inertial y; a change after the start is spread over the time "
+        "since the last change, at least the next step",
         -100.0,
         100.0,
         name="ground.heave",
@@ -150,7 +151,8 @@ INPUT_QUANTITIES: tuple[Quantity, ...] = (
     Quantity(
         "rad",
         "tilt of the ground about its origin, on top of ground.slope, clockwise positive; "
-        "after the start it is reached over the next step",
+        "a change after the start is spread over the time since the last change, at least the "
+        "next step",
         -1.0,
         1.0,
         name="ground.tilt",

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 from array import array
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import isfinite
 from typing import NamedTuple
 
@@ -11,6 +12,7 @@ from .core import Fault, Solver
 from .core.memory import Buffer
 from .core.solvers.step_control import LEAST_PREVIOUS_ERROR, LONGEST_STEP
 from .errors import LandingError
+from .inputs.ground_way import POSITIONS, Way, way_faults
 
 # a count that doubles tell from the next one
 LARGEST_COUNT = 2.0**53
@@ -43,12 +45,10 @@ class StateHeader(NamedTuple):
     asleep: float  # see `rlv_landing.core.solvers.rest`
     still: float
     waited: float
-    heave: float  # of the ground at t_input, as it was set [m]
-    tilt: float  # of the ground at t_input, as it was set [rad]
 
 
 # fields that the solver does not have by the same name
-OF_LANDING = ("time", "energy_start", "heave", "tilt")
+OF_LANDING = ("time", "energy_start")
 OF_SOLVER = tuple(name for name in StateHeader._fields if name not in OF_LANDING)
 WHOLE = ("fault", "dense_at", "seen", "still", "waited")
 
@@ -60,7 +60,7 @@ def _arrays(solver: Solver) -> tuple[Buffer, ...]:
 
 
 def state_of(
-    solver: Solver, time: float, energy_start: float, goal: tuple[float, float]
+    solver: Solver, time: float, energy_start: float, ways: Sequence[float]
 ) -> array[float]:
     """The state of a landing.
 
@@ -68,23 +68,23 @@ def state_of(
         solver: The landing's solver.
         time: The landing's time [s].
         energy_start: The system's energy at the start [J].
-        goal: Heave [m] and tilt [rad] of the ground as they were set.
+        ways: The numbers of `DrivenInputs.state`.
     """
     kept = {name: float(getattr(solver, name)) for name in OF_SOLVER}
-    heave, tilt = goal
-    header = StateHeader(time=time, energy_start=energy_start, heave=heave, tilt=tilt, **kept)
-    return array("d", [*header, *(number for numbers in _arrays(solver) for number in numbers)])
+    header = StateHeader(time=time, energy_start=energy_start, **kept)
+    return array("d", itertools.chain(header, ways, *_arrays(solver)))
 
 
-def take_up(solver: Solver, state: array[float]) -> StateHeader:
-    """Give the `solver` the state; return its header.
+def take_up(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequence[float]]:
+    """Give the `solver` the state; return its header, and the ways for `DrivenInputs.restore`.
 
     Raises:
         LandingError: The length is not that of this solver's state, a number is not finite, or the
             header is not that of a landing; nothing is changed then.
     """
     targets = _arrays(solver)
-    at = len(StateHeader._fields)
+    head = len(StateHeader._fields)
+    at = head + len(POSITIONS) * len(Way._fields)
     expected = at + sum(map(len, targets))
     if len(state) != expected:
         raise LandingError(
@@ -93,8 +93,11 @@ def take_up(solver: Solver, state: array[float]) -> StateHeader:
         )
     if not all(map(isfinite, state)):
         raise LandingError("state holds numbers that are not finite; take one that state() gave")
-    header = StateHeader(*state[:at])
-    for told in _faults(header, len(solver.dense) // 2):
+    header, ways = StateHeader(*state[:head]), state[head:at]
+    rates = state[at + len(solver.u) :]
+    for told in itertools.chain(
+        _faults(header, len(solver.dense) // 2), way_faults(ways, rates, header.time)
+    ):
         raise LandingError(f"state holds {told}; take one that state() gave")
     for target in targets:
         for i in range(len(target)):
@@ -107,7 +110,7 @@ def take_up(solver: Solver, state: array[float]) -> StateHeader:
         value = getattr(header, name)
         setattr(solver, name, int(value) if name in WHOLE else value)
     solver.noted, solver.asleep = bool(header.noted), bool(header.asleep)
-    return header
+    return header, ways
 
 
 def _faults(h: StateHeader, dense: int) -> Iterator[str]:

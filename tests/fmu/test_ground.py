@@ -148,6 +148,42 @@ def test_heave_alone_set_at_each_step_moves_a_parked_vehicle_without_force_peaks
     assert instance.get("energy.work_ground") - before == pytest.approx(kinetic, abs=0.5)
 
 
+@pytest.mark.parametrize("again", [False, True])
+def test_heave_at_intervals_of_ten_steps_moves_a_parked_vehicle_without_force_peaks(make, again):
+    """Whether it is set at each step or once. A copy goes on from a state on the way."""
+    instance, copy = make(), make()
+    for each in (instance, copy):
+        each.start()
+    assert instance.step(0.0, 6.0) == OK
+    landing, ratios = Landing(), []
+    landing.advance_to(6.0)
+    before = instance.get("energy.work_ground")
+    for k in range(2500):
+        grown = min(k // 10 / 200, 1.0)
+        lift = 0.3 * grown**3 * (10.0 - 15.0 * grown + 6.0 * grown**2)
+        if again or k % 10 == 0:
+            instance.set("ground.heave", lift)
+            landing.set_inputs({"ground.heave": lift})
+        now = 6.0 + k * 1e-3
+        assert instance.step(now, 1e-3) == OK
+        landing.advance_to(now + 1e-3)
+        ratios.append(
+            sum(instance.get(f"leg[{leg}].contact.force_y") for leg in (1, 2, 3, 4)) / WEIGHT
+        )
+        if k == 1004:
+            data = instance.slave.serializeFMUstate(instance.slave.getFMUState())
+            copy.slave.setFMUState(copy.slave.deSerializeFMUstate(data))
+        elif 1004 < k < 1100:
+            if again or k % 10 == 0:
+                copy.set("ground.heave", lift)
+            assert copy.step(now, 1e-3) == OK
+            assert outputs_of(copy) == outputs_of(instance)
+    assert outputs_of(instance) == [landing.get(name) for name in OUTPUTS]
+    assert 0.93 < min(ratios) < max(ratios) < 1.07
+    work = instance.get("energy.work_ground") - before
+    assert work == pytest.approx(WEIGHT * 0.3, rel=1e-3)
+
+
 def test_the_motion_of_the_ground_to_a_new_position_is_part_of_the_state(instance):
     instance.start()
     instance.steps(0, 300)

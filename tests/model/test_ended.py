@@ -1,12 +1,12 @@
 """A landing that cannot go on says so by name and costs no more than allowed; Ctrl-C ends it."""
 
-import signal
 import threading
 from math import inf, nan
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from interrupting import interrupted_after
 from pytest import approx
 
 from rlv_landing import Landing, LandingError, Parameters, load_preset
@@ -134,18 +134,6 @@ def test_the_default_limit_lets_the_tightest_tolerance_land(method):
     landing = Landing(rtol=1e-12, method=method)
     landing.advance_to(0.5)
     assert landing.time == 0.5
-
-
-def interrupted_after(seconds, work):
-    """Call `work` with Ctrl-C pressed after some time, again and again until it is felt."""
-    usual = signal.signal(signal.SIGALRM, lambda *_: signal.default_int_handler(2, None))
-    signal.setitimer(signal.ITIMER_REAL, seconds, 0.05)
-    try:
-        with pytest.raises(KeyboardInterrupt):
-            work()
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, usual)
 
 
 @pytest.mark.skipif(

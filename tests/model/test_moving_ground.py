@@ -1,4 +1,7 @@
-"""A ground whose position is set at each step: it moves there over the next step."""
+"""A ground whose position is set at each step: it moves there over the next step.
+
+Positions at longer intervals are in `test_ground_intervals.py`.
+"""
 
 from collections.abc import Callable
 from math import cos, pi, sin
@@ -147,16 +150,27 @@ def ground_at(landing: Landing) -> tuple[float, float]:
     return landing._solver.u_now[HEAVE], landing._solver.u_now[TILT]
 
 
+def new_positions(most: float) -> st.SearchStrategy[float]:
+    """Positions up to `most` that are not 0, where the ground is at the start."""
+    return st.floats(-most, most).filter(lambda position: position != 0.0)
+
+
 @settings(max_examples=30, deadline=None)
 @given(
     positions=st.lists(
-        st.tuples(st.floats(-0.05, 0.05), st.floats(-0.02, 0.02)), min_size=1, max_size=6
+        st.tuples(new_positions(0.05), new_positions(0.02)),
+        min_size=1,
+        max_size=6,
+        unique_by=(lambda position: position[0], lambda position: position[1]),
     ),
     rates=st.tuples(st.floats(-0.5, 0.5), st.floats(-0.1, 0.1)),
     dt=st.sampled_from((1e-3, 3.7e-3)),
 )
 def test_the_ground_reaches_a_position_that_was_set_one_step_later(positions, rates, dt):
-    """It moves there linearly, on top of its rates, and goes on at its rates."""
+    """It moves there linearly, on top of its rates, and goes on at its rates.
+
+    Each position differs from the one before, else the interval of positions is longer than a step.
+    """
     landing = Landing(
         load_preset(FIGURES).with_values(
             {"drop.contact_time": 0.5, "drop.vertical_velocity": -6.0, "drop.pitch_rate": 0.0}

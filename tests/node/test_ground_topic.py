@@ -93,6 +93,15 @@ def test_a_velocity_is_used_as_it_is_and_the_other_joint_goes_on():
     assert not ground.stop(21 * STEP)
 
 
+def test_a_position_that_is_sent_again_with_its_velocity_does_not_move_the_ground_back():
+    ground = CommandedGround(STEP)
+    for k in range(5):
+        ground.command(10 * k * STEP, read_ground(heave(0.1, 0.5)))
+    assert ground.values(60 * STEP)[HEAVE] == pytest.approx(0.1 + 0.5 * 60e-3)
+    ground.command(60 * STEP, read_ground(heave(0.1, 0.0)))
+    assert ground.values(70 * STEP)[HEAVE] == 0.1
+
+
 def test_of_two_messages_within_a_step_the_later_counts_joint_by_joint():
     first = {HEAVE: 0.1, HEAVE_RATE: 1.0, TILT: 0.2}
     assert merged(first, {HEAVE: 0.3}) == {HEAVE: 0.3, TILT: 0.2}

@@ -13,7 +13,7 @@ import rlv_landing
 
 # The source files that decide the computed bits. The FMU carries the same files.
 MODEL_FILE = re.compile(
-    r"(?:^|/)rlv_landing[^/]*/((?:core/(?:\w+/)*\w+|assembly|driven_inputs|extremes|state|landing"
+    r"(?:^|/)rlv_landing[^/]*/((?:(?:core|inputs)/(?:\w+/)*\w+|assembly|extremes|state|landing"
     r"|parameters|quantities|touchdown)\.py)$"
 )
 
@@ -38,10 +38,9 @@ def build_metadata(fmu: Path) -> dict[str, str]:
 def installed_model() -> str:
     """Digest of the source files of the model that is installed here."""
     root = Path(rlv_landing.__file__).parent
-    files = [*(root / "core").rglob("*.py"), *root.glob("*.py")]
     sources = {
         m[1]: f.read_bytes()
-        for f in files
+        for f in root.rglob("*.py")
         if (m := MODEL_FILE.search(f"rlv_landing/{f.relative_to(root).as_posix()}"))
     }
     return _digest(sources)

@@ -17,8 +17,8 @@ class _Joint:
     """The motion of heave or tilt.
 
     `position` [m or rad] is that at the simulation time `since` [ns], `rate` [m/s or rad/s] its
-    rate. If `end` [ns] is not None, the rate ends there, at `goal` [m or rad]. `commanded` [ns] is
-    the time of the last message.
+    rate. If `end` [ns] is not None, the rate ends there. `goal` [m or rad] is the position in the
+    last message, `commanded` [ns] the time of that message.
     """
 
     position: float = 0.0
@@ -41,11 +41,12 @@ class _Joint:
 class CommandedGround:
     """Heave and tilt of the ground over the simulation time, as messages ask for them.
 
-    A position with a velocity is the ground's from then on. Towards a position without a velocity
-    the ground moves at a constant rate, over 1.5 times the spacing of the last two messages, at
-    least one step. So messages at uneven times still give one motion without stops. Where there was
-    no message before, the landing itself moves the ground over its next step. At time 0 the ground
-    is where the message says.
+    A position with a velocity is the ground's from then on. If it is the last message's position
+    again, with a velocity other than 0, the ground goes on from where it is at the velocity.
+    Towards a position without a velocity the ground moves at a constant rate, over 1.5 times the
+    spacing of the last two messages, at least one step. So messages at uneven times still give one
+    motion without stops. Where there was no message before, the landing itself moves the ground
+    (see `Landing.set_inputs`). At time 0 the ground is where the message says.
 
     Args:
         step_ns: the landing's step [ns].
@@ -76,13 +77,16 @@ class CommandedGround:
             joint, goal = self._joints[position], values[position]
             spacing = 0 if joint.commanded is None else min(now - joint.commanded, LONGEST_SPACING)
             joint.commanded = now
+            here, again, joint.goal = joint.at(now), joint.goal == goal, goal
             if rate in values or spacing == 0:
-                joint.move(now, goal, values.get(rate, 0.0))
+                velocity = values.get(rate, 0.0)
+                held = again and velocity != 0.0
+                joint.move(now, here if held else goal, velocity)
                 continue
             half = -(-spacing // (2 * self._step)) * self._step
-            joint.move(now, joint.at(now), 0.0)
+            joint.move(now, here, 0.0)
             joint.rate = (goal - joint.position) / (1e-9 * (spacing + half))
-            joint.goal, joint.end = goal, now + spacing + half
+            joint.end = now + spacing + half
 
     def stop_at_goals(self, now: int) -> bool:
         """Stops what has reached its goal at the simulation time `now` [ns]; whether any has."""

@@ -1,0 +1,76 @@
+"""The way of the ground to a position that was set, and the time that it takes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from ..core import Inputs
+
+# the places of heave and tilt among the inputs
+POSITIONS = (Inputs._fields.index("heave"), Inputs._fields.index("tilt"))
+# longest time between two positions that counts as their interval [s]; longer, the ground stood
+LONGEST_INTERVAL = 0.25
+# A shorter part of the interval before is the interval of another source. Positions of one source
+# that the caller looks for at each step come n or n + 1 steps apart, so at least half.
+OTHER_SOURCE = 0.45
+# so much longer than the one before an interval may be; longer, the ground stood
+GROWTH = 2.0
+
+
+class Way(NamedTuple):
+    """The way of the ground to the heave [m] or tilt [rad] that was set last. Times are in s."""
+
+    goal: float  # heave or tilt as it was set, at the solver's t_input
+    told: float  # the last value that was set
+    since: float  # time at which the goal was last set to another place
+    interval: float  # time between such settings; 0 if it is not known
+    end: float  # time at which the ground is at the goal
+
+
+def next_interval(before: float, spacing: float) -> float:
+    """The time that the way to a new position takes [s].
+
+    It is the spacing of positions. If that varies, the longest counts, until one is that of another
+    source: so the ground does not arrive early and stand. After a stand the interval from before
+    it counts, or 0 if there was none.
+
+    Args:
+        before: That of the last way [s]; 0 if there was none.
+        spacing: Time since the last new position [s].
+    """
+    if spacing > LONGEST_INTERVAL:
+        return before
+    if before == 0.0 or spacing < OTHER_SOURCE * before:
+        return spacing
+    return max(before, min(spacing, GROWTH * before))
+
+
+def reached(end: float, t: float) -> bool:
+    """Whether the time `end` [s] is not after `t` [s], but for the rounding of sums of steps."""
+    return end <= t + 1e-12 * (1.0 + t)
+
+
+def ways_of(numbers: Sequence[float]) -> list[Way]:
+    """The ways of heave and tilt from the numbers of both, one after the other."""
+    size = len(Way._fields)
+    return [Way(*numbers[at : at + size]) for at in range(0, len(numbers), size)]
+
+
+def way_faults(numbers: Sequence[float], rates: Sequence[float], time: float) -> Iterator[str]:
+    """What is wrong with the ways in a state.
+
+    Args:
+        numbers: Those of both ways, as for `ways_of`.
+        rates: Rates of the solver's inputs [unit/s].
+        time: Time of the state [s].
+    """
+    for i, way in zip(POSITIONS, ways_of(numbers)):
+        if not 0.0 <= way.since <= time:
+            yield f"a ground position set at {way.since:g} s, not a time until {time:g} s"
+        if not 0.0 <= way.interval <= LONGEST_INTERVAL:
+            yield (
+                f"ground positions {way.interval:g} s apart, outside [0, {LONGEST_INTERVAL:g}] s"
+            )
+        if rates[i] != 0.0 and not reached(time, way.end):
+            yield f"a ground on its way to a position that it had at {way.end:g} s"
