@@ -38,6 +38,8 @@ from rlv_landing.parameters import PARAMETER_QUANTITIES, check_value
 from rlv_landing.quantities import (
     INPUT_QUANTITIES,
     OUTPUT_QUANTITIES,
+    PEAK_QUANTITIES,
+    PEAKS,
     STATISTIC_QUANTITIES,
     Quantity,
 )
@@ -130,6 +132,8 @@ class RlvLanding(Fmi2Slave):
         self._failure = ""
         # the outputs at the present time, if they were read; else empty
         self._outputs: list[float] = []
+        # the peaks until the present time, if they were read, and the outputs that they belong to
+        self._peaks: tuple[list[float], list[float]] = [], []
         for q in PARAMETER_QUANTITIES.values():
             self._register(
                 q, q.default, Fmi2Causality.parameter, Fmi2Variability.fixed, Fmi2Initial.exact
@@ -147,6 +151,10 @@ class RlvLanding(Fmi2Slave):
             self._register(
                 q, 0.0, Fmi2Causality.local, Fmi2Variability.discrete, Fmi2Initial.calculated
             )
+        for q in PEAK_QUANTITIES:
+            self._register(
+                q, 0.0, Fmi2Causality.local, Fmi2Variability.continuous, Fmi2Initial.calculated
+            )
         self._names = [v.name for v in self.vars.values()]
 
     def to_xml(self, model_options: dict[str, str] | None = None) -> Element:
@@ -159,6 +167,7 @@ class RlvLanding(Fmi2Slave):
             INPUT_QUANTITIES,
             OUTPUT_QUANTITIES,
             STATISTIC_QUANTITIES,
+            PEAK_QUANTITIES,
         ]
         self.guid = uuid5(NAMESPACE_URL, f"rlv-landing {__version__} {quantities!r}")
         return super().to_xml(model_options or {})
@@ -270,6 +279,8 @@ class RlvLanding(Fmi2Slave):
         if max(vrs, default=0) >= first + len(OUTPUT_QUANTITIES):
             counts = self._current_landing().statistics.values()
             calculated = [*calculated, *(min(count, LARGEST_INTEGER) for count in counts)]
+        if max(vrs, default=0) >= first + len(calculated):
+            calculated = [*calculated, *self._read_peaks()]
         return [self._values[vr] if vr < first else calculated[vr - first] for vr in vrs]
 
     def _update_outputs(self) -> None:
@@ -280,6 +291,18 @@ class RlvLanding(Fmi2Slave):
                 self._apply_inputs()
         if not self._outputs:
             self._outputs = landing.values()
+
+    def _read_peaks(self) -> list[float]:
+        """Values and times of the peaks until the present time; computed once after each change."""
+        if self._peaks[0] is not self._outputs:
+            extremes = self._current_landing().extremes()
+            found: list[float] = []
+            for peak in PEAKS:
+                low, low_time, high, high_time = extremes[peak.output]
+                value, time = (low, low_time) if peak.side == "min" else (high, high_time)
+                found += [value, self._start_time + time]
+            self._peaks = self._outputs, found
+        return self._peaks[1]
 
     def get_real(self, vrs: list[int]) -> list[float]:
         """Values of real variables; NaN after an error."""

@@ -16,6 +16,7 @@ from rlv_landing.quantities import (
     DISPLAY_UNITS,
     INPUT_QUANTITIES,
     OUTPUT_QUANTITIES,
+    PEAK_QUANTITIES,
     STATISTIC_QUANTITIES,
     Quantity,
 )
@@ -63,6 +64,7 @@ QUANTITIES = {
         *INPUT_QUANTITIES,
         *OUTPUT_QUANTITIES,
         *STATISTIC_QUANTITIES,
+        *PEAK_QUANTITIES,
     )
 }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import shutil
+from collections.abc import Iterable
 from importlib.metadata import distribution
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,7 @@ from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.quantities import (
     INPUT_QUANTITIES,
     OUTPUT_QUANTITIES,
+    PEAK_QUANTITIES,
     STATISTIC_QUANTITIES,
     Quantity,
 )
@@ -100,7 +102,7 @@ def render(files: Path, description: Element) -> str:
                 "outputs",
                 "Outputs",
                 "calculated; leg[1] stands for every leg, numbered as drawn",
-                rows(outputs_of_one_leg()),
+                rows(of_one_leg(OUTPUT_QUANTITIES)),
             ),
             (
                 "statistics",
@@ -108,16 +110,27 @@ def render(files: Path, description: Element) -> str:
                 "local; counts of the integrator",
                 rows(STATISTIC_QUANTITIES),
             ),
+            (
+                "peaks",
+                "Peaks",
+                "local; extremes since the start, between steps too; leg[1] stands for every leg",
+                rows(of_one_leg(PEAK_QUANTITIES, "peak.")),
+            ),
         ],
     )
 
 
-def outputs_of_one_leg() -> list[Quantity]:
-    """The outputs without those of legs 2 to 4, which differ from leg 1's in their names alone."""
+def of_one_leg(quantities: Iterable[Quantity], before: str = "") -> list[Quantity]:
+    """The quantities without those of legs 2 to 4, which differ from leg 1's in their names alone.
+
+    Args:
+        quantities: The quantities.
+        before: What their names begin with.
+    """
     return [
         q
-        for q in OUTPUT_QUANTITIES
-        if not q.name.startswith("leg[") or q.name.startswith("leg[1].")
+        for q in quantities
+        if not q.name.startswith(f"{before}leg[") or q.name.startswith(f"{before}leg[1].")
     ]
 
 

@@ -27,8 +27,8 @@ class History:
         data: The columns, (n, names).
         parameters: The landing's parameters, where they are known.
         ground: Motion of the ground from the first of the times on; by default it is at rest.
-        extremes: Extremes of the outputs by name, over the whole span, also between the samples;
-            None where there are samples only.
+        extremes: Extremes of outputs by name, over the whole span, also between the samples; None
+            where there are samples only. A log has those of some outputs.
 
     Raises:
         LandingError: `data` has another shape, or a column is unknown.
@@ -109,6 +109,7 @@ class History:
                 if max(found.minimum_time, found.maximum_time) <= end
                 else _earlier(found, part.extreme(name), end)
                 for name, found in self.extremes.items()
+                if name in part
             }
         part.extremes = extremes
         return part
@@ -130,4 +131,22 @@ def _earlier(whole: Extreme, sampled: Extreme, end: float) -> Extreme:
     """The extremes of the `whole` that were before the `end` [s], else the `sampled` ones."""
     low = whole if whole.minimum_time <= end else sampled
     high = whole if whole.maximum_time <= end else sampled
+    return Extreme(low.minimum, low.minimum_time, high.maximum, high.maximum_time)
+
+
+def joined(parts: Sequence[History]) -> History:
+    """One history of all `parts`, each of which begins with the last sample of that before."""
+    first, *later = parts
+    time = np.concatenate([first.time, *(p.time[1:] for p in later)])
+    data = np.concatenate([first.data, *(p.data[1:] for p in later)])
+    extremes = None
+    if all(p.extremes is not None for p in parts):
+        extremes = {name: _widest([p.extreme(name) for p in parts]) for name in first.names}
+    return History(time, first.names, data, first.parameters, first.ground, extremes)
+
+
+def _widest(found: Sequence[Extreme]) -> Extreme:
+    """The extremes over all spans, the first of equal ones."""
+    low = min(found, key=lambda e: e.minimum)
+    high = max(found, key=lambda e: e.maximum)
     return Extreme(low.minimum, low.minimum_time, high.maximum, high.maximum_time)

@@ -19,39 +19,48 @@ OUTCOMES = ("falling", "in contact, not yet at rest", "settled", "toppled")
 def summarise(history: History) -> dict[str, Any]:
     """The summary of a landing.
 
-    An item whose column the history lacks is left out (a log has no stability margin).
+    An item that the history lacks is left out (a log's messages have no stability margin).
 
     Returns:
         Outcome, end time [s], smallest stability margin [m], and per leg: contact time [s], peak
         forces [N] and stroke [m] with their times [s], all until the end; and the first compression
         and rebound, as `DamperWork` has them: how far they are known, energies [J], efficiency.
+        `peaks_of` is `landing` where peaks are those between the samples too, else `samples`.
     """
     t = history.time
-    result: dict[str, Any] = {"end_time": float(t[-1])}
+    result: dict[str, Any] = {
+        "end_time": float(t[-1]),
+        "peaks_of": "samples" if history.extremes is None else "landing",
+    }
     if "status.phase" in history:
         result["outcome"] = OUTCOMES[int(history["status.phase"][-1])]
-    if "status.stability_margin" in history:
-        result["stability_margin_min"] = float(history["status.stability_margin"].min())
+    if _has(history, "status.stability_margin"):
+        result["stability_margin_min"] = history.extreme("status.stability_margin").minimum
     if "energy.balance" in history:
         result["energy_balance_worst"] = float(np.abs(history["energy.balance"]).max())
-    result["top_axial_acceleration_max"] = float(history["body.top_axial_acceleration"].max())
+    top = history.extreme("body.top_axial_acceleration")
+    result["top_axial_acceleration_max"] = top.maximum
+    result["top_axial_acceleration_max_time"] = top.maximum_time
     legs: list[dict[str, Any]] = []
     work = leg_work(history)
     for leg in (1, 2, 3, 4):
-        force = history[f"leg[{leg}].main_strut.force"]
-        stroke = history[f"leg[{leg}].main_strut.stroke"]
-        auxiliary = history[f"leg[{leg}].auxiliary_strut.force"]
+        force = history.extreme(f"leg[{leg}].main_strut.force")
+        stroke = history.extreme(f"leg[{leg}].main_strut.stroke")
+        auxiliary = history.extreme(f"leg[{leg}].auxiliary_strut.force")
         first, done = first_push(history, leg), work.get(leg)
         legs.append(
             {
                 "leg": leg,
                 "contact_time": None if first is None else float(t[first]),
-                "main_strut_force_min": float(force.min()),
-                "main_strut_force_min_time": float(t[force.argmin()]),
-                "main_strut_stroke_max": float(stroke.max()),
-                "main_strut_stroke_max_time": float(t[stroke.argmax()]),
-                "auxiliary_strut_force_min": float(auxiliary.min()),
-                "auxiliary_strut_force_max": float(auxiliary.max()),
+                "main_strut_force_min": force.minimum,
+                "main_strut_force_min_time": force.minimum_time,
+                "main_strut_stroke_max": stroke.maximum,
+                "main_strut_stroke_max_time": stroke.maximum_time,
+                "auxiliary_strut_force_min": auxiliary.minimum,
+                "auxiliary_strut_force_min_time": auxiliary.minimum_time,
+                "auxiliary_strut_force_max": auxiliary.maximum,
+                "auxiliary_strut_force_max_time": auxiliary.maximum_time,
+                **_contact_force(history, leg),
                 "main_strut_first_stroke": "not compressed" if done is None else done.state,
                 "main_strut_absorbed": None if done is None else done.absorbed,
                 "main_strut_dissipated": None if done is None else done.dissipated,
@@ -65,6 +74,24 @@ def summarise(history: History) -> dict[str, Any]:
             leg["leg"] for leg in legs if leg["main_strut_stroke_max"] > limit
         ]
     return result
+
+
+def _has(history: History, name: str) -> bool:
+    return name in history or (history.extremes is not None and name in history.extremes)
+
+
+def _contact_force(history: History, leg: int) -> dict[str, float]:
+    """The largest force [N] of the ground on a footpad and its time [s]."""
+    name = f"leg[{leg}].contact.force"
+    if _has(history, name):
+        found = history.extreme(name)
+        force, time = found.maximum, found.maximum_time
+    else:
+        x, y, z = (history[f"{name}_{axis}"] for axis in "xyz")
+        forces = np.sqrt(x * x + y * y + z * z)
+        at = int(np.argmax(forces))
+        force, time = float(forces[at]), float(history.time[at])
+    return {"contact_force_max": force, "contact_force_max_time": time}
 
 
 def unfinished(summary: dict[str, Any]) -> list[str]:

@@ -34,7 +34,9 @@ def test_simulate_writes_csv_with_landings_digits_and_a_picture(tmp_path, mode):
     assert done.returncode == 0, done.stderr
     summary = json.loads(done.stdout)
     history = Landing(load_preset("yue2022-figures"), mode).run(1.0)
-    assert summary["legs"][0]["main_strut_force_min"] == history["leg[1].main_strut.force"].min()
+    peak = history.extremes["leg[1].main_strut.force"]
+    assert summary["legs"][0]["main_strut_force_min"] == peak.minimum
+    assert summary["peaks_of"] == "landing"
     data = np.loadtxt(tmp_path / "l.csv", delimiter=",", skiprows=1)
     assert (tmp_path / "l.csv").read_text().splitlines()[0].split(",") == ["time", *OUTPUT_NAMES]
     assert np.array_equal(data[:, 1:], history.data)

@@ -111,7 +111,7 @@ def test_variables_have_the_attributes_that_their_causality_asks_for(variables):
             assert float(v.min) < 0.0 < float(v.max)
         else:
             assert (v.initial, v.start) == ("calculated", None)
-            assert v.causality == ("local" if v.name.startswith("solver.") else "output")
+            assert v.causality == ("local" if v.name.startswith(("solver.", "peak.")) else "output")
             assert v.variability == ("continuous" if v.type == "Real" else "discrete")
         assert v.type != "Real" or v.causality == "parameter" or float(v.nominal) > 0.0
 

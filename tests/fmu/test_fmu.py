@@ -19,6 +19,7 @@ from rlv_landing.quantities import (
     INPUT_QUANTITIES,
     OUTPUT_NAMES,
     OUTPUT_QUANTITIES,
+    PEAK_QUANTITIES,
     STATISTIC_QUANTITIES,
 )
 
@@ -40,14 +41,15 @@ def test_fmpy_validate_reports_nothing(fmu):
 
 def test_every_quantity_is_a_variable_with_its_unit_causality_and_start(description):
     variables = {v.name: v for v in description.modelVariables}
-    others = [q.name for q in (*INPUT_QUANTITIES, *OUTPUT_QUANTITIES, *STATISTIC_QUANTITIES)]
+    calculated = (*OUTPUT_QUANTITIES, *STATISTIC_QUANTITIES, *PEAK_QUANTITIES)
+    others = [q.name for q in (*INPUT_QUANTITIES, *calculated)]
     assert list(variables) == [*PARAMETER_QUANTITIES, *others]
     units = {u.name for u in description.unitDefinitions}
     for causality, quantities in (
         ("parameter", PARAMETER_QUANTITIES.values()),
         ("input", INPUT_QUANTITIES),
         ("output", OUTPUT_QUANTITIES),
-        ("local", STATISTIC_QUANTITIES),
+        ("local", (*STATISTIC_QUANTITIES, *PEAK_QUANTITIES)),
     ):
         for q in quantities:
             v = variables[q.name]

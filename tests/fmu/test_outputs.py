@@ -9,7 +9,7 @@ import pytest
 from fmu_instance import DISCARD, ERROR, OK, Instance, refs
 
 from rlv_landing import Landing
-from rlv_landing.quantities import OUTPUT_NAMES, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES
+from rlv_landing.quantities import OUTPUT_NAMES, OUTPUT_QUANTITIES, PEAKS, STATISTIC_QUANTITIES
 
 FORCE = "external.force_x"
 
@@ -94,3 +94,37 @@ def test_the_solvers_counts_are_landings_and_a_state_holds_it(instance):
         instance.status("fmi2SetInteger", refs(instance.vr[names[0]]), 1, (c_int * 1)(0)) == ERROR
     )
     assert "solver.steps is no parameter or input" in instance.reason()
+
+
+def peaks_of(instance):
+    names = [q.name for p in PEAKS for q in (p.value, p.time)]
+    return instance.slave.getReal([instance.vr[name] for name in names])
+
+
+def expected_peaks(landing):
+    extremes = landing.extremes()
+    return [
+        number
+        for p in PEAKS
+        for number in (extremes[p.output][:2] if p.side == "min" else extremes[p.output][2:])
+    ]
+
+
+def test_peaks_are_the_landings_whatever_the_steps_and_a_state_holds_them(instance):
+    landing = Landing()
+    instance.start()
+    assert peaks_of(instance) == expected_peaks(landing)
+    instance.steps(0, 200)
+    landing.advance_to(199e-3 + 1e-3)
+    told = peaks_of(instance)
+    assert told == expected_peaks(landing)
+    names = [p.value.name for p in PEAKS]
+    force = told[2 * names.index("peak.leg[1].main_strut.force.min")]
+    assert force < -3000.0
+    state = instance.slave.getFMUState()
+    instance.steps(200, 400)
+    assert peaks_of(instance) != told
+    instance.slave.setFMUState(state)
+    assert peaks_of(instance) == told
+    read = [instance.get(name) for name in names]
+    assert read == told[::2]

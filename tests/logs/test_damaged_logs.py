@@ -39,8 +39,11 @@ def test_log_info_summarises_a_complete_log(log: Path, mode: str) -> None:
     )
     assert landing["bottomed_out"] == []
     for leg in landing["legs"]:
-        assert leg["main_strut_force_min"] == history[f"leg[{leg['leg']}].main_strut.force"].min()
-        assert leg["main_strut_stroke_max"] == history[f"leg[{leg['leg']}].main_strut.stroke"].max()
+        force, stroke = (
+            history.extremes[f"leg[{leg['leg']}].main_strut.{what}"] for what in ("force", "stroke")
+        )
+        assert leg["main_strut_force_min"] == force.minimum
+        assert leg["main_strut_stroke_max"] == stroke.maximum
         assert leg["acceleration_peak"] == Reading(history).acceleration_peak(leg["leg"])
     text = run("log", "info", log).stdout
     for part in (

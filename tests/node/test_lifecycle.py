@@ -16,7 +16,7 @@ from std_msgs.msg import String
 
 from rlv_landing import Landing, load_preset
 from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.quantities import INPUT_NAMES, OUTPUT_NAMES, STATISTIC_QUANTITIES
+from rlv_landing.quantities import INPUT_NAMES, OUTPUT_NAMES, PEAK_QUANTITIES, STATISTIC_QUANTITIES
 from rlv_ros_bridge.logs.history import history_of
 from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.node.settings import SETTINGS
@@ -83,7 +83,7 @@ def test_transitions_load_land_pause_and_free(
         *PARAMETER_QUANTITIES,
         *INPUT_NAMES,
         *OUTPUT_NAMES,
-        *(q.name for q in STATISTIC_QUANTITIES),
+        *(q.name for q in (*STATISTIC_QUANTITIES, *PEAK_QUANTITIES)),
     ]
     assert list((tmp_path / "tmp").glob("rlv-landing-fmu-*"))
     assert remote.set(realtime_factor=0.5)[0].successful

@@ -14,15 +14,39 @@ from ..history import History
 from ..quantities import MODES
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 COLOURS = ("#0b6e99", "#c8553d", "#5b8c3e")
+# outputs of a leg, and the factor to the unit of their axis
+DRAWN_OF_A_LEG = (
+    ("main_strut.force", 1e-3),
+    ("main_strut.stroke", 1e3),
+    ("auxiliary_strut.force", 1e-3),
+)
+
+
+def draw_peaks(ax: Axes, history: History, column: str, factor: float, colour: str) -> None:
+    """Mark the extremes of a column at their true values and times, between the samples too.
+
+    Nothing is marked where only samples are known, nor an extreme at the start.
+    """
+    if history.extremes is None or column not in history.extremes:
+        return
+    found = history.extremes[column]
+    for value, time, marker in (
+        (found.minimum, found.minimum_time, "^"),
+        (found.maximum, found.maximum_time, "v"),
+    ):
+        if time > history.time[0]:
+            ax.plot(time, factor * value, marker, color=colour, markersize=5)
 
 
 def save_overview(history: History, path: str | Path, title: str) -> None:
     """Write a PNG of main strut forces, strokes, auxiliary strut forces and top acceleration.
 
-    Legs that are mirror images share a curve. Dotted lines mark each leg's first contact.
+    Legs that are mirror images share a curve. Dotted lines mark each leg's first contact, triangles
+    true peaks.
     """
     from matplotlib.figure import Figure
 
@@ -32,18 +56,10 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
     for legs, colour in zip(groups, COLOURS):
         leg = legs[0]
         label = "leg " + "/".join(map(str, legs))
-        axes[0].plot(
-            history.time, history[f"leg[{leg}].main_strut.force"] / 1e3, color=colour, label=label
-        )
-        axes[1].plot(
-            history.time, history[f"leg[{leg}].main_strut.stroke"] * 1e3, color=colour, label=label
-        )
-        axes[2].plot(
-            history.time,
-            history[f"leg[{leg}].auxiliary_strut.force"] / 1e3,
-            color=colour,
-            label=label,
-        )
+        for ax, (what, factor) in zip(axes, DRAWN_OF_A_LEG):
+            column = f"leg[{leg}].{what}"
+            ax.plot(history.time, factor * history[column], color=colour, label=label)
+            draw_peaks(ax, history, column, factor, colour)
         touching = np.flatnonzero(history[f"leg[{leg}].contact.force_y"] > 0.0)
         if len(touching):
             for ax in axes:
@@ -51,6 +67,7 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
     axes[3].plot(
         history.time, history["body.top_axial_acceleration"], color="#333333", linewidth=1.0
     )
+    draw_peaks(axes[3], history, "body.top_axial_acceleration", 1.0, "#333333")
     labels = (
         "main strut force [kN]",
         "main strut stroke [mm]",
@@ -65,7 +82,8 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
     axes[0].legend(loc="lower right", frameon=False, ncols=len(groups))
     axes[0].set_title(title, loc="left")
     axes[-1].set_xlabel(
-        "time [s]   (dotted: first contact; forces negative in compression, strokes positive)"
+        "time [s]   (dotted: first contact; triangles: peaks; "
+        "forces negative in compression, strokes positive)"
     )
     figure.savefig(path, dpi=120)
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..history import History
 from ..quantities import MODES
-from .plots import COLOURS
+from .plots import COLOURS, draw_peaks
 from .report_marks import ACCELERATION, PAPER, TEST, Curve, draw_marks, marks
 
 if TYPE_CHECKING:
@@ -48,6 +48,7 @@ def curve_figure(found: Validation, mode: str, curve: Curve) -> tuple[Figure, di
             linewidth=1.4,
             label="this landing",
         )
+        draw_peaks(ax, history, curve.column.format(legs[0]), curve.factor, COLOURS[i])
         _draw_measured(ax, measured, [curve.column.format(leg) for leg in legs], curve.factor)
         tooltips.update(draw_marks(ax, marks(curve, legs, history, found.comparisons[mode])))
         _set_up(ax, _title(i, legs), "time [s]", curve.label if i == 0 else "")
@@ -117,6 +118,7 @@ def acceleration_figure(found: Validation, mode: str) -> tuple[Figure, dict[str,
         linewidth=0.9,
         label="this landing, raw",
     )
+    draw_peaks(ax, raw, ACCELERATION.column, 1.0, "#9db8c6")
     ax.plot(
         sensed.time,
         sensed[ACCELERATION.column],
@@ -305,6 +307,7 @@ def _legend(figure: Figure, ax: Any, *, measured: bool) -> None:
             linestyle="",
             label="printed, paper's simulation",
         ),
+        Line2D([], [], color=COLOURS[0], marker="v", linestyle="", label="true peak, this landing"),
         Line2D([], [], color=PAPER, marker="|", markersize=10, linestyle="", label="printed time"),
         Line2D([], [], color=TEST, marker="x", linestyle="", label="printed, paper's tests"),
     ]

@@ -6,8 +6,7 @@ from array import array
 
 import numpy as np
 
-from ..extremes import Extreme
-from ..history import History
+from ..history import History, joined
 from ..landing import Landing
 from .outcome import SETTLED, TOPPLED
 from .replay import ReplayedHistory
@@ -52,20 +51,4 @@ def whole_landing(
         phase = part["status.phase"]
         if phase[-1] == SETTLED or np.all(phase == TOPPLED):
             break
-    return ReplayedHistory(_joined(parts), landing, states)
-
-
-def _joined(parts: list[History]) -> History:
-    """One history of all `parts`, each of which begins with the last sample of that before."""
-    first, *later = parts
-    time = np.concatenate([first.time, *(p.time[1:] for p in later)])
-    data = np.concatenate([first.data, *(p.data[1:] for p in later)])
-    extremes = {name: _widest([p.extreme(name) for p in parts]) for name in first.names}
-    return History(time, first.names, data, first.parameters, first.ground, extremes)
-
-
-def _widest(found: list[Extreme]) -> Extreme:
-    """The extremes over all spans, the first of equal ones."""
-    low = min(found, key=lambda e: e.minimum)
-    high = max(found, key=lambda e: e.maximum)
-    return Extreme(low.minimum, low.minimum_time, high.maximum, high.maximum_time)
+    return ReplayedHistory(joined(parts), landing, states)

@@ -90,11 +90,18 @@ def comparison_table(history: History, mode: str) -> str:
 
 
 def sampling_note(history: History) -> str:
-    """How far apart the samples are: a narrow peak between them is not seen."""
+    """How far apart the samples are that numbers are read from; empty for a single one."""
     if len(history) < 2:
         return ""
     step = 1e3 * float(history.time[-1] - history.time[0]) / (len(history) - 1)
     return f"samples are {step:.3g} ms apart; a peak between them is not seen\n"
+
+
+def peaks_note(history: History) -> str:
+    """What the peaks of a summary are of."""
+    if history.extremes is None:
+        return sampling_note(history).strip()
+    return "peaks are those of the landing at the integrator's steps, between samples too"
 
 
 def other_vehicle_note(parameters: Parameters | None) -> str:
@@ -147,6 +154,8 @@ def summary_table(history: History, title: str) -> str:
             "stroke [mm]",
             "at [s]",
             "auxiliary strut force [kN]",
+            "ground force [kN]",
+            "at [s]",
             "absorbed [J]",
             "dissipated [J]",
             "efficiency",
@@ -162,13 +171,16 @@ def summary_table(history: History, title: str) -> str:
             f"{leg['main_strut_stroke_max_time']:.3f}",
             f"{leg['auxiliary_strut_force_min'] / 1e3:.2f} ... "
             f"{leg['auxiliary_strut_force_max'] / 1e3:+.2f}",
+            f"{leg['contact_force_max'] / 1e3:.2f}",
+            f"{leg['contact_force_max_time']:.3f}",
             decimals(leg["main_strut_absorbed"], 1),
             decimals(leg["main_strut_dissipated"], 1),
             decimals(leg["main_strut_efficiency"], 3),
         )
     outcome = (
         f"after {s['end_time']:.3f} s: {s.get('outcome', 'recorded')}; "
-        f"top acceleration up to {s['top_axial_acceleration_max']:.2f} m/s2"
+        f"top acceleration up to {s['top_axial_acceleration_max']:.2f} m/s2 "
+        f"at {s['top_axial_acceleration_max_time']:.3f} s"
     )
     lines = [outcome]
     if "stability_margin_min" in s:
@@ -181,7 +193,7 @@ def summary_table(history: History, title: str) -> str:
             f"BOTTOMED OUT: the damper of leg {', '.join(map(str, s['bottomed_out']))} "
             "met its compression stop"
         )
-    return render(table, 170) + "\n".join([*lines, *unfinished(s)]) + "\n" + sampling_note(history)
+    return render(table, 190) + "\n".join([*lines, *unfinished(s), peaks_note(history)]) + "\n"
 
 
 def parameter_table(parameters: Parameters) -> str:

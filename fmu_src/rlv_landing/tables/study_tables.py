@@ -28,6 +28,7 @@ def validation_tables(found: Validation) -> str:
         _scalar_table(found.all_comparisons),
         near_zero_note(found.all_comparisons),
         sampling_note(found.histories[found.modes[0]]),
+        "the largest stroke of all is the landing's, between samples too\n",
         other_vehicle_note(found.parameters),
         measure_table(found),
     ]

@@ -188,19 +188,24 @@ def leg_work(history: History, legs: Iterable[int] = LEGS) -> dict[int, DamperWo
     """The work of the dampers of those of `legs` that touch the ground, by leg.
 
     Contact is the first sample at which the ground pushes on the footpad. The motion after toppling
-    does not count.
+    does not count. `largest` is the landing's, between its samples too, where it is known.
     """
     history = before_toppling(history)
     found: dict[int, DamperWork] = {}
     for leg in legs:
         first = first_push(history, leg)
         if first is not None:
-            found[leg] = damper_work(
+            stroke = f"leg[{leg}].main_strut.stroke"
+            work = damper_work(
                 history.time,
                 history[f"leg[{leg}].main_strut.force"],
-                history[f"leg[{leg}].main_strut.stroke"],
+                history[stroke],
                 float(history.time[max(first - 1, 0)]),
             )
+            if history.extremes is not None:
+                peak = history.extreme(stroke)
+                work = replace(work, largest=peak.maximum, largest_time=peak.maximum_time)
+            found[leg] = work
     return found
 
 
@@ -218,7 +223,7 @@ def before_toppling(history: History) -> History:
         return history
     other = np.flatnonzero(phase != Phase.TOPPLED)
     end = int(other[-1]) + 2 if len(other) else 1
-    return History(history.time[:end], history.names, history.data[:end], history.parameters)
+    return history.until(end)
 
 
 def rrms(time: Array, values: Array, test_time: Array, test_values: Array) -> float:

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..core import Phase
-from ..history import History
+from ..history import History, joined
 from ..landing import Landing
 from ..quantities import LEGS
 from .measures import leg_work
@@ -28,13 +26,7 @@ def whole_strokes(landing: Landing) -> History:
     history = landing.run(until, 1.0 / SAMPLING)
     while history.time[-1] < LONGEST and _goes_on(history):
         until = min(LONGER * until, LONGEST)
-        more = landing.run(until, 1.0 / SAMPLING)
-        history = History(
-            np.concatenate([history.time, more.time[1:]]),
-            history.names,
-            np.concatenate([history.data, more.data[1:]]),
-            history.parameters,
-        )
+        history = joined([history, landing.run(until, 1.0 / SAMPLING)])
     return history
 
 

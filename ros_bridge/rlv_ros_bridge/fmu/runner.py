@@ -16,6 +16,8 @@ from rlv_landing.quantities import (
     INPUT_NAMES,
     OUTPUT_NAMES,
     OUTPUT_QUANTITIES,
+    PEAK_QUANTITIES,
+    PEAKS,
     STATISTIC_QUANTITIES,
 )
 
@@ -64,7 +66,7 @@ class FmuRunner:
             *OUTPUT_NAMES,
             *INPUT_NAMES,
             *PARAMETER_QUANTITIES,
-            *(q.name for q in STATISTIC_QUANTITIES),
+            *(q.name for q in (*STATISTIC_QUANTITIES, *PEAK_QUANTITIES)),
         )
         missing = [n for n in needed if n not in references]
         if missing:
@@ -161,11 +163,11 @@ class FmuRunner:
         self._callbacks = callbacks
         return callbacks
 
-    def _call(self, function: str, *args: Any, **kwargs: Any) -> None:
+    def _call(self, function: str, *args: Any, **kwargs: Any) -> Any:
         from fmpy.fmi1 import FMICallException
 
         try:
-            getattr(self._slave, function)(*args, **kwargs)
+            return getattr(self._slave, function)(*args, **kwargs)
         except FMICallException as e:
             self._fail(function, e.status, str(e))
 
@@ -225,6 +227,19 @@ class FmuRunner:
         """The integrator's counters since time 0, by the FMU's variable names."""
         names = [q.name for q in STATISTIC_QUANTITIES]
         return dict(zip(names, self._slave.getInteger([self._references[name] for name in names])))
+
+    def peaks(self) -> dict[str, tuple[float, float]]:
+        """Value [SI] and time [s] of each peak since time 0, by the FMU's variable names.
+
+        Raises:
+            LandingError: the FMU refuses, or has been freed.
+        """
+        if self._slave is None:
+            raise LandingError(f"{self.path} has been freed; it has no peaks any more")
+        names = [q.name for q in PEAK_QUANTITIES]
+        numbers = self._call("getReal", [self._references[name] for name in names])
+        values = dict(zip(names, numbers))
+        return {p.value.name: (values[p.value.name], values[p.time.name]) for p in PEAKS}
 
     def set_inputs(self, inputs: Mapping[str, float]) -> None:
         """Sets inputs by name, SI, from the current time on; others keep their values.

@@ -46,6 +46,7 @@ class BagReader(LogReader):
 
         self.path = path
         self.metadata: dict[str, str] = {}
+        self.peaks: dict[str, str] = {}
         self.attachments: dict[str, bytes] = {}
         self.cut = False
         self.damage: list[str] = []

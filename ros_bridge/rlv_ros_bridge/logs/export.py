@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import json
+import math
 from pathlib import Path
 
 import numpy as np
@@ -53,14 +55,18 @@ def select_rows(
     if every is not None:
         periods = np.floor((t[rows] - t[rows[0]] + TIME_TOLERANCE) / every)
         rows = rows[np.flatnonzero(np.diff(periods, prepend=-1.0) > 0.0)]
-    return History(t[rows], history.names, history.data[rows], history.parameters)
+    # peaks of the whole landing are none of a part of it
+    extremes = history.extremes if start is None and end is None else None
+    return History(
+        t[rows], history.names, history.data[rows], history.parameters, extremes=extremes
+    )
 
 
 def write_history(history: History, path: Path) -> None:
     """Writes `history` to `path`, as CSV or Parquet by its ending, whole or not at all.
 
     Numbers have full precision. Parquet columns carry their units, and the file the parameters as
-    TOML, if they are known.
+    TOML and the landing's peaks as JSON, SI, if they are known.
 
     Raises:
         LandingError: another ending, pyarrow is missing, or the disk refuses.
@@ -73,6 +79,10 @@ def write_history(history: History, path: Path) -> None:
         raise LandingError(
             f"{path} cannot be written: {e.strerror or e}; make room, or name another file"
         ) from None
+
+
+def _known(extreme: dict[str, float]) -> dict[str, float]:
+    return {name: value for name, value in extreme.items() if not math.isnan(value)}
 
 
 def _csv(history: History) -> bytes:
@@ -97,6 +107,10 @@ def _parquet(history: History) -> bytes:
     metadata = (
         {"parameters.toml": to_toml(history.parameters)} if history.parameters is not None else {}
     )
+    if history.extremes is not None:
+        metadata["peaks.json"] = json.dumps(
+            {name: _known(found._asdict()) for name, found in history.extremes.items()}
+        )
     table = pyarrow.table(
         [history[name] for name in history], schema=pyarrow.schema(fields, metadata=metadata)
     )

@@ -17,6 +17,7 @@ from rlv_landing.history import History
 from ..messages.columns import READINGS
 from ..messages.topics import RECORDED, resolve
 from .bag_reader import open_log
+from .peaks import log_extremes, read_peaks
 from .reader import Decoder, LogReader
 
 TYPES = {t.name: t.type_name for t in RECORDED}
@@ -26,6 +27,7 @@ NANOSECONDS = 1_000_000_000
 def log_history(path: str | Path, topics: Sequence[str] = ()) -> History:
     """The landing in the log at `path`, one row for each instant, bit for bit as published.
 
+    Its extremes are those of the log's record of peaks; None where it has none, as a cut log.
     Instants are the stamps of the messages. Those that lack one of the topics, such as the last of
     a cut log, are left out.
 
@@ -68,9 +70,11 @@ def read_history(reader: LogReader, topics: Sequence[str] = ()) -> tuple[History
         )
     times = np.array([_seconds(reader, t) for t, _ in complete])
     data = np.array([[float(row[name]) for name in names] for _, row in complete])
-    return History(times, names, data, reader.parameters()), _notes(
-        reader, chosen, len(rows) - len(complete)
-    )
+    history = History(times, names, data, reader.parameters())
+    if reader.peaks:
+        found, _ = read_peaks(reader.peaks, str(reader.path))
+        history.extremes = log_extremes(found, history)
+    return history, _notes(reader, chosen, len(rows) - len(complete))
 
 
 def _choose_topics(reader: LogReader, topics: Sequence[str]) -> dict[str, str]:

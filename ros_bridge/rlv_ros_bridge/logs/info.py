@@ -39,8 +39,9 @@ class LogInfo:
     Times are in s, `size` in bytes, forces in N (negative: compression), strokes in m.
 
     `landing` is the result of `rlv_landing.summary`, with `acceleration_peak` [m/s2] for each leg:
-    the largest at the top within 12 ms after its contact, None if the log ends before. `landing` is
-    empty where the log holds no landing; `no_landing` is the reason.
+    the largest at the top within 12 ms after its contact, None if the log ends before. Its peaks
+    are of the log's record of peaks (`peaks_of` is `landing`), without it of the messages
+    (`samples`). `landing` is empty where the log holds no landing; `no_landing` is the reason.
     """
 
     path: str
@@ -109,12 +110,13 @@ class LogInfo:
 
     def _peaks(self) -> list[str]:
         head = (
-            *("leg", "contact", "main strut", "stroke", "auxiliary strut", "acceleration"),
+            *("leg", "contact", "main strut", "stroke", "auxiliary strut", "ground"),
+            "acceleration",
             *("damper", "damper", "damper"),
         )
-        widths = (3, 8, 10, 9, 20, 13, 10, 12, 10)
+        widths = (3, 8, 10, 9, 20, 9, 13, 10, 12, 10)
         second = (
-            *("", "", "lowest", "largest", "lowest, highest", "after contact"),
+            *("", "", "lowest", "largest", "lowest, highest", "largest", "after contact"),
             *("absorbed J", "dissipated J", "efficiency"),
         )
         legs = [_leg_row(leg) for leg in self.landing["legs"]]
@@ -125,9 +127,16 @@ class LogInfo:
             "",
             *("  ".join(cell.rjust(width) for cell, width in zip(row, widths)) for row in rows),
             *unfinished(self.landing),
+            _origin(self.landing["peaks_of"]),
             f"largest axial acceleration at the top: {largest:.1f} m/s2",
             *([f"bottomed out: main strut of leg {bottomed}"] if bottomed else []),
         ]
+
+
+def _origin(peaks_of: str) -> str:
+    if peaks_of == "landing":
+        return "peaks: of the landing, between its messages too, by the log's record"
+    return "peaks: of the messages; the log has no record of those between them"
 
 
 def _leg_row(leg: Mapping[str, Any]) -> tuple[str, ...]:
@@ -139,6 +148,7 @@ def _leg_row(leg: Mapping[str, Any]) -> tuple[str, ...]:
         f"{leg['main_strut_force_min'] / 1e3:.2f} kN",
         f"{leg['main_strut_stroke_max'] * 1e3:.1f} mm",
         f"{lowest / 1e3:.2f}, {highest / 1e3:.2f} kN",
+        f"{leg['contact_force_max'] / 1e3:.2f} kN",
         "-" if peak is None else f"{peak:.1f} m/s2",
         decimals(leg["main_strut_absorbed"], 1),
         decimals(leg["main_strut_dissipated"], 1),

@@ -13,6 +13,7 @@ from rlv_landing.parameters import Parameters
 from ..messages.topics import STRUTS
 from .mcap_records import HEADER, MAGIC, RECORD_HEAD
 from .mcap_stream import RecordStream
+from .peaks import RECORD as PEAKS_RECORD
 
 FINISHED = ".mcap"
 # The ending until the writer has finished the file.
@@ -46,7 +47,8 @@ class LogReader:
 
     After the messages have been read, `cut` says that the log is incomplete or damaged, and
     `damage` what is wrong besides a missing end. `channels`, `metadata` and `attachments` are
-    filled while reading; in our logs all stand at the start.
+    filled while reading; in our logs all stand at the start. So is `peaks`, the texts of the record
+    of peaks, which stands at the end; a cut log lacks it.
 
     Args:
         path: the log.
@@ -60,6 +62,7 @@ class LogReader:
         self.files = find_files(self.path)
         self.channels: dict[str, Channel] = {}
         self.metadata: dict[str, str] = {}
+        self.peaks: dict[str, str] = {}
         self.attachments: dict[str, bytes] = {}
         self.cut = False
         self.damage: list[str] = []
@@ -93,6 +96,8 @@ class LogReader:
                 elif isinstance(record, Metadata):
                     if record.name == "rlv_landing":
                         self.metadata.update(record.metadata)
+                    elif record.name == PEAKS_RECORD:
+                        self.peaks.update(record.metadata)
                 elif definitions.add(record):
                     self._add_channel(*definitions.find(record.id))
             self.cut = self.cut or not stream.finished or bool(stream.damage)

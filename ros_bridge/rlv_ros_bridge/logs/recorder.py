@@ -13,6 +13,7 @@ from ..messages.definitions import Definition, definition
 from ..messages.qos import Qos
 from .bag_writer import CHUNK_BYTES, BagTopic, BagWriter, media_type
 from .chunk_buffer import RECORD_SIZE, ChunkBuffer, message_prefix
+from .peaks import RECORD as PEAKS_RECORD
 
 __all__ = ["CHUNK_BYTES", "FLUSH_SECONDS", "RecordedTopic", "Recorder"]
 
@@ -193,10 +194,13 @@ class Recorder:
         except OSError as e:
             self._fail(e.strerror or str(e))
 
-    def close(self) -> None:
+    def close(self, peaks: Mapping[str, str] | None = None) -> None:
         """Finishes the file and writes `metadata.yaml`.
 
         After an error it only closes the file, which `rlv-landing log` can read.
+
+        Args:
+            peaks: the texts of the landing's peaks, see `peaks.peak_texts`; none: no such record.
         """
         if not self._bag.is_open:
             return
@@ -206,6 +210,8 @@ class Recorder:
                 for topic in self._sampled:
                     self._entries[topic].count = self._samples
                 self._sampled = ()
+                if peaks:
+                    self._bag.mcap.add_metadata(PEAKS_RECORD, dict(peaks))
                 self._bag.finish()
         except OSError as e:
             self._fail(e.strerror or str(e))

@@ -12,6 +12,7 @@ from rlv_landing.quantities import OUTPUT_NAMES
 
 from ..messages.inputs import READINGS
 from ..messages.topics import APPLIED, resolve
+from .peaks import landing_peaks
 from .reader import Decoder, LogReader
 
 # Inputs by the number of the sample from which on they act.
@@ -56,6 +57,14 @@ class RepeatedRun:
         self._inputs = _inputs(reader, self.step_ns, refusal)
         self.input_messages = sum(map(len, self._inputs.values()))
         self._fmu = fmu
+        self._peaks: Callable[[], dict[str, tuple[float, float]]] = dict
+
+    def peaks(self) -> dict[str, tuple[float, float]]:
+        """Value [SI] and time [s] of each peak until the last of `samples`, by `peak.OUTPUT.SIDE`.
+
+        Only while `samples` is not closed.
+        """
+        return self._peaks()
 
     def samples(self) -> Generator[dict[str, float], None, None]:
         """All outputs by name at 0, one step, two steps, and so on without end.
@@ -64,6 +73,7 @@ class RepeatedRun:
         """
         if self._fmu is None:
             landing = Landing(self.parameters)
+            self._peaks = lambda: landing_peaks(landing)
 
             def step(k: int) -> None:
                 landing.advance_to((k + 1) * self.step)
@@ -73,6 +83,7 @@ class RepeatedRun:
         from ..fmu.runner import FmuRunner
 
         with FmuRunner(self._fmu, dict(self.parameters.items())) as runner:
+            self._peaks = runner.peaks
             yield from self._samples(
                 lambda: dict(zip(OUTPUT_NAMES, runner.values())),
                 runner.set_inputs,

@@ -16,6 +16,7 @@ from rlv_landing.errors import LandingError
 from ..fmu.builds import inexact_reason
 from ..messages.fields import TOPIC_FIELDS, expected_fields, expected_numbers, leaves
 from ..messages.topics import resolve
+from .peaks import read_peaks
 from .reader import Decoder, LogMessage, LogReader
 from .repeat import RepeatedRun
 
@@ -53,7 +54,8 @@ class Difference:
 class Verification:
     """The result of a comparison.
 
-    `values` of `messages` at `instants` were compared, with `inputs` repeated. `other_bits` values
+    `values` of `messages` at `instants` were compared, with `inputs` repeated, and the `peaks` that
+    the log's record of them has. `other_bits` values
     are not the same bits. `largest` is the largest difference as a share of its field's largest
     value. `not_exact` says why the bits need not be the same, or is empty. `first` is the first
     difference beyond `tolerance`. `end` and `stop_time` are in s.
@@ -66,6 +68,7 @@ class Verification:
     messages: int = 0
     values: int = 0
     inputs: int = 0
+    peaks: int = 0
     other_bits: int = 0
     largest: float = 0.0
     first: Difference | None = None
@@ -90,6 +93,8 @@ class Verification:
         lines = [f"compared  {self.values} values of {self.messages} messages at {until}"]
         if self.inputs:
             lines.append(f"inputs    {self.inputs}, repeated at their times")
+        if self.peaks:
+            lines.append(f"peaks     {self.peaks}, with their times")
         if self.first is not None:
             lines.append(f"differs   first in {self.first.text()}")
         elif self.other_bits:
@@ -201,6 +206,40 @@ class _Comparison:
         if missing and not (self._reader.cut or self._recovered):
             self._raise_difference(min(missing), "", k * run.step, None, "a message")
         found.end = k * run.step
+        if self._reader.peaks:
+            self._compare_peaks(samples, k)
+
+    def _compare_peaks(self, samples: Iterator[dict[str, float]], k: int) -> None:
+        """Compares the log's record of peaks with the repetition's, which is at sample `k`.
+
+        Raises:
+            _DifferenceError: a value or a time differs, values beyond the tolerance.
+            LandingError: the record cannot be read.
+        """
+        run, found = self._run, self._found
+        recorded, until = read_peaks(self._reader.peaks, str(self._reader.path))
+        # a damaged log may have lost its last messages
+        while k * run.step < min(until, run.stop_time) - 0.5 * run.step:
+            next(samples)
+            k += 1
+        repeated = run.peaks()
+        for name, (value, time) in recorded.items():
+            expected, expected_time = repeated[f"peak.{name}"]
+            found.peaks += 1
+            if (value, time) == (expected, expected_time):
+                continue
+            found.other_bits += 1
+            scale = max(abs(expected), abs(value))
+            share = abs(value - expected) / scale if scale > 0.0 else 0.0
+            if not (found.not_exact and share <= TOLERANCE):
+                self._raise_difference(
+                    "the record of peaks",
+                    name,
+                    time,
+                    f"{value!r} at {time!r} s",
+                    f"{expected!r} at {expected_time!r} s",
+                )
+            found.largest = max(found.largest, share)
 
     def _compare(self, message: LogMessage, values: Mapping[str, float]) -> None:
         expected = expected_fields(self._topics[message.topic], values, message.log_time)

@@ -12,11 +12,12 @@ from typing import Any
 
 from rclpy.serialization import serialize_message
 
-from rlv_landing import Landing
+from rlv_landing import Landing, LandingError
 from rlv_landing.presets import to_toml
 from rlv_landing.quantities import OUTPUT_NAMES
 
 from ..fmu.runner import FmuRunner
+from ..logs.peaks import peak_texts
 from ..logs.recorder import RecordedTopic, Recorder
 from ..messages import topics
 from ..messages.markers import Wireframe
@@ -316,11 +317,18 @@ class LandingRun:
             recording_error=recorder.error if recorder else "",
         )
 
+    def _peak_texts(self) -> dict[str, str]:
+        """The record of the landing's peaks; empty where the FMU has failed, or is freed."""
+        try:
+            return peak_texts(self.fmu.peaks(), self.time)
+        except LandingError:
+            return {}
+
     def close_log(self) -> None:
         """Completes the log; removes it if no sample was recorded."""
         if self.recorder is not None:
             if self.samples:
-                self.recorder.close()
+                self.recorder.close(self._peak_texts())
             else:
                 self.recorder.discard()
 

@@ -1,0 +1,98 @@
+"""A log's record of the landing's true peaks, which its messages lack between their times.
+
+It is a metadata record at the log's end. For each peak of `rlv_landing.quantities.PEAKS` it has, by
+the output's name with `.min` or `.max`, a JSON object of `value` and `unit` (SI, the FMU's axes)
+and `time` [s]. `until` is the time [s] until which they hold.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from math import isfinite, nan
+
+from rlv_landing import Landing
+from rlv_landing.errors import LandingError
+from rlv_landing.extremes import Extreme
+from rlv_landing.history import History
+from rlv_landing.quantities import PEAKS
+
+RECORD = "rlv_landing_peaks"
+UNTIL = "until"
+# value [SI] and time [s]
+Found = tuple[float, float]
+
+
+def peak_texts(found: Mapping[str, Found], until: float) -> dict[str, str]:
+    """The record's texts by name.
+
+    Args:
+        found: value and time of each peak by the FMU's variable name.
+        until: the time until which they hold [s].
+    """
+    texts = {UNTIL: repr(until)}
+    for peak in PEAKS:
+        value, time = found[peak.value.name]
+        texts[f"{peak.output}.{peak.side}"] = json.dumps(
+            {"value": value, "unit": peak.value.unit, "time": time}
+        )
+    return texts
+
+
+def landing_peaks(landing: Landing) -> dict[str, Found]:
+    """Value and time of each peak of a landing until now, by the FMU's variable names."""
+    extremes = landing.extremes()
+    return {
+        p.value.name: extremes[p.output][:2] if p.side == "min" else extremes[p.output][2:]
+        for p in PEAKS
+    }
+
+
+def read_peaks(texts: Mapping[str, str], where: str) -> tuple[dict[str, Found], float]:
+    """Value and time of each peak by `OUTPUT.SIDE`, and the time until which they hold.
+
+    Peaks of other versions that this one does not know are left out.
+
+    Args:
+        texts: the record.
+        where: the log's name, for errors.
+
+    Raises:
+        LandingError: a text is not what the record's layout says.
+    """
+    found = {}
+    name = UNTIL
+    try:
+        until = _finite(json.loads(texts[UNTIL]))
+        for peak in PEAKS:
+            name = f"{peak.output}.{peak.side}"
+            if name in texts:
+                record = json.loads(texts[name])
+                found[name] = _finite(record["value"]), _finite(record["time"])
+    except (ValueError, KeyError, TypeError):
+        raise LandingError(
+            f"{where}: its record of peaks has {name} = {texts.get(name)!r}, "
+            "which is not its layout; it was changed"
+        ) from None
+    return found, until
+
+
+def _finite(number: float) -> float:
+    if not isfinite(number):
+        raise ValueError
+    return float(number)
+
+
+def log_extremes(found: Mapping[str, Found], history: History) -> dict[str, Extreme]:
+    """The extremes of the outputs that have a recorded peak, by output.
+
+    The side that is not recorded is that of the samples; NaN for an output without a column.
+    """
+    extremes: dict[str, Extreme] = {}
+    for output in dict.fromkeys(p.output for p in PEAKS):
+        low, high = found.get(f"{output}.min"), found.get(f"{output}.max")
+        if low is None and high is None:
+            continue
+        sampled = history.extreme(output) if output in history else Extreme(nan, nan, nan, nan)
+        extremes[output] = Extreme(*(low or sampled[:2]), *(high or sampled[2:]))
+    return extremes

@@ -1,0 +1,135 @@
+"""The record of a landing's true peaks at the end of its log."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from bridge_tools import one_error_line, run
+from log_tools import rewrite
+from mcap.records import Metadata
+from pyarrow import parquet
+
+from rlv_landing import Landing, load_preset
+from rlv_landing.quantities import LEGS, PEAKS
+from rlv_landing.summary import summarise
+from rlv_ros_bridge.logs.history import log_history
+from rlv_ros_bridge.logs.info import log_info
+from rlv_ros_bridge.logs.peaks import RECORD, landing_peaks, read_peaks
+from rlv_ros_bridge.logs.reader import LogReader
+from rlv_ros_bridge.logs.recover import recover
+from rlv_ros_bridge.logs.verify import verify
+
+FORCE = "leg[1].main_strut.force.min"
+
+
+def read(log: Path) -> LogReader:
+    reader = LogReader(log)
+    reader.read_through()
+    return reader
+
+
+def only_file(log: Path) -> Path:
+    (file,) = log.glob("*.mcap")
+    return file
+
+
+def with_peaks(log: Path, target: Path, change) -> Path:
+    """The log with the texts of its record of peaks changed; None takes the record away."""
+
+    def apply(record):
+        if isinstance(record, Metadata) and record.name == RECORD:
+            texts = change(dict(record.metadata))
+            return None if texts is None else replace(record, metadata=texts)
+        return record
+
+    return rewrite(only_file(log), target, apply)
+
+
+def test_the_record_is_that_of_the_landing_to_the_last_digit(log: Path, mode: str) -> None:
+    found, until = read_peaks(read(log).peaks, "log")
+    landing = Landing(load_preset("yue2022-figures"), mode)
+    landing.run(1.0)
+    assert until == 1.0
+    assert {f"peak.{name}": peak for name, peak in found.items()} == landing_peaks(landing)
+    for peak in PEAKS:
+        texts = json.loads(read(log).peaks[f"{peak.output}.{peak.side}"])
+        assert texts["unit"] == peak.value.unit
+
+
+def test_info_tells_peaks_that_lie_between_the_messages(log: Path, mode: str) -> None:
+    info = log_info(LogReader(log))
+    whole = Landing(load_preset("yue2022-figures"), mode).run(1.0)
+    assert info.landing["peaks_of"] == "landing"
+    assert info.landing["legs"][0].items() >= summarise(whole)["legs"][0].items()
+    ground = max(leg["contact_force_max"] for leg in info.landing["legs"])
+    assert ground > 1.05 * max(whole[f"leg[{leg}].contact.force"].max() for leg in LEGS)
+    assert "peaks: of the landing, between its messages too" in info.text()
+
+
+def test_a_log_without_the_record_tells_peaks_of_its_messages_and_says_so(
+    one_log: Path, tmp_path: Path
+) -> None:
+    bare = with_peaks(one_log, tmp_path / "bare", lambda texts: None)
+    info = log_info(LogReader(bare))
+    history = log_history(bare)
+    assert history.extremes is None
+    assert info.landing["peaks_of"] == "samples"
+    assert (
+        info.landing["legs"][0]["main_strut_force_min"] == history["leg[1].main_strut.force"].min()
+    )
+    assert "peaks: of the messages" in info.text()
+    done = verify(LogReader(bare))
+    assert (done.same, done.peaks) == (True, 0)
+
+
+def test_verify_compares_every_peak_and_its_time(one_log: Path, tmp_path: Path) -> None:
+    done = verify(LogReader(one_log))
+    assert (done.same, done.other_bits, done.peaks) == (True, 0, len(PEAKS))
+
+    def other(texts: dict[str, str], what: str) -> dict[str, str]:
+        record = json.loads(texts[FORCE])
+        return {**texts, FORCE: json.dumps({**record, what: 1.1 * record[what]})}
+
+    for what in ("value", "time"):
+        changed = with_peaks(one_log, tmp_path / what, lambda texts, what=what: other(texts, what))
+        first = verify(LogReader(changed)).first
+        assert first is not None
+        assert (first.topic, first.field) == ("the record of peaks", FORCE)
+
+
+@pytest.mark.parametrize("text", ["", "{}", "[1, 2]", '{"value": NaN, "time": 0}', "5"])
+def test_a_record_that_cannot_be_read_is_an_error_in_one_line(
+    one_log: Path, tmp_path: Path, text: str
+) -> None:
+    changed = with_peaks(one_log, tmp_path / "changed", lambda texts: {**texts, FORCE: text})
+    done = run("log", "export", changed, tmp_path / "out.csv")
+    assert f"its record of peaks has {FORCE} = " in one_error_line(done)
+
+
+def test_recover_keeps_the_record(one_log: Path, tmp_path: Path) -> None:
+    data = bytearray(only_file(one_log).read_bytes())
+    data[len(data) // 2] ^= 0xFF
+    damaged = tmp_path / "damaged.mcap"
+    damaged.write_bytes(data)
+    recover(damaged, tmp_path / "recovered")
+    assert read(tmp_path / "recovered").peaks == read(one_log).peaks
+
+
+def test_parquet_carries_the_peaks_of_the_whole_landing_only(one_log: Path, tmp_path: Path) -> None:
+    for name, options in (("whole", ()), ("part", ("--end", "0.2"))):
+        done = run("log", "export", one_log, tmp_path / f"{name}.parquet", *options)
+        assert done.returncode == 0, done.stderr
+    whole, part = (
+        parquet.read_schema(tmp_path / f"{name}.parquet").metadata for name in ("whole", "part")
+    )
+    found, _ = read_peaks(read(one_log).peaks, "log")
+    told = json.loads(whole[b"peaks.json"])
+    assert told["leg[1].main_strut.force"]["minimum"] == found[FORCE][0]
+    assert told["leg[1].contact.force"] == {
+        "maximum": found["leg[1].contact.force.max"][0],
+        "maximum_time": found["leg[1].contact.force.max"][1],
+    }
+    assert b"peaks.json" not in part
