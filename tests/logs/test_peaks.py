@@ -15,6 +15,7 @@ from pyarrow import parquet
 from rlv_landing import Landing, load_preset
 from rlv_landing.quantities import LEGS, PEAKS
 from rlv_landing.summary import summarise
+from rlv_landing.tables.landing import summary_table
 from rlv_ros_bridge.logs.history import log_history
 from rlv_ros_bridge.logs.info import log_info
 from rlv_ros_bridge.logs.peaks import RECORD, landing_peaks, read_peaks
@@ -67,6 +68,19 @@ def test_info_tells_peaks_that_lie_between_the_messages(log: Path, mode: str) ->
     ground = max(leg["contact_force_max"] for leg in info.landing["legs"])
     assert ground > 1.05 * max(whole[f"leg[{leg}].contact.force"].max() for leg in LEGS)
     assert "peaks: of the landing, between its messages too" in info.text()
+
+
+def test_the_tables_of_a_log_and_of_its_landing_tell_the_same_peaks(log: Path, mode: str) -> None:
+    """`node --report` prints this table of the log."""
+    whole = Landing(load_preset("yue2022-figures"), mode).run(1.0)
+    told, expected = (
+        summary_table(history, "title").splitlines() for history in (log_history(log), whole)
+    )
+    legs = [line for line in expected if line.startswith("│")]
+    assert len(legs) == len(LEGS)
+    assert [line for line in told if line.startswith("│")] == legs
+    assert told[-1] == expected[-1]
+    assert told[-2] == expected[-2].partition(";")[0]
 
 
 def test_a_log_without_the_record_tells_peaks_of_its_messages_and_says_so(

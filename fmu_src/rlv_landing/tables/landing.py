@@ -183,11 +183,13 @@ def summary_table(history: History, title: str) -> str:
         f"at {s['top_axial_acceleration_max_time']:.3f} s"
     )
     lines = [outcome]
+    known = []
     if "stability_margin_min" in s:
-        lines.append(
-            f"stability margin at least {s['stability_margin_min']:.3f} m; "
-            f"energy balance within {s['energy_balance_worst']:.1e} J"
-        )
+        known.append(f"stability margin at least {s['stability_margin_min']:.3f} m")
+    if "energy_balance_worst" in s:
+        known.append(f"energy balance within {s['energy_balance_worst']:.1e} J")
+    if known:
+        lines.append("; ".join(known))
     if s.get("bottomed_out"):
         lines.append(
             f"BOTTOMED OUT: the damper of leg {', '.join(map(str, s['bottomed_out']))} "

@@ -7,7 +7,13 @@ from math import acos, atan2, dist
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
-from rlv_landing.quantities import INPUT_QUANTITIES, LEGS, OUTPUT_QUANTITIES, STATISTIC_QUANTITIES
+from rlv_landing.quantities import (
+    INPUT_QUANTITIES,
+    LEGS,
+    OUTPUT_QUANTITIES,
+    PEAK_QUANTITIES,
+    STATISTIC_QUANTITIES,
+)
 from rlv_landing.touchdown import footpad_at_rest
 
 from .legs import around
@@ -27,7 +33,7 @@ def variables() -> str:
         ("parameter", PARAMETER_QUANTITIES.values()),
         ("input", INPUT_QUANTITIES),
         ("output", OUTPUT_QUANTITIES),
-        ("local", STATISTIC_QUANTITIES),
+        ("local", (*STATISTIC_QUANTITIES, *PEAK_QUANTITIES)),
     )
     return json.dumps(
         [
