@@ -6,12 +6,13 @@ import io
 import re
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..history import History
 from ..quantities import MODES
+from ..text.durable import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -23,6 +24,9 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
     """Write a PNG of main strut forces, strokes, auxiliary strut forces and top acceleration.
 
     Legs that are mirror images share a curve. Dotted lines mark each leg's first contact.
+
+    Raises:
+        OSError: The disk refuses.
     """
     from matplotlib.figure import Figure
 
@@ -67,7 +71,22 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
     axes[-1].set_xlabel(
         "time [s]   (dotted: first contact; forces negative in compression, strokes positive)"
     )
-    figure.savefig(path, dpi=120)
+    save_whole(figure, Path(path), dpi=120)
+
+
+def save_whole(figure: Figure, path: Path, **options: Any) -> None:
+    """Write a figure to `path`, in the format of its ending, whole or not at all.
+
+    Args:
+        figure: The figure.
+        path: The file.
+        options: Those of `Figure.savefig`.
+
+    Raises:
+        OSError: The disk refuses.
+    """
+    with whole_file(path) as file:
+        figure.savefig(file, format=path.suffix[1:], **options)
 
 
 def inline_svg(
