@@ -5,7 +5,10 @@ Other packages add commands by the entry-point group `rlv_landing.commands`: the
 
 from __future__ import annotations
 
+import errno
+import os
 import sys
+from contextlib import suppress
 from importlib.metadata import entry_points
 from typing import Any
 
@@ -27,6 +30,20 @@ from .text.terminal import make_legible
 FAILED = 1
 BAD_INPUT = 2
 INTERRUPTED = 130
+# what the system says where a disk takes no more
+FULL = {errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno.ENOSPC)}
+# what the system says of a path that the user can change
+NOT_USABLE = {
+    errno.ENOENT,
+    errno.EACCES,
+    errno.EPERM,
+    errno.EEXIST,
+    errno.ENOTDIR,
+    errno.EISDIR,
+    errno.ENAMETOOLONG,
+    errno.ELOOP,
+    errno.EROFS,
+}
 
 
 class Commands(click.Group):
@@ -86,7 +103,7 @@ def cli() -> None:
     rlv-landing replay logs/NAME                   publish it again
 
     SI units and radians throughout; a value may carry its unit: --set drop.tilt="-2 deg".
-    Exit codes: 0 done, 2 bad input, 1 failed, 130 interrupted.
+    Exit codes: 0 done, 1 failed, 2 bad input or a file that cannot be written, 130 interrupted.
     """
 
 
@@ -119,11 +136,37 @@ def run(group: click.Group, name: str | None = None) -> int:
     except BrokenPipeError:
         return 0
     except OSError as e:
-        name = f"{e.filename}: " if e.filename is not None else ""
-        return _refuse(f"{name}{e.strerror or e}", FAILED)
+        return _refuse_file(e)
+    except UnicodeEncodeError as e:
+        if not any(0xD800 <= ord(c) <= 0xDFFF for c in e.object):
+            raise
+        return _refuse(f"{e.object} is a name that is not UTF-8; rename it", BAD_INPUT)
     return status if isinstance(status, int) else 0
 
 
+def _refuse_file(error: OSError) -> int:
+    reason = error.strerror or str(error)
+    if error.filename is None:
+        full = error.errno in FULL and _output_fails()
+        where = "standard output cannot be written: " if full else ""
+        return _refuse(f"{where}{reason}", FAILED)
+    name = os.fsdecode(error.filename) if isinstance(error.filename, bytes) else error.filename
+    if error.errno in NOT_USABLE:
+        return _refuse(f"{name} cannot be used: {reason}; name another", BAD_INPUT)
+    return _refuse(f"{name}: {reason}", FAILED)
+
+
+def _output_fails() -> bool:
+    """Whether standard output takes no more; the error does not say of which file it is."""
+    try:
+        print(flush=True)
+    except OSError:
+        return True
+    return False
+
+
 def _refuse(message: str, status: int) -> int:
-    click.echo(one_line(f"error: {message}"), err=True)
+    # standard error may be on a full disk, too
+    with suppress(OSError):
+        click.echo(one_line(f"error: {message}"), err=True)
     return status

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from .errors import LandingError, unknown
 from .extremes import Extreme
 from .parameters import Parameters
+from .text.durable import text_of, whole_file
 from .touchdown import AT_REST, GroundMotion
 
 
@@ -115,9 +116,13 @@ class History:
         return part
 
     def to_csv(self, path: str | Path) -> None:
-        """Write all columns to a CSV file, SI units, full precision."""
-        with Path(path).open("w", newline="", encoding="utf-8") as f:
-            self.write_csv(f)
+        """Write all columns to a CSV file, SI units, full precision, whole or not at all.
+
+        Raises:
+            OSError: The disk refuses.
+        """
+        with whole_file(Path(path)) as file, text_of(file) as text:
+            self.write_csv(text)
 
     def write_csv(self, file: TextIO) -> None:
         """Write all columns to an open CSV file, SI units, full precision."""

@@ -135,7 +135,24 @@ def _alter_loss(state: dict) -> None:
         ("best.json", _drop("loss"), "missing 1 required positional argument: 'loss'"),
         ("best.json", lambda b: b["z"].pop(), "its point is incomplete"),
         ("best.json", lambda b: b.update(loss=float("nan")), "its loss nan is none"),
-        ("best.json", lambda b: b.update(z="ab"), "cannot be read"),
+        ("best.json", lambda b: b.update(z="ab"), "its point is incomplete"),
+        ("best.json", lambda b: b.update(z=["a", "b"]), "its point is incomplete"),
+        ("best.json", lambda b: b.update(loss="a"), "its loss a is none"),
+        ("best.json", lambda b: b.update(evaluations="many"), "its evaluations = 'many' is no"),
+        ("best.json", lambda b: b.update(evaluations=-5), "its evaluations = -5 is no whole"),
+        ("best.json", lambda b: b.update(counted=1.5), "its counted = 1.5 is no whole"),
+        ("best.json", lambda b: b.update(missed="x"), "its missed = 'x' is no number"),
+        ("best.json", lambda b: b.update(start_loss=None), "its loss at the start is none"),
+        ("best.json", lambda b: b.update(stage=5), "its stage = 5 is no text"),
+        ("best.json", lambda b: b.update(more=1), "unexpected keyword argument 'more'"),
+        ("search.json", lambda s: s.update(population=-3), "its population = -3 is not from 4"),
+        ("search.json", lambda s: s.update(population=10**9), "its population = 1000000000 is not"),
+        ("search.json", lambda s: s.update(population=8.0), "its population = 8.0 is not"),
+        ("search.json", lambda s: s.update(sigma=-1.0), "its sigma = -1.0 is not from 0.0001 to 1"),
+        ("search.json", lambda s: s.update(sigma="a"), "its sigma = 'a' is not"),
+        ("search.json", lambda s: s.update(seed="a"), "its seed = 'a' is not"),
+        ("search.json", lambda s: s.update(start=[0.5]), "its start is incomplete"),
+        ("search.json", lambda s: s.update(start=["a", "b"]), "its start is no point"),
     ],
 )
 def test_files_that_contradict_themselves_are_refused(folder, name, change, message):
@@ -151,3 +168,51 @@ def test_without_a_state_the_search_begins_anew_from_the_best(folder):
     best, search = SearchFolder(folder, objective()).load()
     assert best.z == [0.4, 0.5]
     assert search is None
+
+
+@pytest.mark.parametrize("name", ["best.json", "search.json"])
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"", "Expecting value"),
+        (bytes(4096), "Expecting value"),
+        (b"{}", "it does not say of which search it is"),
+        (b"[]", "it is no table"),
+        (b"\xff", "can't decode byte 0xff"),
+        (b"[" * 10**5, "it is nested too deep"),
+    ],
+)
+def test_foreign_files_are_refused_and_left_as_they_are(folder, name, content, message):
+    (folder / name).write_bytes(content)
+    with pytest.raises(LandingError, match=rf"{name} cannot be (read|resumed) \(.*{message}"):
+        SearchFolder(folder, objective()).load()
+    assert (folder / name).read_bytes() == content
+
+
+def test_a_folder_in_use_a_link_for_a_lock_and_foreign_results_are_refused(folder, tmp_path):
+    files = SearchFolder(folder, objective())
+    files.load()
+    with pytest.raises(LandingError, match="is in use by another sweep or search"):
+        SearchFolder(folder, objective()).load()
+    files.release()
+    (tmp_path / "precious").write_text("precious")
+    (folder / ".lock").unlink()
+    (folder / ".lock").symlink_to(tmp_path / "precious")
+    with pytest.raises(LandingError, match=r"\.lock is a link or no file; remove it, or name an"):
+        SearchFolder(folder, objective()).load()
+    with pytest.raises(LandingError, match="precious cannot be written: File exists; name another"):
+        SearchFolder(tmp_path / "precious", objective()).create()
+    assert (tmp_path / "precious").read_text() == "precious"
+    for name in ("report.md", "identified.toml", "search.json"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / name).write_text("mine")
+        with pytest.raises(
+            LandingError, match=rf"{name} is there without best\.json; name another"
+        ):
+            SearchFolder(tmp_path / name, objective()).create()
+
+
+def test_nothing_to_resume_makes_no_folder(tmp_path):
+    with pytest.raises(LandingError, match="nothing to resume: leave --resume out"):
+        SearchFolder(tmp_path / "none", objective()).load()
+    assert list(tmp_path.iterdir()) == []

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import asyncio
 import json
+import signal
 import socket
+import struct
 import subprocess
 import sys
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
+from threading import Thread
 
 import pytest
 from distributed import Client, Scheduler
-from study_tools import rows, start, wait_for, write_study
+from study_tools import rows, run, start, wait_for, write_study
 
 
 class Cluster:
@@ -154,3 +159,88 @@ def test_an_unreachable_scheduler_is_one_clear_line_within_the_timeout(tmp_path,
     assert "no Dask scheduler answers at" in done.err
     assert len(done.err.strip().splitlines()) == 1
     assert not results.exists()
+
+
+def hear(connection: socket.socket) -> None:
+    """Take what comes, and never answer."""
+    while connection.recv(65536):
+        pass
+
+
+def as_web_server(connection: socket.socket) -> None:
+    connection.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\nhello " * 1000)
+
+
+def with_huge_length(connection: socket.socket) -> None:
+    connection.sendall(struct.pack("<Q", 1 << 62))
+    hear(connection)
+
+
+def with_empty_messages(connection: socket.socket) -> None:
+    while True:
+        connection.sendall(struct.pack("<QQ", 8, 0))
+
+
+def by_drops(connection: socket.socket) -> None:
+    while True:
+        connection.sendall(b"\0")
+        time.sleep(0.1)
+
+
+def hang_up(connection: socket.socket) -> None:
+    pass
+
+
+@pytest.mark.parametrize(
+    "answer", [hear, as_web_server, with_huge_length, with_empty_messages, by_drops, hang_up]
+)
+def test_what_is_no_scheduler_is_one_clear_line_within_the_timeout(
+    tmp_path, answer: Callable[[socket.socket], None]
+):
+    def serve(server: socket.socket) -> None:
+        def one(connection: socket.socket) -> None:
+            with connection, suppress(OSError):
+                answer(connection)
+
+        with suppress(OSError):
+            while True:
+                Thread(target=one, args=(server.accept()[0],), daemon=True).start()
+
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        Thread(target=serve, args=(server,), daemon=True).start()
+        address = "tcp://{}:{}".format(*server.getsockname())
+        study = write_study(tmp_path)
+        done = run("sweep", study, "--scheduler", address, "--timeout", "1", cwd=tmp_path)
+    assert done.returncode == 2
+    assert f"no Dask scheduler answers at {address} within 1 s (" in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert [p.name for p in tmp_path.iterdir()] == ["study.toml"]
+
+
+@pytest.mark.parametrize("address", ["", "tcp://", "tcp://host", "tcp://h:x", "tcp://h:99999", "x"])
+def test_what_is_no_address_is_said_so(tmp_path, address):
+    done = run("sweep", write_study(tmp_path), "--scheduler", address, cwd=tmp_path)
+    assert done.returncode == 2
+    assert "it is no address; write for example tcp://host:8786" in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_a_scheduler_that_stops_answering_ends_the_sweep_with_its_rows_kept(tmp_path):
+    started = Cluster(tmp_path)
+    try:
+        started.with_workers("one")
+        study = write_study(tmp_path, samples=400, until=0.3)
+        options = ("--results", "r", "--scheduler", started.address, "--timeout", 2)
+        process = start("sweep", study, *options, cwd=tmp_path)
+        started.wait_until_working(1)
+        started.processes[0].send_signal(signal.SIGSTOP)
+        _, err = process.communicate(timeout=100)
+        assert process.returncode == 1, err
+        assert "of 800 landings are kept in r, --resume continues" in err
+        assert len(err.strip().splitlines()) == 1
+        done = run("sweep", study, *options, "--resume", cwd=tmp_path)
+        assert done.returncode == 2
+        assert f"no Dask scheduler answers at {started.address} within 2 s" in done.stderr
+        assert len(done.stderr.strip().splitlines()) == 1
+    finally:
+        started.stop()

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
 from ..choices import parse_pairs, split_pair
 from ..errors import LandingError, one_line
+from ..text.durable import writing
 from .number_types import Number, WholeNumber
 from .options import HELP_NAMES, check_writable, parameter_options
 from .printing import print_json, print_warning
@@ -20,7 +22,8 @@ if TYPE_CHECKING:
     from ..studies.envelope.store import Store
     from ..studies.envelope.study import EnvelopeStudy
 
-NO_BOUNDARY, INTERRUPTED = 1, 130
+NO_BOUNDARY, FAILED, INTERRUPTED = 1, 1, 130
+RESULTS = ("boundary.csv", "boundary.json")
 STUDY = click.Path(path_type=Path)
 
 
@@ -122,8 +125,8 @@ def envelope(
     rlv-landing envelope --x drop.horizontal_velocity=-6..6 --y "drop.tilt=-15 deg..15 deg" \\
         --family ground.friction=0.3,0.6
 
-    Exit codes: 0 done, 1 no family has a boundary in the range (all stable or all lost), 2 bad
-    input, 130 interrupted.
+    Exit codes: 0 done, 1 no family has a boundary in the range (all stable or all lost), or a full
+    disk, 2 bad input, 130 interrupted.
     """
     from ..audit.transverse import joint_warning
     from ..studies.envelope.results import record
@@ -137,17 +140,19 @@ def envelope(
     store = _open_store(asked, work, resume=resume)
     try:
         found = _search(asked, store, options["workers"] or default_workers())
+        _write(found, work)
     except KeyboardInterrupt:
-        click.echo(
-            one_line(
-                f"interrupted; {len(store.found)} landings are kept in {work}, --resume continues"
-            ),
-            err=True,
-        )
-        sys.exit(INTERRUPTED)
+        _end("interrupted", INTERRUPTED, store, work)
+    except OSError as e:
+        reason = f"error: {work} cannot be written: {e.strerror or e}; make room"
+        _end(reason, FAILED, store, work)
     finally:
         store.close()
-    _write(found, work, plot)
+    if plot is not None:
+        from ..figures.envelope_figure import save_envelope
+
+        with writing(plot):
+            save_envelope(found, plot)
     if as_json:
         print_json(record(found))
     else:
@@ -155,6 +160,13 @@ def envelope(
     if not any(f.lines for f in found.families):
         click.echo("error: no family has a boundary in this range; widen the axes", err=True)
         sys.exit(NO_BOUNDARY)
+
+
+def _end(reason: str, status: int, store: Store, work: Path) -> NoReturn:
+    """End before the search is done."""
+    kept = f"{len(store.found)} landings are kept in {work}, --resume continues"
+    click.echo(one_line(f"{reason}; {kept}"), err=True)
+    sys.exit(status)
 
 
 def _study(path: Path | None, options: dict[str, Any]) -> EnvelopeStudy:
@@ -219,11 +231,13 @@ def _axis(key: str, text: str) -> dict[str, str]:
 def _open_store(asked: EnvelopeStudy, work: Path, *, resume: bool) -> Store:
     from ..studies.envelope.store import Store
 
-    try:
-        work.mkdir(parents=True, exist_ok=True)
-        return Store(asked, work / "landings.jsonl", resume=resume)
-    except OSError as e:
-        raise LandingError(f"{e.filename or work} cannot be written: {e.strerror or e}") from None
+    path = work / "landings.jsonl"
+    strange = [name for name in RESULTS if os.path.lexists(work / name)]
+    if strange and not os.path.lexists(path):
+        raise LandingError(
+            f"{work / strange[0]} is there without {path.name}; name another folder by --work"
+        )
+    return Store(asked, path, resume=resume)
 
 
 def _search(asked: EnvelopeStudy, store: Store, workers: int) -> Envelope:
@@ -243,14 +257,8 @@ def _search(asked: EnvelopeStudy, store: Store, workers: int) -> Envelope:
         return run(asked, workers, store, show_progress)
 
 
-def _write(found: Envelope, work: Path, plot: Path | None) -> None:
-    from ..figures.envelope_figure import save_envelope
+def _write(found: Envelope, work: Path) -> None:
     from ..studies.envelope.results import write_csv, write_json
 
-    try:
-        write_csv(found, work / "boundary.csv")
-        write_json(found, work / "boundary.json")
-        if plot is not None:
-            save_envelope(found, plot)
-    except OSError as e:
-        raise LandingError(f"{e.filename or plot} cannot be written: {e.strerror or e}") from None
+    write_csv(found, work / "boundary.csv")
+    write_json(found, work / "boundary.json")

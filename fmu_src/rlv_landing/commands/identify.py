@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import signal
 import sys
+from concurrent.futures import BrokenExecutor
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
 from ..choices import split_pair
-from ..errors import LandingError
+from ..errors import LandingError, one_line
+from ..text.durable import write_durably
 from .number_types import NumberRange, WholeNumber
 from .options import HELP_NAMES, choose, parameter_options
 from .printing import print_warning
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
     from ..identification.identify import Search
     from ..identification.objective import Objective
 
-NOTHING_BETTER, INTERRUPTED = 1, 130
+NOTHING_BETTER, FAILED, INTERRUPTED = 1, 1, 130
 
 
 @click.command(context_settings=HELP_NAMES)
@@ -139,8 +141,8 @@ def identify(work: Path, *, list_priors: bool, **options: Any) -> None:
     rlv-landing identify --parameters mine.toml --targets measured.csv \\
         --free main_strut.orifice_area_compression,ground.friction
 
-    Exit codes: 0 done, 1 nothing better than the start was found, 2 bad input, 130 interrupted
-    (the best so far is written).
+    Exit codes: 0 done, 1 nothing better than the start was found, or a full disk, 2 bad input, 130
+    interrupted (the best so far is written).
     """
     from ..audit.transverse import joint_warning
     from ..identification.identify import Search
@@ -157,12 +159,15 @@ def identify(work: Path, *, list_priors: bool, **options: Any) -> None:
     with Search(
         objective, work, options["seed"], options["workers"], resume=options["resume"]
     ) as search:
-        finished = _search(search, options)
-        search.save()
-        best = objective.free.parameters(search.best.z)
-        (work / "identified.toml").write_text(to_toml(best), encoding="utf-8")
-        if finished:
-            (work / "report.md").write_text(write_report(search, best), encoding="utf-8")
+        try:
+            finished = _search(search, options)
+            search.save()
+            best = objective.free.parameters(search.best.z)
+            write_durably(work / "identified.toml", to_toml(best).encode())
+            if finished:
+                write_durably(work / "report.md", write_report(search, best).encode())
+        except (OSError, BrokenExecutor) as e:
+            _fail(e, work)
     click.echo(
         f"loss {search.best.start_loss:.3f} at the start, {search.best.loss:.3f} at the best of "
         f"{search.best.evaluations} evaluations"
@@ -184,6 +189,17 @@ def identify(work: Path, *, list_priors: bool, **options: Any) -> None:
             err=True,
         )
         sys.exit(NOTHING_BETTER)
+
+
+def _fail(error: Exception, work: Path) -> NoReturn:
+    """End a search that the disk or the machine does not let go on."""
+    reason = (
+        f"{work} cannot be written: {error.strerror or error}; make room"
+        if isinstance(error, OSError)
+        else "a process of the search was killed; take fewer --workers, or free memory"
+    )
+    click.echo(one_line(f"error: {reason}; --resume goes on from what {work} holds"), err=True)
+    sys.exit(FAILED)
 
 
 def _print_priors() -> None:

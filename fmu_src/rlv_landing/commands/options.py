@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -92,17 +93,20 @@ def check_writable(path: Path | None, ending: str, *, force: bool) -> None:
     """Check that a file can be made at `path`; None is not checked.
 
     Raises:
-        LandingError: The ending is another, the folder is missing, or the file exists and `force`
-            is not given.
+        LandingError: The ending is another, the folder is missing, there is something else than a
+            file, or the file exists and `force` is not given.
     """
     if path is None:
         return
     if path.suffix != ending:
         raise LandingError(f"{path} must end in {ending}")
     try:
-        exists, folder = path.exists(), path.resolve().parent.is_dir()
+        exists, folder = os.path.lexists(path), path.resolve().parent.is_dir()
+        file = not path.exists() or path.is_file()
     except OSError as e:
         raise LandingError(f"{path} cannot be written: {e.strerror or e}") from None
+    if not file:
+        raise LandingError(f"{path} is there and is no file; name another")
     if exists and not force:
         raise LandingError(f"{path} exists; --force overwrites it")
     if not folder:

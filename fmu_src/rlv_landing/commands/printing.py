@@ -15,7 +15,12 @@ FAILED = 1
 
 def print_json(record: Any) -> None:
     """Print a record as JSON; NaN and infinity are refused, as JSON has neither."""
-    click.echo(json.dumps(record, indent=1, allow_nan=False))
+    click.echo(json_text(record))
+
+
+def json_text(record: Any) -> str:
+    """A record as JSON; NaN and infinity are refused, as JSON has neither."""
+    return json.dumps(record, indent=1, allow_nan=False)
 
 
 def print_warning(text: str | None) -> None:

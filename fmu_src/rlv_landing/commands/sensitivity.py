@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from ..text.durable import writing
 from .number_types import NumberRange, WholeNumber
 from .options import HELP_NAMES, check_writable
 from .printing import print_json
@@ -82,7 +83,8 @@ def sensitivity(
     path = run_task(task, folder, run)
     found = indices_of(path, read, wanted, level, resamples)
     picture = plot or folder / "sensitivity.png"
-    save_bars(found, picture, f"{read.name}: Sobol indices")
+    with writing(picture):
+        save_bars(found, picture, f"{read.name}: Sobol indices")
     if run.as_json:
         print_json(
             {

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..errors import LandingError
 from ..landing import DEFAULT_RTOL, METHODS, Landing
+from ..text.durable import writing
 from .number_types import Number
 from .options import HELP_NAMES, check_writable, chosen_parameters, parameter_options
-from .printing import print_json, print_warning
+from .printing import json_text, print_warning
 
 if TYPE_CHECKING:
     from ..history import History
@@ -83,29 +83,34 @@ def simulate(output: Path | None, plot: Path | None, *, force: bool, **options: 
     mode = landing.parameters.drop.mode
     history = _run(landing, options["until"], options["every"])
     print_warning(warning_of(history))
-    if options["as_json"]:
-        from ..summary import summarise
-
-        print_json(summarise(history))
-    else:
-        from ..tables.landing import summary_table
-
-        click.echo(summary_table(history, f"{mode} landing"), nl=False)
-    if options["comparison"]:
-        from ..tables.landing import comparison_table
-
-        click.echo(comparison_table(history, mode), nl=False)
-    try:
-        if output is not None:
+    printed = _printed(history, mode, options)
+    # the files first: they are there even where the reader of standard output has gone
+    if output is not None:
+        with writing(output):
             history.to_csv(output)
-        if plot is not None:
-            from ..figures.plots import save_overview
+    if plot is not None:
+        from ..figures.plots import save_overview
 
+        with writing(plot):
             save_overview(history, plot, f"{mode} landing")
-    except OSError as e:
-        raise LandingError(
-            f"{e.filename or output or plot} cannot be written: {e.strerror or e}"
-        ) from None
+    click.echo(printed, nl=False)
+
+
+def _printed(history: History, mode: str, options: dict[str, Any]) -> str:
+    """The summary as JSON or table, and the comparison with the paper where it is wanted.
+
+    Raises:
+        LandingError: The landing cannot be compared with the paper's.
+    """
+    from ..summary import summarise
+    from ..tables.landing import comparison_table, summary_table
+
+    printed = (
+        json_text(summarise(history)) + "\n"
+        if options["as_json"]
+        else summary_table(history, f"{mode} landing")
+    )
+    return printed + (comparison_table(history, mode) if options["comparison"] else "")
 
 
 def _landing(options: dict[str, Any]) -> Landing:

@@ -67,7 +67,7 @@ def run_options(command: F) -> F:
             "--timeout",
             default=10.0,
             show_default=True,
-            type=NumberRange(0.1, unit="s"),
+            type=NumberRange(0.1, 86400.0, unit="s"),
             metavar="S",
             help="Longest wait for scheduler or workers [s].",
         ),

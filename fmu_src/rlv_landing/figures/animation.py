@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from ..errors import LandingError
 from ..history import History
+from ..text.durable import PART, temporary_name, unwritable
 from .moving_figure import WIDTH, MovingFigure
 
 if TYPE_CHECKING:
@@ -95,15 +96,13 @@ def save_animation(
     fps = _frames_per_second(film, path.suffix)
     rows = frame_rows(history, film, fps)
     figure = MovingFigure(history, parameters, rows, title, film.view)
-    unfinished = path.with_name(f".{path.stem}.part{path.suffix}")
+    unfinished = temporary_name(path, f"{PART}{path.suffix}")
     try:
         with _writer_class(path.suffix) as writer_class:
             _write(writer_class(fps=fps * BELOW), figure, unfinished, film.width / WIDTH, progress)
         unfinished.replace(path)
     except OSError as e:
-        raise LandingError(
-            f"{path} cannot be written: {e.strerror or e}; make room, or name another file"
-        ) from None
+        raise unwritable(path, e) from None
     except CalledProcessError as e:
         message = (
             (e.stderr or b"").decode("utf-8", "replace").strip()

@@ -9,7 +9,7 @@ from ..quantities import Quantity, shown
 from ..studies.envelope.results import stretches
 from ..studies.envelope.search import Envelope, Family
 from ..studies.sweep.factors import value_text
-from .plots import COLOURS
+from .plots import COLOURS, save_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -75,8 +75,9 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
     figure.suptitle(title, fontsize="medium", x=0.01, ha="left")
     with mpl.rc_context({"svg.hashsalt": "envelope", "svg.fonttype": "none"}):
         # the picture grows where legend or title are wider than the panels
-        figure.savefig(
-            path,
+        save_whole(
+            figure,
+            Path(path),
             dpi=110,
             bbox_inches="tight",
             pad_inches=0.1,

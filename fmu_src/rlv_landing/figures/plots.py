@@ -6,12 +6,13 @@ import io
 import re
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..history import History
 from ..quantities import MODES
+from ..text.durable import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,6 +48,9 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
 
     Legs that are mirror images share a curve. Dotted lines mark each leg's first contact, triangles
     true peaks.
+
+    Raises:
+        OSError: The disk refuses.
     """
     from matplotlib.figure import Figure
 
@@ -85,7 +89,22 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
         "time [s]   (dotted: first contact; triangles: peaks; "
         "forces negative in compression, strokes positive)"
     )
-    figure.savefig(path, dpi=120)
+    save_whole(figure, Path(path), dpi=120)
+
+
+def save_whole(figure: Figure, path: Path, **options: Any) -> None:
+    """Write a figure to `path`, in the format of its ending, whole or not at all.
+
+    Args:
+        figure: The figure.
+        path: The file.
+        options: Those of `Figure.savefig`.
+
+    Raises:
+        OSError: The disk refuses.
+    """
+    with whole_file(path) as file:
+        figure.savefig(file, format=path.suffix[1:], **options)
 
 
 def inline_svg(

@@ -6,13 +6,10 @@ It has tables, and the counterparts of the paper's Figs. 7 to 19 as inline SVG.
 from __future__ import annotations
 
 import math
-import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
 from .. import __version__
-from ..errors import LandingError
 from ..parameters import Parameters
 from ..tables.landing import (
     counts_line,
@@ -23,6 +20,7 @@ from ..tables.landing import (
     parameter_records,
     percent,
 )
+from ..text.durable import unwritable, write_durably
 from ..validation.paper import Scalar
 from ..validation.validate import Validation
 from .plots import inline_svg
@@ -65,21 +63,9 @@ def write_whole(text: str, path: Path) -> None:
         LandingError: The file cannot be written.
     """
     try:
-        handle, name = tempfile.mkstemp(
-            dir=path.resolve().parent, prefix=f".{path.name}.", suffix=".part"
-        )
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as f:
-                f.write(text)
-            mask = os.umask(0)
-            os.umask(mask)
-            Path(name).chmod(0o666 & ~mask)
-            Path(name).replace(path)
-        except BaseException:
-            Path(name).unlink(missing_ok=True)
-            raise
+        write_durably(path, text.encode())
     except OSError as e:
-        raise LandingError(f"{path} cannot be written: {e.strerror or e}") from None
+        raise unwritable(path, e) from None
 
 
 def render_report(

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..studies.sweep.sensitivity import Indices
+from .plots import save_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,7 +65,7 @@ def save_bars(found: Sequence[Indices], path: Path, title: str) -> None:
             title_fontsize=8,
         )
     # the picture grows where a title or a reason is wider than the panels
-    figure.savefig(path, dpi=110, bbox_inches="tight", pad_inches=0.1)
+    save_whole(figure, path, dpi=110, bbox_inches="tight", pad_inches=0.1)
 
 
 def _draw(axis: Axes, indices: Indices) -> None:

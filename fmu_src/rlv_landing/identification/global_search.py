@@ -13,6 +13,10 @@ import numpy as np
 
 # the largest distance, on the unit cube, between the mean of a search and that of its repetition
 SAME_MEAN = 1e-9
+# bounds of what a search begins with
+SIGMAS = (1e-4, 1.0)
+POPULATIONS = (4, 100_000)
+SEEDS = (1, 2**31 - 1)
 
 
 class GlobalSearch:
@@ -70,6 +74,7 @@ class GlobalSearch:
         """
         try:
             start, losses, mean = state["start"], state["losses"], state["mean"]
+            _check_beginning(start, state["sigma"], state["population"], state["seed"])
             search = cls(start, state["sigma"], state["population"], state["seed"])
             told = np.array(losses, dtype=float).reshape(len(losses), state["population"])
             reached = np.array(mean, dtype=float).reshape(len(start))
@@ -85,3 +90,20 @@ class GlobalSearch:
         if not np.abs(search._strategy.mean - reached).max() <= SAME_MEAN:
             raise ValueError("its losses do not lead to its mean")
         return search
+
+
+def _check_beginning(start: Any, sigma: Any, population: Any, seed: Any) -> None:
+    """Check what a search began with, before anything is made of it.
+
+    Raises:
+        ValueError: It is out of the bounds that the options have.
+    """
+    if not isinstance(start, list) or not all(type(x) in (int, float) for x in start):
+        raise ValueError("its start is no point")
+    for name, value, kinds, low, high in (
+        ("sigma", sigma, (int, float), *SIGMAS),
+        ("population", population, (int,), *POPULATIONS),
+        ("seed", seed, (int,), *SEEDS),
+    ):
+        if type(value) not in kinds or not low <= value <= high:
+            raise ValueError(f"its {name} = {value!r} is not from {low:g} to {high:g}")

@@ -92,6 +92,7 @@ class Search:
         if self._pool is not None:
             self._pool.shutdown(wait=True, cancel_futures=True)
             self._pool = None
+        self._folder.release()
 
     def evaluate(self, points: Sequence[Sequence[float]]) -> list[NDArray[np.float64]]:
         """The misfits at several points, side by side; they count as evaluations."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from math import isfinite
@@ -10,11 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LandingError
-from ..text.durable import write_durably
+from ..text.durable import FolderLock, write_durably
+from ..text.files import read_record
 from .global_search import GlobalSearch
 from .objective import Objective
 
 NAN = float("nan")
+RESULTS = ("identified.toml", "report.md")
+ANOTHER = "name another folder by --work"
 
 
 @dataclass
@@ -71,6 +75,7 @@ class SearchFolder:
         self.folder = folder
         self._best = folder / "best.json"
         self._state = folder / "search.json"
+        self._lock: FolderLock | None = None
         free = objective.free
         self._search: dict[str, Any] = {
             "free numbers": {n: [p.lo, p.hi] for n, (p, _) in zip(free.labels, free.columns)},
@@ -80,17 +85,32 @@ class SearchFolder:
         }
 
     def create(self) -> None:
-        """Make the folder.
+        """Make the folder, and lock it.
 
         Raises:
-            LandingError: It holds an identification already.
+            LandingError: It holds an identification already, or files that have the names of an
+                identification's, or it is in use or cannot be written.
         """
-        if self._best.exists():
-            raise LandingError(
-                f"{self.folder} holds an identification; --resume goes on with it, "
-                "--work names another folder"
-            )
-        self.folder.mkdir(parents=True, exist_ok=True)
+        self._lock = FolderLock(self.folder, ANOTHER)
+        try:
+            if os.path.lexists(self._best):
+                raise LandingError(
+                    f"{self.folder} holds an identification; --resume goes on with it, "
+                    "--work names another folder"
+                )
+            for name in (self._state.name, *RESULTS):
+                if os.path.lexists(self.folder / name):
+                    raise LandingError(
+                        f"{self.folder / name} is there without {self._best.name}; {ANOTHER}"
+                    )
+        except LandingError:
+            self.release()
+            raise
+
+    def release(self) -> None:
+        """Give the folder free."""
+        if self._lock is not None:
+            self._lock.release()
 
     def load(self) -> tuple[Best, GlobalSearch | None]:
         """The best point, and the global search where it has begun and no other search followed.
@@ -98,26 +118,42 @@ class SearchFolder:
         Raises:
             LandingError: There is nothing to resume, a file is torn, or it is of another search.
         """
+        # a folder that is not there is not made
+        if not self._best.is_file():
+            raise LandingError(
+                f"there is no {self._best}; there is nothing to resume: leave --resume out, "
+                f"or {ANOTHER}"
+            )
+        self._lock = FolderLock(self.folder, ANOTHER)
+        try:
+            return self._load()
+        except LandingError:
+            self.release()
+            raise
+
+    def _load(self) -> tuple[Best, GlobalSearch | None]:
         try:
             best = self._best_of(self._read(self._best))
         except (OSError, ValueError, TypeError) as e:
+            if isinstance(e, LandingError):
+                raise
             raise LandingError(
-                f"{self._best} cannot be read ({e}); there is nothing to resume"
+                f"{self._best} cannot be read ({e}); there is nothing to resume: {ANOTHER}"
             ) from None
-        if best.counting or not self._state.exists():
+        if best.counting or not os.path.lexists(self._state):
             return best, None
         try:
-            return best, GlobalSearch.restored(self._read(self._state))
+            return best, self._search_of(self._read(self._state))
         except (OSError, ValueError) as e:
+            if isinstance(e, LandingError):
+                raise
             raise LandingError(
                 f"{self._state} cannot be resumed ({e}); "
                 f"remove it, and --resume searches anew from {self._best.name}"
             ) from None
 
     def _read(self, path: Path) -> dict[str, Any]:
-        kept = json.loads(path.read_text(encoding="utf-8"))
-        if not isinstance(kept, dict):
-            raise ValueError("it is no table")
+        kept = read_record(path)
         own = kept.pop("search", None)
         if not isinstance(own, dict) or own.keys() != self._search.keys():
             raise ValueError("it does not say of which search it is")
@@ -143,8 +179,30 @@ class SearchFolder:
 
     def _best_of(self, kept: dict[str, Any]) -> Best:
         best = Best(**kept)
-        if len(best.z) != len(self._search["free numbers"]) or not all(map(isfinite, best.z)):
+        size = len(self._search["free numbers"])
+        if not isinstance(best.z, list) or len(best.z) != size or not all(map(_finite, best.z)):
             raise ValueError("its point is incomplete")
-        if not best.loss >= 0.0:
+        if type(best.loss) not in (int, float) or not best.loss >= 0.0:
             raise ValueError(f"its loss {best.loss} is none")
+        for name in ("evaluations", "counted", "rounds", "seed"):
+            value = getattr(best, name)
+            if type(value) is not int or value < 0:
+                raise ValueError(f"its {name} = {value!r} is no whole number from 0 on")
+        if best.missed is not None and not (_finite(best.missed) and best.missed >= 0.0):
+            raise ValueError(f"its missed = {best.missed!r} is no number from 0 on")
+        if not all(type(v) in (int, float) for v in (best.start_loss, best.start_missed)):
+            raise ValueError("its loss at the start is none")
+        if not isinstance(best.stage, str):
+            raise ValueError(f"its stage = {best.stage!r} is no text")
         return best
+
+    def _search_of(self, kept: dict[str, Any]) -> GlobalSearch:
+        size = len(self._search["free numbers"])
+        start = kept.get("start")
+        if not isinstance(start, list) or len(start) != size:
+            raise ValueError("its start is incomplete")
+        return GlobalSearch.restored(kept)
+
+
+def _finite(value: Any) -> bool:
+    return type(value) in (int, float) and isfinite(value)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import codecs
 import csv
+import json
 import re
 import sys
 from collections.abc import Iterator, Sequence
@@ -69,6 +70,38 @@ def unreadable(what: str, path: Path, error: Exception, start: bytes = b"") -> L
         return LandingError(f"{what} {path} cannot be read: {found}; save it as UTF-8")
     reason = error.strerror if isinstance(error, OSError) and error.strerror else error
     return LandingError(f"{what} {path} cannot be read: {reason}")
+
+
+def is_utf8(text: str) -> bool:
+    """Whether a text can be written as UTF-8; names of files of other encodings cannot."""
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+def shown_name(path: Path) -> str:
+    """The name of a file for titles; bytes of it that are not UTF-8 are written as escapes."""
+    return path.name.encode("utf-8", "backslashreplace").decode()
+
+
+def read_record(path: Path) -> dict[str, Any]:
+    """The table in a JSON file that one of the commands wrote.
+
+    Raises:
+        OSError: The file is missing or cannot be read.
+        ValueError: It is torn, is no table, or is nested too deep.
+    """
+    if path.exists() and not path.is_file():
+        raise ValueError("it is no file")
+    try:
+        record = json.loads(path.read_text(encoding="utf-8"))
+    except RecursionError:
+        raise ValueError("it is nested too deep") from None
+    if not isinstance(record, dict):
+        raise ValueError("it is no table")
+    return record
 
 
 def parse_document(text: str, name: str) -> dict[str, Any]:

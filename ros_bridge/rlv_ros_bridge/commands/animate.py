@@ -11,6 +11,7 @@ import click
 from rlv_landing.commands.number_types import Number, WholeNumber
 from rlv_landing.commands.options import check_writable, parameter_options
 from rlv_landing.errors import LandingError
+from rlv_landing.text.files import shown_name
 
 from ..ros.interruption import exit_on_sigterm
 from .landing_source import VehicleOptions, compute_landing, read_landing, warn_incomplete
@@ -89,7 +90,7 @@ def animate(files: tuple[Path, ...], *, force: bool, **options: Any) -> None:
     cut = False
     if len(files) == 2:
         history, parameters, cut = read_landing(files[0], vehicle)
-        title = files[0].name
+        title = shown_name(files[0])
     else:
         history, parameters = compute_landing(vehicle, film.end)
         title = f"{parameters.drop.mode} landing"

@@ -12,6 +12,8 @@ import click
 from rlv_landing.commands.number_types import Number
 from rlv_landing.commands.options import check_writable
 from rlv_landing.errors import LandingError, one_line
+from rlv_landing.text.durable import writing
+from rlv_landing.text.files import shown_name
 
 from ..logs.libraries import require_log_readers
 
@@ -200,10 +202,8 @@ def export(
     if plot is not None:
         from rlv_landing.figures.plots import save_overview
 
-        try:
-            save_overview(history, plot, log.name)
-        except OSError as e:
-            raise LandingError(f"{plot} cannot be written: {e.strerror or e}") from None
+        with writing(plot):
+            save_overview(history, plot, shown_name(log))
         click.echo(f"picture: {plot}")
     for note in notes:
         click.echo(one_line(note), err=True)

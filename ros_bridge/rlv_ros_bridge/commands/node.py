@@ -12,6 +12,8 @@ from rlv_landing.choices import parse_pairs
 from rlv_landing.commands.number_types import Number, WholeNumber
 from rlv_landing.errors import LandingError, one_line
 from rlv_landing.parameters import PARAMETER_QUANTITIES
+from rlv_landing.text.durable import writing
+from rlv_landing.text.files import is_utf8
 
 from ..node.run_summary import RunSummary
 from ..ros.arguments import ROS_COMMAND_SETTINGS, split_ros_args
@@ -120,6 +122,7 @@ def node(
         recording = _recording_parameters(options, report=report)
         changes = parse_pairs(options.pop("changes"), PARAMETER_QUANTITIES, "parameter")
         settings = {name: value for name, value in options.items() if value is not None}
+        _refuse_other_encodings({**settings, **recording, "namespace": namespace})
         if managed:
             settings["autostart"] = False
         require_ros()
@@ -135,6 +138,19 @@ def node(
         sys.exit(128 + summary.signal)
     if summary.recording_error:
         sys.exit(EXIT_RECORDING_FAILED)
+
+
+def _refuse_other_encodings(settings: dict[str, Any]) -> None:
+    """Refuse texts that are not UTF-8: they become ROS parameters, which are.
+
+    Raises:
+        LandingError: a setting is such a text.
+    """
+    for name, value in settings.items():
+        if isinstance(value, str) and not is_utf8(value):
+            raise LandingError(
+                f"{name} = {value!r} is not UTF-8, as ROS parameters are; rename the file or folder"
+            )
 
 
 def _recording_parameters(options: dict[str, Any], *, report: bool) -> dict[str, str]:
@@ -202,5 +218,6 @@ def _print_report(folder: Path) -> None:
     except LandingError as e:
         click.echo(f"no comparison with the paper: {e}")
     picture = folder / "landing.png"
-    save_overview(history, picture, f"{reader.metadata.get('preset', '')}, mode {mode}")
+    with writing(picture):
+        save_overview(history, picture, f"{reader.metadata.get('preset', '')}, mode {mode}")
     click.echo(f"picture: {picture}")

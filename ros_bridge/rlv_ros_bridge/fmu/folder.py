@@ -23,7 +23,7 @@ class FmuFolder:
         remove_stale()
         self.path = Path(tempfile.mkdtemp(prefix=f"{PREFIX}{os.getpid()}-"))
         new = self.path / f"{LOCK}.new"
-        self._lock = os.open(new, os.O_CREAT | os.O_RDWR | os.O_CLOEXEC)
+        self._lock = os.open(new, os.O_CREAT | os.O_EXCL | os.O_RDWR | os.O_CLOEXEC)
         fcntl.flock(self._lock, fcntl.LOCK_EX)
         # The file gets its name once the lock is held, so that no process finds it unlocked.
         new.rename(self.path / LOCK)
@@ -41,7 +41,8 @@ def remove_stale() -> None:
     """
     for lock in Path(tempfile.gettempdir()).glob(f"{PREFIX}*/{LOCK}"):
         with suppress(OSError):
-            file = os.open(lock, os.O_RDWR | os.O_CLOEXEC)
+            # in a folder that all may write to, somebody's link is not followed
+            file = os.open(lock, os.O_RDWR | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
             try:
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 shutil.rmtree(lock.parent, ignore_errors=True)

@@ -284,7 +284,11 @@ def read_description(path: Path) -> Any:
     Raises:
         LandingError: no such file, not an FMU, another model, or FMPy is missing.
     """
-    if not path.is_file():
+    try:
+        found = path.is_file()
+    except OSError as e:
+        raise LandingError(f"FMU {path} cannot be read: {e.strerror or e}") from None
+    if not found:
         raise LandingError(
             f"there is no FMU {path}; build it with ./build_fmu.sh or name one by --fmu"
         )

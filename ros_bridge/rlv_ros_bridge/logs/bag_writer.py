@@ -12,6 +12,7 @@ from typing import IO, Any
 from rlv_landing import __version__
 from rlv_landing.errors import LandingError
 from rlv_landing.text.durable import write_durably
+from rlv_landing.text.files import is_utf8
 
 from .mcap_stream import LIBRARY
 from .reader import FINISHED, UNFINISHED
@@ -198,6 +199,11 @@ def make_folder(folder: Path) -> list[Path]:
         LandingError: it exists, or cannot be made.
     """
     made: list[Path] = []
+    if not is_utf8(folder.name):
+        raise LandingError(
+            f"log folder {folder} has a name that is not UTF-8, which metadata.yaml cannot hold; "
+            "name another"
+        )
     try:
         if folder.exists() or folder.is_symlink():
             raise FileExistsError

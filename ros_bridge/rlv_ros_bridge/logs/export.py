@@ -13,7 +13,7 @@ from rlv_landing.errors import LandingError
 from rlv_landing.history import History
 from rlv_landing.presets import to_toml
 from rlv_landing.quantities import OUTPUT_NAMES, OUTPUT_QUANTITIES
-from rlv_landing.text.durable import write_durably
+from rlv_landing.text.durable import unwritable, write_durably
 
 ENDINGS = (".csv", ".parquet")
 UNITS = {"time": "s", **{name: q.unit for name, q in zip(OUTPUT_NAMES, OUTPUT_QUANTITIES)}}
@@ -74,21 +74,16 @@ def write_history(history: History, path: Path) -> None:
     if path.suffix not in ENDINGS:
         raise LandingError(f"{path} must end in {' or '.join(ENDINGS)}")
     try:
-        write_durably(path, _parquet(history) if path.suffix == ".parquet" else _csv(history))
+        if path.suffix == ".csv":
+            history.to_csv(path)
+        else:
+            write_durably(path, _parquet(history))
     except OSError as e:
-        raise LandingError(
-            f"{path} cannot be written: {e.strerror or e}; make room, or name another file"
-        ) from None
+        raise unwritable(path, e) from None
 
 
 def _known(extreme: dict[str, float]) -> dict[str, float]:
     return {name: value for name, value in extreme.items() if not math.isnan(value)}
-
-
-def _csv(history: History) -> bytes:
-    text = io.StringIO(newline="")
-    history.write_csv(text)
-    return text.getvalue().encode("utf-8")
 
 
 def _parquet(history: History) -> bytes:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rlv_landing.errors import LandingError
+from rlv_landing.text.files import shown_name
 
 from .bag_writer import BagTopic, BagWriter
 from .mcap_stream import RecordStream
@@ -188,7 +189,7 @@ class _Copy:
         except (KeyError, ValueError):
             found.stop_time = None
         missing = "" if found.complete else found.text().split("\n", 1)[-1]
-        recovery = {"recovered_from": Path(found.path).name, "recovery": missing}
+        recovery = {"recovered_from": shown_name(Path(found.path)), "recovery": missing}
         self._writer.mcap.add_metadata("rlv_landing", {**self._our_metadata, **recovery})
         self._writer.finish()
 

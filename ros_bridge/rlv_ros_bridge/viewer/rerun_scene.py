@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from rlv_landing.errors import LandingError
 from rlv_landing.figures.plots import COLOURS
 from rlv_landing.quantities import LEGS, MODES
+from rlv_landing.text.durable import PART, temporary_name
 
 Array = NDArray[np.float64]
 TIMELINE = "sim_time"
@@ -240,7 +241,7 @@ class SavedScene:
     """
 
     def __init__(self, path: Path) -> None:
-        self._path, self._unfinished = path, path.with_name(f".{path.stem}.part{path.suffix}")
+        self._path, self._unfinished = path, temporary_name(path, f"{PART}{path.suffix}")
         self._scene: Scene | None = None
 
     def begin(self, scene: Scene) -> None:

@@ -9,8 +9,9 @@ from typing import Any
 from ...errors import LandingError
 from ...landing import Landing
 from ...parameters import PARAMETER_QUANTITIES
-from ..limits import PassedLimit
-from ..outcome import outcome
+from ...quantities import LEGS
+from ..limits import LIMITS, PassedLimit
+from ..outcome import SEVERITY, outcome
 from ..whole_landing import whole_landing
 from .study import EnvelopeStudy
 
@@ -73,9 +74,37 @@ class JudgedLanding:
 
     @classmethod
     def from_record(cls, record: Mapping[str, Any]) -> JudgedLanding:
-        """The landing of a record that `asdict` made."""
-        limit = record["first_limit"]
-        return cls(**{**record, "first_limit": None if limit is None else PassedLimit(**limit)})
+        """The landing of a record that `asdict` made.
+
+        Raises:
+            ValueError: The record is no landing's.
+        """
+        try:
+            limit = record["first_limit"]
+            passed = None if limit is None else PassedLimit(**limit)
+            found = cls(**{**record, "first_limit": passed})
+        except (KeyError, TypeError) as e:
+            raise ValueError(f"it is no landing: {e}") from None
+        found._check()
+        return found
+
+    def _check(self) -> None:
+        limit = self.first_limit
+        numbers = [self.time, self.stability_min, self.stroke_left]
+        legs = [self.leg]
+        if limit is not None:
+            numbers += [limit.time, limit.limit]
+            legs.append(limit.leg)
+            if limit.name not in LIMITS:
+                raise ValueError(f"{limit.name!r} is no limit")
+        if self.name not in (*SEVERITY, FAILED):
+            raise ValueError(f"{self.name!r} is no outcome")
+        if not all(type(v) in (int, float) for v in numbers):
+            raise ValueError("its times, margins and limits are no numbers")
+        if not all(leg is None or (type(leg) is int and leg in LEGS) for leg in legs):
+            raise ValueError(f"leg {self.leg!r} is none of {len(LEGS)}")
+        if self.towards not in ("", "+x", "-x") or not isinstance(self.error, str):
+            raise ValueError(f"{self.towards!r} is no side")
 
 
 def judged_landing(study: EnvelopeStudy, values: Mapping[str, float | str]) -> JudgedLanding:

@@ -11,6 +11,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
+from ...text.durable import text_of, whole_file, write_durably
 from ..outcome import SEVERITY
 from .judged_landing import FAILED, JudgedLanding
 from .search import Critical, Envelope, Family
@@ -88,14 +89,13 @@ def _landing_record(landing: JudgedLanding) -> dict[str, Any]:
 
 
 def write_json(envelope: Envelope, path: Path) -> None:
-    """Write `record` to a JSON file."""
-    path.write_text(
-        json.dumps(record(envelope), indent=1, allow_nan=False) + "\n", encoding="utf-8"
-    )
+    """Write `record` to a JSON file, whole or not at all."""
+    text = json.dumps(record(envelope), indent=1, allow_nan=False) + "\n"
+    write_durably(path, text.encode())
 
 
 def write_csv(envelope: Envelope, path: Path) -> None:
-    """Write the boundary's points to a CSV file, a line for each, in SI units.
+    """Write the boundary's points to a CSV file, a line for each, in SI units, or nothing.
 
     The columns are the family's values, the number of the boundary line, the point, the last stable
     landing and the first lost one beside it, and the outcome of the latter.
@@ -103,7 +103,7 @@ def write_csv(envelope: Envelope, path: Path) -> None:
     study = envelope.study
     family_names = list(envelope.families[0].values)
     axes = (study.x.name, study.y.name)
-    with path.open("w", newline="", encoding="utf-8") as f:
+    with whole_file(path) as file, text_of(file) as f:
         writer = csv.writer(f)
         writer.writerow(
             [

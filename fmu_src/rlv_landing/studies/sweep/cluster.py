@@ -5,15 +5,15 @@ Tasks are small, some landings each. The tasks of a worker that dies are made an
 
 from __future__ import annotations
 
-import logging
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 from ... import __version__
 from ...errors import LandingError
 from .extras import dask
+from .scheduler import ask_scheduler, no_scheduler, silence
 from .sweep import Engine, LostError, Rows
 from .sweep_row import Plan, sweep_rows
 
@@ -95,9 +95,23 @@ class Cluster:
         """The number of the workers' threads, at most a second old.
 
         Asking the scheduler costs as much as a task.
+
+        Raises:
+            LostError: The scheduler does not answer within the timeout, or is gone.
         """
         if time.monotonic() - self._checked >= CHECK_EVERY:
-            workers: dict[str, dict[str, Any]] = self._client.scheduler_info().get("workers", {})
+            distributed = dask()
+            try:
+                found = self._client.sync(
+                    self._client.scheduler.identity, callback_timeout=self._timeout
+                )
+            except (TimeoutError, distributed.TimeoutError):
+                raise LostError(
+                    f"the scheduler at {self._address} has not answered for {self._timeout:g} s"
+                ) from None
+            except Exception as e:
+                raise self._lost(e) from None
+            workers: dict[str, dict[str, Any]] = found.get("workers", {})
             self._thread_count = sum(int(worker["nthreads"]) for worker in workers.values())
             self._checked = time.monotonic()
         return self._thread_count
@@ -111,8 +125,12 @@ class Cluster:
         for task in tasks:
             if task.status != "finished":
                 break
-            done.append(task.result(timeout=self._timeout))
-        self._client.cancel(list(tasks))
+            try:
+                done.append(task.result(timeout=self._timeout))
+            except Exception:
+                break
+        with suppress(Exception):
+            self._client.sync(self._client._cancel, list(tasks), callback_timeout=self._timeout)
         return done
 
 
@@ -130,17 +148,12 @@ def cluster(plan: Plan, address: str, timeout: float) -> Iterator[Engine]:
             another version of it.
     """
     distributed = dask()
-    # an error of the cluster is reported once, in one line, by LandingError
-    for name in ("distributed", "distributed.client"):
-        logging.getLogger(name).setLevel(logging.CRITICAL)
+    silence()
+    ask_scheduler(address, timeout)
     try:
-        distributed.comm.registry.get_backend(distributed.comm.parse_address(address)[0])
         client = distributed.Client(address, timeout=timeout, set_as_default=False)
-    except (OSError, ValueError, TimeoutError, distributed.TimeoutError) as e:
-        raise LandingError(
-            f"no Dask scheduler answers at {address} within {timeout:g} s ({e}); "
-            "start one with `dask scheduler`, and check host and port"
-        ) from None
+    except Exception as e:
+        raise no_scheduler(address, timeout, e) from None
     try:
         try:
             client.wait_for_workers(1, timeout=timeout)
@@ -152,7 +165,9 @@ def cluster(plan: Plan, address: str, timeout: float) -> Iterator[Engine]:
         _check_versions(client)
         yield Cluster(plan, client, address, timeout)
     finally:
-        client.close(timeout=timeout)
+        # a scheduler that is gone does not say goodbye
+        with suppress(Exception):
+            client.close(timeout=timeout)
 
 
 def _check_versions(client: Any) -> None:

@@ -10,7 +10,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import io
 import json
 import platform
@@ -20,7 +19,7 @@ from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path
 from types import TracebackType
-from typing import Any, TextIO
+from typing import Any
 
 import numpy
 import scipy
@@ -28,11 +27,23 @@ import scipy
 from ... import __version__
 from ...errors import LandingError
 from ...quantities import Quantity
-from ...text.durable import write_durably
+from ...text.durable import LOCK, PART, FolderLock, unwritable, whole_file, write_durably
+from ...text.files import read_record
 from .extras import arrow
+from .parts import (
+    check_part,
+    check_results,
+    opened,
+    part_files,
+    part_name,
+    remove_unfinished,
+)
 from .sweep_row import Task
 
 STUDY, COPY, PARTS, RESULTS = "study.json", "study.toml", "parts", "results.parquet"
+# what a sweep that was killed before its first file leaves
+OWN = (LOCK, COPY, f"{COPY}{PART}", f"{STUDY}{PART}")
+ANOTHER = "name another folder by --results"
 LEADING = (
     Quantity("", "number of the landing, from 0", name="index", kind="integer"),
     Quantity(
@@ -69,40 +80,41 @@ class Results:
         self._rows: list[list[Any]] = []
         self._since = time.monotonic()
         self._check_folder(resume=resume)
-        self._lock = self._locked()
-        self.done = self._load()
+        self._lock = FolderLock(folder, ANOTHER)
+        try:
+            # another sweep may have begun here before the folder was locked
+            self._check_study(resume=resume)
+            self.done = self._load()
+        except BaseException as e:
+            self._lock.release()
+            if isinstance(e, OSError):
+                raise unwritable(folder, e, ANOTHER) from None
+            raise
 
     def _check_folder(self, *, resume: bool) -> None:
-        study = self.folder / STUDY
-        if study.exists():
+        try:
+            self._check_study(resume=resume)
+            if self.folder.exists() and not self.folder.is_dir():
+                raise LandingError(f"{self.folder} is no folder; {ANOTHER}")
+            # a killed sweep may have left its lock, and the first file that it was writing
+            strange = (
+                not (self.folder / STUDY).exists()
+                and self.folder.exists()
+                and any(path.name not in OWN for path in self.folder.iterdir())
+            )
+        except OSError as e:
+            raise unwritable(self.folder, e, ANOTHER) from None
+        if strange:
+            raise LandingError(f"{self.folder} holds other files and no study; {ANOTHER}")
+
+    def _check_study(self, *, resume: bool) -> None:
+        if (self.folder / STUDY).exists():
             if not resume:
                 raise LandingError(
                     f"{self.folder} holds a study's results; --resume continues with it, "
                     "--results names another folder"
                 )
             self._compare()
-        elif self.folder.exists() and any(self.folder.iterdir()):
-            raise LandingError(
-                f"{self.folder} holds other files and no study; --results names another folder"
-            )
-
-    def _locked(self) -> TextIO:
-        """The folder's lock file, locked for this process."""
-        try:
-            (self.folder / PARTS).mkdir(parents=True, exist_ok=True)
-            lock = (self.folder / ".lock").open("w")
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            return lock
-        except BlockingIOError:
-            raise LandingError(
-                f"{self.folder} is in use by another sweep; wait for it, "
-                "or name another folder by --results"
-            ) from None
-        except OSError as e:
-            raise LandingError(
-                f"{self.folder} cannot be written: {e.strerror or e}; "
-                "name another folder by --results"
-            ) from None
 
     def __enter__(self) -> Results:
         return self
@@ -119,15 +131,19 @@ class Results:
             if error is None:
                 raise
         finally:
-            self._lock.close()
+            self._lock.release()
 
     def _compare(self) -> None:
         path = self.folder / STUDY
         try:
-            kept = json.loads(path.read_text(encoding="utf-8"))
-            kept_fingerprint = kept["fingerprint"]
-        except (OSError, ValueError, KeyError, TypeError) as e:
-            raise LandingError(f"{path} cannot be read ({e}); there is nothing to resume") from None
+            kept = read_record(path)
+        except (OSError, ValueError) as e:
+            raise LandingError(
+                f"{path} cannot be read ({e}); there is nothing to resume: {ANOTHER}"
+            ) from None
+        kept_fingerprint = kept.get("fingerprint")
+        if not isinstance(kept_fingerprint, str) or "points" not in kept:
+            raise LandingError(f"{path} says of no study; there is nothing to resume: {ANOTHER}")
         if kept_fingerprint == self._about["fingerprint"]:
             return
         changed = [
@@ -143,37 +159,21 @@ class Results:
 
     def _load(self) -> list[tuple[int, int]]:
         """The ranges of indices that are done already; a new study's files are written."""
+        parts = self.folder / PARTS
         if (self.folder / RESULTS).exists():
+            check_results(self.folder / RESULTS, self._about["fingerprint"], self.count)
             self._remove_parts()
             return [(0, self.count)]
-        try:
-            if not (self.folder / STUDY).exists():
-                write_durably(self.folder / COPY, self._text.encode())
-                write_durably(self.folder / STUDY, json.dumps(self._about, indent=1).encode())
-        except OSError as e:
-            raise LandingError(
-                f"{self.folder} cannot be written: {e.strerror or e}; "
-                "make room, or name another folder"
-            ) from None
+        if not (self.folder / STUDY).exists():
+            write_durably(self.folder / COPY, self._text.encode())
+            write_durably(self.folder / STUDY, json.dumps(self._about, indent=1).encode())
+        parts.mkdir(exist_ok=True)
+        remove_unfinished(parts)
         ranges: list[tuple[int, int]] = []
-        for path in self._parts():
-            try:
-                rows = self._parquet.read_metadata(path).num_rows
-            except Exception as e:
-                raise LandingError(
-                    f"{path} is damaged ({e}); remove it, and --resume makes its rows anew"
-                ) from None
-            first = int(path.stem)
-            if ranges and first < ranges[-1][1]:
-                raise LandingError(
-                    f"{path} has rows that the part before it has, too; "
-                    "remove it, and --resume makes its rows anew"
-                )
-            ranges.append((first, first + rows))
+        for path in part_files(parts):
+            after = ranges[-1][1] if ranges else 0
+            ranges.append(check_part(path, self._about["fingerprint"], self.count, after))
         return ranges
-
-    def _parts(self) -> list[Path]:
-        return sorted((self.folder / PARTS).glob("*.parquet"))
 
     @property
     def rows_done(self) -> int:
@@ -206,10 +206,9 @@ class Results:
         """Write the rows in memory to a part."""
         if self._rows:
             buffer = io.BytesIO()
-            self._parquet.write_table(self._table(self._rows), buffer)
-            write_durably(
-                self.folder / PARTS / f"{self._rows[0][0]:012d}.parquet", buffer.getvalue()
-            )
+            # a part that is changed later is noticed
+            self._parquet.write_table(self._table(self._rows), buffer, write_page_checksum=True)
+            write_durably(self.folder / PARTS / part_name(self._rows[0][0]), buffer.getvalue())
             self.done = sorted({*self.done, (self._rows[0][0], self._rows[-1][0] + 1)})
             self._rows = []
         self._since = time.monotonic()
@@ -249,24 +248,18 @@ class Results:
 
         Raises:
             OSError: The disk refuses; the parts stay.
+            LandingError: A part is damaged.
         """
         path = self.folder / RESULTS
         if path.exists():
             return path
         self.flush()
-        temporary = path.with_name(path.name + ".part")
-        try:
-            with (
-                temporary.open("wb") as file,
-                self._parquet.ParquetWriter(file, self._schema()) as writer,
-            ):
-                for table in self._groups():
-                    writer.write_table(table, row_group_size=GROUP_ROWS)
-            temporary.replace(path)
-        except BaseException:
-            with suppress(OSError):
-                temporary.unlink()
-            raise
+        with (
+            whole_file(path) as file,
+            self._parquet.ParquetWriter(file, self._schema()) as writer,
+        ):
+            for table in self._groups():
+                writer.write_table(table, row_group_size=GROUP_ROWS)
         self._remove_parts()
         return path
 
@@ -276,10 +269,10 @@ class Results:
         The size does not depend on the parts: neither does the file.
         """
         pending = self._schema().empty_table()
-        for part in self._parts():
-            pending = self._pyarrow.concat_tables(
-                [pending, self._parquet.read_table(part, schema=self._schema())]
-            )
+        for part in part_files(self.folder / PARTS):
+            with opened(part) as file:
+                table = self._pyarrow.Table.from_arrays(file.read().columns, schema=self._schema())
+            pending = self._pyarrow.concat_tables([pending, table])
             while pending.num_rows >= GROUP_ROWS:
                 yield pending.slice(0, GROUP_ROWS).combine_chunks()
                 pending = pending.slice(GROUP_ROWS)
@@ -287,10 +280,12 @@ class Results:
             yield pending.combine_chunks()
 
     def _remove_parts(self) -> None:
-        for part in self._parts():
-            part.unlink()
-        with suppress(OSError):
-            (self.folder / PARTS).rmdir()
+        parts = self.folder / PARTS
+        with suppress(OSError, LandingError):
+            remove_unfinished(parts)
+            for part in part_files(parts):
+                part.unlink()
+            parts.rmdir()
 
 
 def fingerprint(about: Mapping[str, Any]) -> str:

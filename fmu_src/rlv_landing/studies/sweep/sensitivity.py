@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from ...errors import LandingError, unknown
 from .design import Design, unit_points
-from .extras import arrow
 from .factors import Array
+from .parts import opened
 from .responses import known_responses
 from .study import Study
 
@@ -204,11 +204,14 @@ def indices_of(
         responses: Names of responses that are numbers.
         level: Confidence of the intervals.
         resamples: Bootstrap resamples.
+
+    Raises:
+        LandingError: The file is damaged.
     """
-    _, parquet = arrow()
     modes = study.modes or ("all",)
     names = tuple(f.name for f in study.factors)
-    table = parquet.read_table(path, columns=list(responses))
+    with opened(path) as file:
+        table = file.read(columns=list(responses))
     found: list[Indices] = []
     for i, mode in enumerate(modes):
         filled = [

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .extras import arrow
+from .parts import opened
 from .responses import known_responses
 
 SHOWN_FAILURES = 5
@@ -75,9 +75,16 @@ class Summary:
 
 
 def summarise_results(path: Path) -> Summary:
-    """The summary of a results file, which is read a column at a time."""
-    _, parquet = arrow()
-    file = parquet.ParquetFile(path)
+    """The summary of a results file, which is read a column at a time.
+
+    Raises:
+        LandingError: The file is damaged.
+    """
+    with opened(path) as file:
+        return _summary(file)
+
+
+def _summary(file: Any) -> Summary:
     summary = Summary(file.metadata.num_rows)
 
     def values(name: str) -> list[Any]:
