@@ -263,10 +263,12 @@ class Landing:
 
         Times are counted, now + k * every, never summed. Other threads run meanwhile: landings in
         several threads use several cores. `progress` is called with the time reached, every SLICE
-        samples. Raises LandingError unless `every` is above 0 and `until` is ahead.
+        samples. Raises LandingError unless `every` is above 0 and `until` is ahead, or if the samples
+        need more memory than is free, or the landing would take longer than 30 days.
         """
         import numpy as np
 
+        from .effort import SECONDS_PER_SAMPLE, SECONDS_PER_SECOND, check_duration, check_memory
         from .history import History
 
         if not 0.0 < every < inf:
@@ -278,6 +280,13 @@ class Landing:
             )
         check_going(self._solver)
         start, ground = self._time, self._inputs.ground(self._time)
+        span = f"a landing until {until:g} s in samples of {every:g} s"
+        remedy = "land shorter, or sample more seldom"
+        count = (until - start) / every
+        # rows and columns are there at once
+        check_memory(span, 16.0 * self._system.row * count, remedy)
+        seconds = SECONDS_PER_SECOND * (until - start) + SECONDS_PER_SAMPLE * count
+        check_duration(span, seconds, remedy)
         samples = int((until - start) / every * (1.0 + 1e-12) + 1e-9) + 1
         rows = np.empty((samples, self._system.row))
         self._solver.open_span(start)

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from ..identification.objective import Objective
 
 NOTHING_BETTER, FAILED, INTERRUPTED = 1, 1, 130
+# a process with the model and its targets beyond what it shares, and both modes' landings, at least
+BYTES_PER_PROCESS = 30e6
+SECONDS_PER_EVALUATION = 6e-3
 
 
 @click.command(context_settings=HELP_NAMES)
@@ -152,6 +155,7 @@ def identify(work: Path, *, list_priors: bool, **options: Any) -> None:
     if list_priors:
         _print_priors()
         return
+    _check_effort(options)
     objective = _objective(options)
     print_warning(joint_warning(map(objective.free.base.for_mode, objective.modes)))
     # SIGTERM ends as Ctrl-C does: with everything written
@@ -189,6 +193,27 @@ def identify(work: Path, *, list_priors: bool, **options: Any) -> None:
             err=True,
         )
         sys.exit(NOTHING_BETTER)
+
+
+def _check_effort(options: dict[str, Any]) -> None:
+    """Refuse more evaluations than 30 days take, and more processes than fit into memory.
+
+    Raises:
+        LandingError: They are more.
+    """
+    from ..effort import check_duration, check_memory
+    from ..workers import default_workers
+
+    workers = options["workers"] or default_workers()
+    check_memory(
+        f"--workers {workers}", BYTES_PER_PROCESS * workers, "leave it out: one for each core"
+    )
+    count = max(options["evaluations"], options["polish"], options["count"])
+    check_duration(
+        f"{count} evaluations by {workers} processes",
+        SECONDS_PER_EVALUATION * count / min(workers, default_workers()),
+        "take fewer: a search ends where it converges, and --resume goes on",
+    )
 
 
 def _fail(error: Exception, work: Path) -> NoReturn:

@@ -58,7 +58,13 @@ class WholeNumber(click.IntRange):
             if not _WHOLE.fullmatch(value):
                 self.fail(f"{value!r} is not a valid integer.", param, ctx)
             if len(value.strip()) > MOST_DIGITS:
-                self.fail(f"{value!r} has more than {MOST_DIGITS} digits.", param, ctx)
+                years = len(value.strip()) - 11
+                self.fail(
+                    f"{value!r} has more than {MOST_DIGITS} digits; so many steps of 1 ms "
+                    f"would take 10^{years} years or more.",
+                    param,
+                    ctx,
+                )
         number: int = super().convert(value, param, ctx)
         return number
 

@@ -136,6 +136,7 @@ def run_task(task: Task, folder: Path, options: RunOptions) -> Path:
     from ..studies.sweep.result_files import Results
     from ..studies.sweep.sweep import check_all
 
+    _check_effort(task, options)
     if options.strict:
         check_all(task)
     # SIGTERM ends as Ctrl-C does: with everything written
@@ -143,6 +144,29 @@ def run_task(task: Task, folder: Path, options: RunOptions) -> Path:
     with engine_for(task.plan, options) as engine:
         results = Results(folder, task, resume=options.resume)
         return _run_or_exit(task, results, engine, strict=options.strict)
+
+
+def _check_effort(task: Task, options: RunOptions) -> None:
+    """Refuse landings that this machine has not the memory or the time for.
+
+    Raises:
+        LandingError: They need too much. The time on a cluster is not known here.
+    """
+    from ..effort import SECONDS_PER_SAMPLE, SECONDS_PER_SECOND, check_duration, check_memory
+    from ..quantities import OUTPUT_NAMES
+    from ..workers import default_workers
+
+    plan, workers = task.plan, options.workers or default_workers()
+    if plan.until is None:
+        return
+    samples, at_once = plan.until / plan.every, min(workers, len(task))
+    what = f"until = {plan.until:g} s, every = {plan.every:g} s"
+    remedy = "land shorter, sample more seldom, or make fewer landings"
+    needed = 16.0 * len(OUTPUT_NAMES) * samples * at_once
+    check_memory(f"{what}, {at_once} landings at once,", needed, f"{remedy} at once (--workers)")
+    if options.scheduler is None:
+        each = SECONDS_PER_SECOND * plan.until + SECONDS_PER_SAMPLE * samples
+        check_duration(f"{len(task)} landings, {what},", each * len(task) / at_once, remedy)
 
 
 def _run_or_exit(task: Task, results: Results, engine: Engine, *, strict: bool) -> Path:

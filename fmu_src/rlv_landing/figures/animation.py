@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from ..effort import check_memory
 from ..errors import LandingError
 from ..history import History
 from ..text.durable import PART, temporary_name, unwritable
@@ -95,6 +96,13 @@ def save_animation(
         raise LandingError(f"{path} must end in {' or '.join(ENDINGS)}")
     fps = _frames_per_second(film, path.suffix)
     rows = frame_rows(history, film, fps)
+    if path.suffix == ".gif":
+        # its writer keeps every frame until the end; a frame is half as high as wide, or higher
+        check_memory(
+            f"a GIF of {len(rows)} frames, {film.width} pixels wide,",
+            2.0 * len(rows) * film.width**2,
+            "take fewer or smaller frames, or write an .mp4",
+        )
     figure = MovingFigure(history, parameters, rows, title, film.view)
     unfinished = temporary_name(path, f"{PART}{path.suffix}")
     try:

@@ -8,11 +8,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
-from math import ceil, log2
+from math import ceil, log2, prod
 from pathlib import Path
 from typing import Any
 
 from ...choices import choose_parameters
+from ...effort import check_duration, check_memory
 from ...errors import LandingError, unknown
 from ...parameters import PARAMETER_QUANTITIES, Parameters, check_value
 from ...presets import to_toml
@@ -32,6 +33,9 @@ CRITERIA = {
     "limit": "one of the limits is passed, or the vehicle topples",
 }
 FINEST = 20
+# a boundary: 9 landings or more of 1 ms or more; its values, landings and parameters
+LEAST_SECONDS = 9e-3
+BYTES_PER_FAMILY = 1000.0
 TABLES = ("envelope", "set", "limits", "x", "y", "families")
 NUMBERS = {
     q.name: q
@@ -238,6 +242,10 @@ def read_families(keys: Mapping[str, Any]) -> tuple[dict[str, float | str], ...]
         if len(set(column)) < len(column):
             raise LandingError(f"families: {name} = {values} names a value twice")
         columns.append(column)
+    count = prod(map(len, columns))
+    remedy = "take fewer values"
+    check_duration(f"families of {count:.12g} boundaries", LEAST_SECONDS * count, remedy)
+    check_memory(f"families of {count:.12g} boundaries", BYTES_PER_FAMILY * count, remedy)
     return tuple(dict(zip(keys, chosen)) for chosen in product(*columns))
 
 

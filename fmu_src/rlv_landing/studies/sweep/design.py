@@ -14,8 +14,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...effort import check_memory, duration_text
 from ...errors import LandingError
 from .factors import LARGEST, Array, Factor
+
+# a value of a point: itself, its place in the unit cube, and what both are made of
+BYTES_PER_VALUE = 24.0
+# a short landing with its responses; 100,000 of 1 s took 8.2 ms each
+LEAST_SECONDS = 1e-3
 
 
 class Design:
@@ -62,10 +68,12 @@ def grid(factors: Sequence[Factor]) -> Design:
     """
     count = prod(f.level_count() for f in factors)
     if count > LARGEST:
+        least = duration_text(count * LEAST_SECONDS)
         raise LandingError(
-            f"this grid has {count} points, more than {LARGEST}; take fewer levels, "
-            'or method = "sobol" or "lhs"'
+            f"this grid has {count:.12g} points, more than {LARGEST}, which would take {least} on "
+            'one core at least; take fewer levels, or method = "sobol" or "lhs"'
         )
+    _check_memory(count, len(factors))
     levels = [f.levels() for f in factors]
     indices = (
         np.unravel_index(np.arange(count), [len(values) for values in levels]) if levels else ()
@@ -73,8 +81,21 @@ def grid(factors: Sequence[Factor]) -> Design:
     return Design({f.name: values[i] for f, values, i in zip(factors, levels, indices)}, count)
 
 
+def _check_memory(count: int, columns: int) -> None:
+    check_memory(
+        f"a study of {count} points in {columns} columns",
+        BYTES_PER_VALUE * count * columns,
+        "take fewer samples or levels",
+    )
+
+
 def drawn(factors: Sequence[Factor], method: str, count: int, seed: int) -> Design:
-    """`count` samples of the factors by `lhs` or `sobol` (scrambled), by `scipy.stats.qmc`."""
+    """`count` samples of the factors by `lhs` or `sobol` (scrambled), by `scipy.stats.qmc`.
+
+    Raises:
+        LandingError: They need more memory than is free.
+    """
+    _check_memory(count, len(factors))
     points = unit_points(method, count, len(factors), seed)
     return Design({f.name: f.quantiles(points[:, i]) for i, f in enumerate(factors)}, count)
 

@@ -12,15 +12,17 @@ from pathlib import Path
 from typing import Any
 
 from ...choices import choose_parameters
+from ...effort import duration_text
 from ...errors import LandingError, unknown
 from ...parameters import PARAMETER_QUANTITIES, Parameters
 from ...presets import to_toml
 from ...quantities import MODES, Quantity
+from ...text.files import LARGEST_INTEGER
 from .. import toml_keys
 from ..limits import LIMITS
 from ..outcome import SLIDE
 from ..whole_landing import LATEST
-from .design import Design, drawn, grid
+from .design import LEAST_SECONDS, Design, drawn, grid
 from .factors import LARGEST, VARIABLES, Factor, read_factor
 from .responses import expand
 from .states_table import read_states
@@ -269,4 +271,10 @@ def _samples(keys: Mapping[str, Any], method: str) -> int:
         return 0
     if "samples" not in keys:
         raise LandingError(f"{method} needs samples = N, the number of points")
-    return toml_keys.integer(keys, "samples", 0, 1, LARGEST)
+    samples = toml_keys.integer(keys, "samples", 0, 1, LARGEST_INTEGER)
+    if samples > LARGEST:
+        raise LandingError(
+            f"samples = {samples} is more than {LARGEST}, and would take "
+            f"{duration_text(samples * LEAST_SECONDS)} on one core at least; take fewer"
+        )
+    return samples
