@@ -6,7 +6,7 @@ identified ones. Lengths down from the CG are given as positive depths, as in th
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from math import cos, isfinite, isinf, radians, sin
@@ -150,6 +150,10 @@ _FIELDS: dict[str, tuple[str, str]] = {
 }
 
 
+# sources of values by name; of values that belong to one mode by (mode, name)
+Sources = Mapping[str | tuple[str, str], str]
+
+
 def check_value(q: Quantity, value: Any) -> float | str:
     """The value as the quantity `q` takes it.
 
@@ -197,7 +201,8 @@ class Parameters:
         ground: The ground and its contact.
         drop: The state at first contact.
         by_mode: Values that belong to one landing mode only: mode -> name -> value.
-        sources: Sources of values that are not the table's defaults, by name.
+        sources: Sources of values that are not the table's defaults, by name; of values that belong
+            to one mode by (mode, name).
     """
 
     vehicle: Vehicle = field(default_factory=Vehicle)
@@ -207,7 +212,7 @@ class Parameters:
     drop: Drop = field(default_factory=Drop)
     solver: Integration = field(default_factory=Integration)
     by_mode: Mapping[str, Mapping[str, float | str]] = field(default_factory=dict)
-    sources: Mapping[str, str] = field(default_factory=dict)
+    sources: Sources = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         groups = {group: vars(getattr(self, group)) for group in GROUPS}
@@ -227,9 +232,10 @@ class Parameters:
         value: float | str = getattr(getattr(self, group), what)
         return value
 
-    def source(self, name: str) -> str:
-        """The source of the value of `name`."""
-        return self.sources.get(name, PARAMETER_QUANTITIES[name].source)
+    def source(self, name: str, mode: str | None = None) -> str:
+        """The source of the value of `name`; with a mode, of its value in `by_mode` where one is."""
+        own = self.sources.get(name, PARAMETER_QUANTITIES[name].source)
+        return own if mode is None else self.sources.get((mode, name), own)
 
     def with_values(
         self, values: Mapping[str, Any], source: str | Mapping[str, str] = "user"
@@ -243,12 +249,17 @@ class Parameters:
         Raises:
             LandingError: An unknown name or a bad value.
         """
-        changed = self._replaced(values, _sources(values, source))
+        changed = self._replaced(values, {name: _source(name, source) for name in values})
         by_mode = {
             mode: {n: v for n, v in own.items() if n not in values}
             for mode, own in self.by_mode.items()
         }
-        return replace(changed, by_mode=by_mode)
+        sources = {
+            key: s
+            for key, s in changed.sources.items()
+            if isinstance(key, str) or key[1] not in values
+        }
+        return replace(changed, by_mode=by_mode, sources=sources)
 
     def with_mode_values(
         self, values: Mapping[str, Mapping[str, Any]], source: str | Mapping[str, str] = "user"
@@ -267,7 +278,7 @@ class Parameters:
         for mode, own in values.items():
             self.for_mode(mode)._replaced(own, {})
             by_mode.setdefault(mode, {}).update(own)
-            sources.update(_sources(own, source))
+            sources.update({(mode, name): _source(name, source) for name in own})
         return replace(self, by_mode=by_mode, sources=sources)
 
     def for_mode(self, mode: str) -> Parameters:
@@ -278,9 +289,11 @@ class Parameters:
         """
         if mode not in MODES:
             raise unknown("landing mode", mode, MODES)
-        return self._replaced({**self.by_mode.get(mode, {}), "drop.mode": mode}, {})
+        own = self.by_mode.get(mode, {})
+        sources: Sources = {name: self.source(name, mode) for name in own}
+        return self._replaced({**own, "drop.mode": mode}, sources)
 
-    def _replaced(self, values: Mapping[str, Any], sources: Mapping[str, str]) -> Parameters:
+    def _replaced(self, values: Mapping[str, Any], sources: Sources) -> Parameters:
         grouped: dict[str, dict[str, float | str]] = {}
         for name, value in values.items():
             if name not in _FIELDS:
@@ -314,8 +327,8 @@ class Parameters:
             )
 
 
-def _sources(names: Iterable[str], source: str | Mapping[str, str]) -> dict[str, str]:
-    return {name: source if isinstance(source, str) else source.get(name, "user") for name in names}
+def _source(name: str, source: str | Mapping[str, str]) -> str:
+    return source if isinstance(source, str) else source.get(name, "user")
 
 
 @cache

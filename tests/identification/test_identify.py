@@ -20,9 +20,11 @@ from rlv_landing import Landing, LandingError, load_preset
 from rlv_landing.history import History
 from rlv_landing.identification.conditions import CONDITIONS
 from rlv_landing.identification.free_numbers import FreeNumbers
-from rlv_landing.identification.objective import Objective, Series
+from rlv_landing.identification.measured.series import Series
+from rlv_landing.identification.measured.target_file import read_targets
+from rlv_landing.identification.objective import Objective
 from rlv_landing.identification.priors import BORE, PRIORS, ROD_AREA
-from rlv_landing.identification.targets import paper_targets, read_targets
+from rlv_landing.identification.targets import paper_targets
 from rlv_landing.presets import read_toml
 
 FIGURES = "yue2022-figures"

@@ -5,7 +5,6 @@ It is seeded and resumable, and never loses its best point.
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
@@ -20,25 +19,13 @@ from .counting import KICKS, count_round
 from .free_numbers import folded
 from .global_search import GlobalSearch
 from .objective import Objective, cauchy_loss
+from .pool import misfits_at, started_pool
 from .search_folder import Best, SearchFolder
 
 # difference for the Jacobian, on the unit cube
 STEP = 1e-3
 # gets the evaluations so far and the best loss (in the counting search: the fewest misses)
 Progress = Callable[[int, float], object]
-_OBJECTIVE: Objective | None = None
-
-
-def _adopt(objective: Objective) -> None:
-    """Set up a worker; Ctrl-C is the parent's to answer."""
-    global _OBJECTIVE
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    _OBJECTIVE = objective
-
-
-def _misfits(z: Sequence[float]) -> NDArray[np.float64]:
-    assert _OBJECTIVE is not None
-    return _OBJECTIVE.misfits(z)
 
 
 class Search:
@@ -78,9 +65,7 @@ class Search:
             self.best = Best(objective.free.start(), float("inf"), 0, "start", seed)
 
     def __enter__(self) -> Search:
-        self._pool = ProcessPoolExecutor(
-            self.workers, initializer=_adopt, initargs=(self.objective,)
-        )
+        self._pool = started_pool(self.objective, self.workers)
         return self
 
     def __exit__(
@@ -103,7 +88,7 @@ class Search:
     def evaluate_uncounted(self, points: Sequence[Sequence[float]]) -> list[NDArray[np.float64]]:
         """The misfits at several points, side by side."""
         assert self._pool is not None
-        return list(self._pool.map(_misfits, [list(map(float, p)) for p in points]))
+        return list(self._pool.map(misfits_at, [list(map(float, p)) for p in points]))
 
     def update_best(self, z: Sequence[float], misfits: NDArray[np.float64], stage: str) -> float:
         """The loss of a point, which is kept, on disk too, where that is the least so far."""

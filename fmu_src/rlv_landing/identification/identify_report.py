@@ -11,10 +11,11 @@ from ..quantities import MODES
 from ..validation.paper import LEVELS
 from .determination import determinations
 from .identify import Search
+from .measured.series import CurveFit
 from .objective import Objective
 from .search_folder import Best
 from .soft_count import TOLERANCE
-from .targets import Fit, fit_of, landed, paper_targets, targets_of_tests
+from .targets import Fit, fit_of, paper_targets, targets_of_tests
 
 
 def write_report(search: Search, parameters: Parameters) -> str:
@@ -27,10 +28,30 @@ def write_report(search: Search, parameters: Parameters) -> str:
     lines = ["# Identification", "", _story(search.best), ""]
     if objective.targets:
         lines += _fit_lines(objective, parameters)
+    if objective.series:
+        lines += _curve_lines(objective, parameters)
     lines += _determination_lines(search)
     if objective.conditions:
         lines += _condition_lines(objective, parameters)
     return "\n".join(lines) + "\n"
+
+
+def short_report(objective: Objective, parameters: Parameters) -> list[str]:
+    """The fit in a line for all scalars, and one for each curve.
+
+    Raises:
+        LandingError: A landing cannot be run or read.
+    """
+    lines = []
+    if objective.targets:
+        fits = fit_of(parameters, objective.targets, sensors=objective.sensors)
+        within = _counted(np.array([f.error for f in fits]))
+        lines.append(f"scalars within 5 / 10 / 20 %: {within}")
+    lines += [
+        f"{c.mode}: {c.name}: RMS {c.rms:.4g} {c.unit}".rstrip() + f" ({100 * c.relative:.1f} %)"
+        for c in _curve_fits(objective, parameters)
+    ]
+    return lines
 
 
 def _story(best: Best) -> str:
@@ -45,8 +66,8 @@ def _story(best: Best) -> str:
             f"{best.missed:.2f} at the best point."
         )
     return (
-        f"{story} The loss is the sum of ln(1 + misfit^2), "
-        f"a misfit of one being {100 * TOLERANCE:g} % of a scalar."
+        f"{story} The loss is the sum of ln(1 + misfit^2), a misfit of one being "
+        f"{100 * TOLERANCE:g} % of a scalar, or an RMS of so much of a curve's own."
     )
 
 
@@ -63,13 +84,39 @@ def _fit_lines(objective: Objective, parameters: Parameters) -> list[str]:
     lines += [
         "## Fit of every scalar",
         "",
-        "| scalar | wanted | ours | error | plain error |",
-        "|---|---:|---:|---:|---:|",
+        "| scalar | unit | wanted | ours | residual | error | plain error | weight |",
+        "|---|---|---:|---:|---:|---:|---:|---:|",
     ]
     lines += [
-        f"| {f.wanted.id} | {f.wanted.value:g} | {f.ours:.4g} | {100 * f.error:+.1f} % "
-        f"| {100 * f.plain_error:+.1f} % |"
+        f"| {f.wanted.label} | {f.wanted.unit} | {f.wanted.value:g} | {f.ours:.4g} "
+        f"| {f.ours - f.wanted.value:+.3g} | {100 * f.error:+.1f} % "
+        f"| {100 * f.plain_error:+.1f} % | {f.wanted.weight:g} |"
         for f in fits
+    ]
+    return [*lines, ""]
+
+
+def _curve_fits(objective: Objective, parameters: Parameters) -> list[CurveFit]:
+    return [
+        fit
+        for s in objective.series
+        for fit in s.fits(objective.landing(parameters, s.mode).history)
+    ]
+
+
+def _curve_lines(objective: Objective, parameters: Parameters) -> list[str]:
+    lines = [
+        "## Fit of every curve",
+        "",
+        "Differences are ours - measured, over all samples; relative is to the curve's own RMS.",
+        "",
+        "| curve | unit | samples | RMS | largest | relative |",
+        "|---|---|---:|---:|---:|---:|",
+    ]
+    lines += [
+        f"| {c.mode}: {c.name} | {c.unit} | {c.samples} | {c.rms:.4g} | {c.largest:.4g} "
+        f"| {100 * c.relative:.1f} % |"
+        for c in _curve_fits(objective, parameters)
     ]
     return [*lines, ""]
 
@@ -78,10 +125,9 @@ def counted_both_ways(fits: list[Fit]) -> str:
     """The counts on the scalars' scales, and by the plain relative error of every scalar."""
     on_scale = _counted(np.array([f.error for f in fits]))
     plain = _counted(np.array([f.plain_error for f in fits]))
-    return (
-        f"**{on_scale}** (near-zero scalars on their curve's scale; "
-        f"by the plain relative error {plain})"
-    )
+    printed = all(f.wanted.printed for f in fits)
+    scale = "near-zero scalars on their curve's scale" if printed else "on their scales"
+    return f"**{on_scale}** ({scale}; by the plain relative error {plain})"
 
 
 def _counted(errors: NDArray[np.float64]) -> str:
@@ -91,12 +137,12 @@ def _counted(errors: NDArray[np.float64]) -> str:
 
 
 def _other_mode_predicted(parameters: Parameters, objective: Objective) -> str:
-    """A sentence on the landing mode that was not fitted; empty if both were.
+    """A sentence on the paper's other landing mode; empty if both or other numbers were fitted.
 
     It lands with this vehicle and the fitted mode's touchdown state. Table 2 gives both drop tests
     the same state, so that nothing of the other mode enters the prediction.
     """
-    if len(objective.modes) != 1:
+    if len(objective.modes) != 1 or not objective.of_paper:
         return ""
     (fitted,) = objective.modes
     (other,) = (m for m in MODES if m != fitted)
@@ -141,7 +187,7 @@ def _determination_lines(search: Search) -> list[str]:
 
 def _condition_lines(objective: Objective, parameters: Parameters) -> list[str]:
     modes = objective.modes
-    histories = [landed(parameters, mode) for mode in modes]
+    histories = [objective.landing(parameters, mode).history for mode in modes]
     lines = [
         "",
         "## Conditions",

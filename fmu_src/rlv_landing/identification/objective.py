@@ -3,57 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from hashlib import sha256
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import LandingError, unknown
-from ..history import History
+from ..errors import LandingError
 from ..parameters import Parameters
 from ..quantities import MODES
 from .conditions import CONDITIONS, Condition
 from .free_numbers import FreeNumbers
+from .measured.series import Series
 from .soft_count import TOLERANCE, SoftCount
-from .targets import Wanted, landed, read, reading_of
+from .targets import Landed, Wanted, paper_targets, targets_of_tests
 
 LARGEST_MISFIT = 2.0
-CURVE_SAMPLES = 100
-
-
-@dataclass(frozen=True)
-class Series:
-    """Measured curves of one landing of `mode`.
-
-    Raises:
-        LandingError: The mode is unknown.
-    """
-
-    mode: str
-    curves: History
-
-    def __post_init__(self) -> None:
-        if self.mode not in MODES:
-            raise unknown("landing mode", self.mode, MODES)
-
-    @property
-    def samples(self) -> NDArray[np.intp]:
-        """The samples that are compared: all, or CURVE_SAMPLES spread over the curve."""
-        count = min(len(self.curves), CURVE_SAMPLES)
-        return np.unique(np.linspace(0, len(self.curves) - 1, count).round().astype(np.intp))
-
-    def misfits(self, history: History) -> list[float]:
-        """The misfits of a landing, column by column.
-
-        The squares of a column's misfits add up to its relative mean square over TOLERANCE^2.
-        """
-        at, found = self.samples, []
-        for name in self.curves.names:
-            wanted = self.curves[name]
-            ours = np.interp(self.curves.time[at], history.time, history[name])
-            scale = TOLERANCE * np.sqrt(np.mean(wanted**2) * len(at))
-            found += ((ours - wanted[at]) / scale).tolist()
-        return found
 
 
 class Objective:
@@ -69,6 +33,9 @@ class Objective:
         conditions: The conditions; the default's limits are those of the paper's prototype.
         sensors: Whether to read scalars from what the tests' sensors would have recorded
             (`rlv_landing.validation.sensors`), as fits the tests' numbers.
+
+    Raises:
+        LandingError: Curves lie outside the landing of their mode, as `Series.check_times`.
     """
 
     def __init__(
@@ -87,8 +54,14 @@ class Objective:
         self.sensors = sensors
         present = {t.mode for t in self.targets} | {s.mode for s in self.series}
         self.modes = [m for m in MODES if m in present]
-        self.soft_count = SoftCount(len(self.targets), len(self.modes) * len(self.conditions))
-        self.labels = [t.id for t in self.targets]
+        for s in self.series:
+            s.check_times(free.base.for_mode(s.mode).drop.contact_time)
+        self.soft_count = SoftCount(
+            len(self.targets),
+            len(self.modes) * len(self.conditions),
+            tuple(t.weight for t in self.targets),
+        )
+        self.labels = [t.label for t in self.targets]
         self.labels += [
             f"{s.mode}: {n} at {t:g} s"
             for s in self.series
@@ -96,6 +69,20 @@ class Objective:
             for t in s.curves.time[s.samples]
         ]
         self.labels += [f"{m}: {c.name}" for m in self.modes for c in self.conditions]
+
+    @property
+    def of_paper(self) -> bool:
+        """Whether the targets are just what the paper prints of the modes that are fitted."""
+        printed = targets_of_tests() if self.sensors else paper_targets()
+        return not self.series and self.targets == tuple(t for t in printed if t.mode in self.modes)
+
+    def fingerprint(self) -> str:
+        """A digest of the curves and of the values that the search starts from, free or not."""
+        base = self.free.base
+        digest = sha256(repr([list(base.for_mode(mode).items()) for mode in self.modes]).encode())
+        for s in self.series:
+            digest.update(s.curves.time.tobytes() + s.curves.data.tobytes())
+        return digest.hexdigest()
 
     def misfits(self, z: Iterable[float]) -> NDArray[np.float64]:
         """The misfits at `z`, one for each of `labels`.
@@ -109,28 +96,30 @@ class Objective:
             return np.full(len(self.labels), LARGEST_MISFIT / TOLERANCE)
 
     def _misfits(self, parameters: Parameters) -> NDArray[np.float64]:
-        histories = {mode: self._land(parameters, mode) for mode in self.modes}
-        found = self._scalar_misfits(histories)
+        landings = {mode: self.landing(parameters, mode) for mode in self.modes}
+        found = self._scalar_misfits(landings)
         for s in self.series:
-            found += s.misfits(histories[s.mode])
-        found += [c.departure(histories[mode]) for mode in self.modes for c in self.conditions]
+            found += s.misfits(landings[s.mode].history)
+        found += [
+            c.departure(landings[mode].history) for mode in self.modes for c in self.conditions
+        ]
         return np.array(found)
 
-    def _scalar_misfits(self, histories: dict[str, History]) -> list[float]:
-        readings = {
-            mode: reading_of(history, sensors=self.sensors)
-            for mode, history in histories.items()
-            if any(t.mode == mode for t in self.targets)
-        }
+    def _scalar_misfits(self, landings: dict[str, Landed]) -> list[float]:
+        ours: dict[str, float] = {}
+        for mode, landing in landings.items():
+            own = [t for t in self.targets if t.mode == mode]
+            ours.update(zip((t.label for t in own), landing.read(own) if own else ()))
         found = []
         for t in self.targets:
-            error = (read(readings[t.mode], t) - t.value) / t.scale
-            found.append((error if np.isfinite(error) else LARGEST_MISFIT) / TOLERANCE)
+            error = (ours[t.label] - t.value) / t.scale
+            found.append(t.weight * (error if np.isfinite(error) else LARGEST_MISFIT) / TOLERANCE)
         return found
 
-    def _land(self, parameters: Parameters, mode: str) -> History:
-        end = max([0.0, *(float(s.curves.time[-1]) for s in self.series if s.mode == mode)])
-        return landed(parameters, mode, end)
+    def landing(self, parameters: Parameters, mode: str) -> Landed:
+        """The landing of `parameters` in one of the modes, as long as the curves need it."""
+        end = max([0.0, *(s.end for s in self.series if s.mode == mode)])
+        return Landed(parameters, mode, end, sensors=self.sensors)
 
     def loss(self, z: Iterable[float]) -> float:
         """Cauchy's loss at `z`, as `cauchy_loss`."""

@@ -144,7 +144,7 @@ def quantity(name: str) -> Quantity:
     return replace(q, name=name)
 
 
-def with_bounds(name: str, lo: float, hi: float, prior: Prior | None) -> Prior:
+def with_bounds(name: str, lo: float, hi: float, *, by_mode: bool) -> Prior:
     """The prior of a number whose bounds the user gives.
 
     It is logarithmic where both bounds are positive and their ratio is above 3.
@@ -153,7 +153,7 @@ def with_bounds(name: str, lo: float, hi: float, prior: Prior | None) -> Prior:
         name: The parameter, or `ROD_AREA`.
         lo: The lower bound, SI.
         hi: The upper bound, SI.
-        prior: The number's own prior; None where it has none.
+        by_mode: Whether each landing mode has its own number.
 
     Raises:
         LandingError: There is no such number, or the bounds are empty or outside the parameter's.
@@ -172,5 +172,5 @@ def with_bounds(name: str, lo: float, hi: float, prior: Prior | None) -> Prior:
         hi,
         "given by the user",
         logarithmic=lo > 0.0 and hi / lo > 3.0,
-        by_mode=prior is not None and prior.by_mode,
+        by_mode=by_mode,
     )

@@ -79,9 +79,10 @@ class SearchFolder:
         free = objective.free
         self._search: dict[str, Any] = {
             "free numbers": {n: [p.lo, p.hi] for n, (p, _) in zip(free.labels, free.columns)},
-            "targets": {t.id: t.value for t in objective.targets},
+            "targets": {t.label: [t.value, t.scale, t.weight] for t in objective.targets},
             "misfits": objective.labels,
             "sensors": objective.sensors,
+            "curves or values that are not free": objective.fingerprint(),
         }
 
     def create(self) -> None:

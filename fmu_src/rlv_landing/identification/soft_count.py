@@ -33,24 +33,28 @@ class SoftCount:
     Attributes:
         scalars: The number of scalars, whose misfits come first.
         conditions: The number of conditions, whose misfits come last.
+        factors: The factors of the scalars' misfits and of their misses' cost; empty: all 1.
     """
 
     scalars: int
     conditions: int
+    factors: tuple[float, ...] = ()
 
     def missed(self, misfits: NDArray[np.float64], softness: float = JUDGED) -> float:
         """The cost of the scalars that miss 5, 10 and 20 %, plus the conditions' penalty.
 
         A scalar of error e counts 1/(1 + exp((p - e)/(softness p))) at the bound p, times the
-        bound's WORTH. A small part of Cauchy's loss draws far ones nearer. [derived]
+        bound's WORTH and the scalar's factor. A small part of Cauchy's loss draws far ones nearer.
+        [derived]
 
         Args:
             misfits: The misfits, as `Objective.misfits`.
             softness: The width of a bound as a part of it.
         """
-        scalars, conditions = self._parts(misfits)
-        counted = (np.array(WORTH) @ _soft_misses(np.abs(scalars) * TOLERANCE, softness)).sum()
-        far = FAR_PULL * np.log1p(scalars**2).sum()
+        factors, scalars, conditions = self._parts(misfits)
+        missed = np.array(WORTH) @ _soft_misses(np.abs(scalars) * TOLERANCE, softness)
+        counted = (factors * missed).sum()
+        far = FAR_PULL * (factors * np.log1p(scalars**2)).sum()
         return float(counted + far + CONDITION_PRICE * conditions.sum())
 
     def weights(self, misfits: NDArray[np.float64], softness: float) -> NDArray[np.float64]:
@@ -62,7 +66,7 @@ class SoftCount:
             misfits: The misfits, as `Objective.misfits`.
             softness: The width of a bound as a part of it.
         """
-        scalars, conditions = self._parts(misfits)
+        factors, scalars, conditions = self._parts(misfits)
         sizes = np.maximum(np.abs(scalars), 1e-3)
         misses = _soft_misses(sizes * TOLERANCE, softness)
         worth = np.array(WORTH) / np.array(BOUNDS)
@@ -70,14 +74,19 @@ class SoftCount:
         departed = conditions > 0.0
         priced = CONDITION_PRICE / np.maximum(conditions, NEAR_CONDITION)
         weights = np.zeros(len(misfits))
-        weights[: self.scalars] = slopes / sizes + 2.0 * FAR_PULL / (1.0 + sizes**2)
+        # the misfit is the factor times the error's, and so is its cost
+        pull = 2.0 * FAR_PULL / (1.0 + sizes**2)
+        weights[: self.scalars] = (slopes / sizes + pull) / factors
         weights[len(misfits) - self.conditions :] = np.where(departed, priced, 0.0)
         return weights
 
     def _parts(
         self, misfits: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        return misfits[: self.scalars], misfits[len(misfits) - self.conditions :]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """The scalars' factors, their misfits without these, and the conditions' misfits."""
+        factors = np.array(self.factors) if self.factors else np.ones(self.scalars)
+        scalars = misfits[: self.scalars] / factors
+        return factors, scalars, misfits[len(misfits) - self.conditions :]
 
 
 def _soft_misses(errors: NDArray[np.float64], softness: float) -> NDArray[np.float64]:

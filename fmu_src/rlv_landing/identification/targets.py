@@ -1,29 +1,29 @@
-"""The numbers that an identification wants to reach, and those that landings reach of them."""
+"""The numbers that an identification wants to reach, and those that landings reach of them.
+
+They are scalars that the paper prints, or responses of sweeps, such as
+`leg[1].main_strut.force.min`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from functools import cached_property
 
 import numpy as np
 
-from ..errors import LandingError, unknown
 from ..history import History
 from ..landing import Landing
 from ..parameters import Parameters
-from ..quantities import MODES, Quantity
-from ..text.files import read_csv
-from ..text.units import parse_unit
-from ..text.values import parse_value
+from ..quantities import MODES
+from ..studies.sweep.responses import Measure
+from ..studies.whole_landing import LATEST, whole_landing
+from ..text.units import DIMENSIONLESS, parse_unit
 from ..validation.paper import MEANINGS, RUN_AFTER_CONTACT, Reading, printed_scalars
 from ..validation.sensors import SAMPLING, through_sensors
 
 # peaks of a contact are read wrong by up to 10 % at 1 kHz: landings are read at the tests' sampling
 EVERY = 1.0 / SAMPLING
-# units of the paper's numbers
-SI_UNITS = {"N": "N", "s": "s", "mm": "m", "m/s2": "m/s2"}
-FIELDS = ("id", "value", "unit")
 
 
 @dataclass(frozen=True)
@@ -31,16 +31,30 @@ class Wanted:
     """A number to be reached.
 
     Attributes:
-        id: The id of the printed scalar that it stands for.
+        id: The id of a printed scalar, or the name of a response of sweeps.
         mode: The landing mode.
-        value: The value wanted, in the scalar's unit (N, s, mm, m/s2).
-        scale: The scale on which a difference is judged, in the same unit.
+        value: The value wanted, in `unit`.
+        scale: The scale on which a difference is judged, in `unit`.
+        unit: The unit: a printed scalar's own (N, s, mm, m/s2), of a response any of its dimension.
+        weight: A factor of its misfit.
     """
 
     id: str
     mode: str
     value: float
     scale: float
+    unit: str = ""
+    weight: float = 1.0
+
+    @property
+    def printed(self) -> bool:
+        """Whether it is one of the scalars that the paper prints."""
+        return self.id in MEANINGS
+
+    @property
+    def label(self) -> str:
+        """Its id; a response's with its landing mode."""
+        return self.id if self.printed else f"{self.mode}: {self.id}"
 
 
 @dataclass(frozen=True)
@@ -63,7 +77,7 @@ class Fit:
 
 def paper_targets() -> list[Wanted]:
     """The 48 numbers that the paper prints of its simulation, on the scale that judges them."""
-    return [Wanted(s.id, s.mode, s.simulation, s.scale) for s in printed_scalars()]
+    return [Wanted(s.id, s.mode, s.simulation, s.scale, s.unit) for s in printed_scalars()]
 
 
 def targets_of_tests() -> list[Wanted]:
@@ -72,53 +86,10 @@ def targets_of_tests() -> list[Wanted]:
     Where it prints two tests, the mean.
     """
     return [
-        Wanted(s.id, s.mode, s.test, s.scale) for s in printed_scalars() if not np.isnan(s.test)
+        Wanted(s.id, s.mode, s.test, s.scale, s.unit)
+        for s in printed_scalars()
+        if not np.isnan(s.test)
     ]
-
-
-def read_targets(path: Path) -> list[Wanted]:
-    """Targets from a CSV file `id,value,unit`.
-
-    Ids are the paper's (`rlv-landing validate` prints them), values measured ones in any unit of
-    the id's dimension.
-
-    Raises:
-        LandingError: There is no such file or column, an id is unknown, or a value is not a finite
-            number or has the wrong unit.
-    """
-    targets = [_target(path, line, row) for line, row in _rows(path)]
-    if not targets:
-        raise LandingError(f"{path} holds no targets; write a line for each: id,value,unit")
-    return targets
-
-
-def _target(path: Path, line: int, row: dict[str, str]) -> Wanted:
-    known = {s.id: s for s in printed_scalars()}
-    for field in FIELDS:
-        if not row.get(field):
-            raise LandingError(f"{path}, line {line}: no {field}; columns are {', '.join(FIELDS)}")
-    if row["id"] not in known:
-        raise unknown(f"scalar in {path}, line {line},", row["id"], known)
-    s = known[row["id"]]
-    q = Quantity(SI_UNITS[s.unit], s.quantity, name=s.id, display_unit=s.unit)
-    try:
-        value = parse_unit(s.unit).from_si(float(parse_value(q, row["value"], row["unit"])))
-    except LandingError as e:
-        raise LandingError(f"{path}, line {line}: {e}") from None
-    near_zero = abs(value) < 0.1 * s.scale
-    return Wanted(s.id, s.mode, value, s.scale if near_zero else abs(value))
-
-
-def _rows(path: Path) -> Iterable[tuple[int, dict[str, str]]]:
-    names: list[str] = []
-    for line, row in read_csv(
-        path, "targets", f"targets {path} cannot be read: there is no such file"
-    ):
-        cells = [cell.strip() for cell in row]
-        if names:
-            yield line, dict(zip(names, cells))
-        else:
-            names = cells
 
 
 def landed(parameters: Parameters, mode: str, end: float = 0.0) -> History:
@@ -133,23 +104,66 @@ def landed(parameters: Parameters, mode: str, end: float = 0.0) -> History:
     return Landing(own).run(max(own.drop.contact_time + RUN_AFTER_CONTACT + 0.02, end), EVERY)
 
 
-def reading_of(history: History, *, sensors: bool) -> Reading:
-    """The reading of a history, or of what the tests' sensors would have recorded of it.
+class Landed:
+    """The landing of `parameters` in one mode, run when it is first needed.
 
-    Raises:
-        LandingError: As `Reading`.
+    Args:
+        parameters: The parameters.
+        mode: The landing mode.
+        end: The time [s] until which curves need the landing.
+        sensors: Whether to read numbers from what the tests' sensors would have recorded.
     """
-    return Reading(through_sensors(history) if sensors else history)
+
+    def __init__(
+        self, parameters: Parameters, mode: str, end: float = 0.0, *, sensors: bool = False
+    ) -> None:
+        self._parameters = parameters
+        self._mode = mode
+        self._end = end
+        self._sensors = sensors
+
+    @cached_property
+    def history(self) -> History:
+        """The landing as long as the paper's scalars and the curves need it, see `landed`."""
+        return landed(self._parameters, self._mode, self._end)
+
+    @cached_property
+    def reading(self) -> Reading:
+        """The reading of the paper's scalars."""
+        return Reading(self._sensed(self.history))
+
+    @cached_property
+    def _whole(self) -> History:
+        """The landing until it is decided, as in sweeps; at most 10 s after the contact."""
+        own = self._parameters.for_mode(self._mode)
+        return self._sensed(whole_landing(Landing(own), own.drop.contact_time + LATEST, EVERY))
+
+    def _sensed(self, history: History) -> History:
+        return through_sensors(history) if self._sensors else history
+
+    def read(self, wanted: Sequence[Wanted]) -> list[float]:
+        """The numbers that stand beside those wanted, in their units; NaN where there is none.
+
+        Raises:
+            LandingError: As `Landing` and `Reading`.
+        """
+        names = [t.id for t in wanted if not t.printed]
+        found = dict(zip(names, Measure(names)(self._whole, 0))) if names else {}
+        return [self._printed(t) if t.printed else _in_unit(t, found[t.id]) for t in wanted]
+
+    def _printed(self, wanted: Wanted) -> float:
+        meaning, leg = MEANINGS[wanted.id]
+        return meaning(self.reading, leg)
 
 
-def read(reading: Reading, wanted: Wanted) -> float:
-    """The number of a landing that stands beside the wanted one, in its unit; NaN if none."""
-    meaning, leg = MEANINGS[wanted.id]
-    return meaning(reading, leg)
+def _in_unit(wanted: Wanted, value: float | None) -> float:
+    if value is None or not np.isfinite(value):
+        return float("nan")
+    return (parse_unit(wanted.unit) if wanted.unit else DIMENSIONLESS).from_si(float(value))
 
 
 def fit_of(parameters: Parameters, wanted: Iterable[Wanted], *, sensors: bool = False) -> list[Fit]:
-    """What landings of `parameters` reach of the wanted numbers.
+    """What landings of `parameters` reach of the wanted numbers, mode by mode.
 
     Args:
         parameters: The parameters.
@@ -160,9 +174,9 @@ def fit_of(parameters: Parameters, wanted: Iterable[Wanted], *, sensors: bool = 
         LandingError: As `Landing` and `Reading`.
     """
     wanted = list(wanted)
-    readings = {
-        mode: reading_of(landed(parameters, mode), sensors=sensors)
-        for mode in MODES
-        if any(t.mode == mode for t in wanted)
-    }
-    return [Fit(t, read(readings[t.mode], t)) for t in wanted]
+    fits = []
+    for mode in MODES:
+        own = [t for t in wanted if t.mode == mode]
+        if own:
+            fits += list(map(Fit, own, Landed(parameters, mode, sensors=sensors).read(own)))
+    return fits

@@ -135,6 +135,6 @@ def to_toml(parameters: Parameters, *, comments: bool = True) -> str:
     for mode, own in parameters.by_mode.items():
         lines += ["", f"[mode.{mode}.drop]"] if own else []
         for name, value in own.items():
-            source = toml_text(parameters.source(name))
+            source = toml_text(parameters.source(name, mode))
             lines.append(f"{name.split('.')[1]} = {{ value = {value!r}, source = {source} }}")
     return "\n".join(lines) + "\n"

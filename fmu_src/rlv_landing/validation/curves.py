@@ -1,7 +1,9 @@
 """Measured curves from a CSV file.
 
 Its first column is `time`; the others are named as our outputs. A heading may have a unit in
-brackets, `leg[1].main_strut.force [kN]`; without one the column is in SI.
+brackets, `leg[1].main_strut.force [kN]` or `time [ms]`; without one the column is in SI. Stamps of
+a clock (seconds since 1970), and times whose steps cannot be those of a landing in the heading's
+unit, are refused with the remedy: which stamp is the landing's start is not guessed.
 """
 
 from __future__ import annotations
@@ -10,6 +12,7 @@ from math import isfinite
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import LandingError, unknown
 from ..history import History
@@ -18,6 +21,12 @@ from ..text.files import read_csv
 from ..text.units import Unit, UnitError, parse_number
 from ..text.values import number_in_si, split_heading, unit_of
 
+# times [s] from which on they are those of a clock, not of a landing
+EPOCH = 1e7
+# the largest time between samples [s] with which a damper's stroke shows at all, and the longest
+# record of a landing [s]
+COARSEST, LONGEST = 0.1 * (1.0 + 1e-9), 60.0
+FINER = (("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9))
 QUANTITIES = {"time": Quantity("s", "time", name="time"), **{q.name: q for q in OUTPUT_QUANTITIES}}
 
 
@@ -27,7 +36,8 @@ def read_curves(path: str | Path) -> History:
     Raises:
         LandingError: The file is missing, `time` is not its first column, a name is no output or
             comes twice, a unit is wrong, a value is not a finite number, a row has another length,
-            times do not rise, or there are fewer than two rows. The message names line and column.
+            times do not rise, are those of a clock or of another unit, or there are fewer than two
+            rows. The message names line and column.
     """
     path = Path(path)
     missing = f"there is no file {path} of measured curves"
@@ -40,6 +50,8 @@ def read_curves(path: str | Path) -> History:
             "measured curves need at least two"
         )
     values = np.array([_numbers(path, row, columns, line) for line, row in rows[1:]])
+    heading = rows[0][1][0].strip()
+    _check_clock(path, heading, values[:, 0])
     back = np.flatnonzero(np.diff(values[:, 0]) <= 0.0)
     if len(back):
         at = int(back[0])
@@ -47,7 +59,31 @@ def read_curves(path: str | Path) -> History:
             f"{path}, row {rows[at + 2][0]}: time = {values[at + 1, 0]:g} s does not come after "
             f"{values[at, 0]:g} s; sort the rows by time"
         )
+    _check_steps(path, heading, values[:, 0])
     return History(values[:, 0].copy(), names[1:], values[:, 1:].copy())
+
+
+def _check_clock(path: Path, heading: str, time: NDArray[np.float64]) -> None:
+    """Refuse stamps of a clock, with the remedy."""
+    if time[0] >= EPOCH:
+        raise LandingError(
+            f"{path}: {heading} begins at {time[0]:.10g} s, a stamp of a clock; subtract the stamp "
+            "of the first contact, and add the landing's time of it, drop.contact_time (stamps in "
+            "ms or us: head the column time [ms] or time [us])"
+        )
+
+
+def _check_steps(path: Path, heading: str, time: NDArray[np.float64]) -> None:
+    """Refuse times that rise, but not as those of a landing in the heading's unit."""
+    step, span = float(np.median(np.diff(time))), float(time[-1] - time[0])
+    if step > COARSEST or span > LONGEST:
+        fine = (unit for unit, size in FINER if span * size <= LONGEST and step * size <= COARSEST)
+        unit = next(fine, "ms")
+        raise LandingError(
+            f"{path}: {heading} rises by {step:g} s a row and spans {span:g} s; a landing needs at "
+            f"most {COARSEST:g} s and {LONGEST:g} s: if it is in {unit}, head the column "
+            f"time [{unit}]; else record it finer, or leave out what is no landing"
+        )
 
 
 def _columns(path: Path, header: list[str]) -> list[tuple[str, Unit]]:

@@ -1,0 +1,1 @@
+"""What a user measured of landings: scalars and curves, as targets of an identification."""
