@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable, Mapping
+from typing import cast
 
 from .core import (
     AUXILIARY_STRUTS,
@@ -20,15 +21,19 @@ from .core import (
     Planar,
     Solver,
 )
+from .core.access import BALANCE, BODY_OUTPUTS
+from .core.struts.fluid import fluid
 from .core.struts.kinds import auxiliary_strut, auxiliary_strut_energy
 from .parameters import PARAMETER_QUANTITIES, Parameters, azimuth
 from .quantities import LEGS, MODES
 from .touchdown import AT_REST, FreeFlight, GroundMotion
 
 # Typical size of each state: the absolute part of the error that is allowed is rtol times this.
-# Accounts count in no error.
+# Accounts count in no error; theirs is what the energy balance is measured by.
 BODY_SCALE = BodyState(x=0.1, y=0.1, pitch=0.1, vx=1.0, vy=1.0, pitch_rate=1.0)
 LEG_SCALE = LegState(r=0.1, h=0.1, vr=1.0, vh=1.0, z1=1e5, z2=1e5, q1=1e-3, q2=1e-3)
+# [J], of a vehicle that has none
+LEAST_ENERGY = 1e-3
 # [m/s2], so that a footpad's stiffness does not depend on where the vehicle lands
 STANDARD_GRAVITY = 9.80665
 # A smaller friction coefficient counts as 0: it is less than the integrator's tolerance, and its
@@ -66,6 +71,7 @@ def leg_models(parameters: Parameters) -> list[LegModel]:
         "auxiliary_kind": _place(AUXILIARY_STRUTS, "elastic-with-play" if play else "elastic"),
         "friction_kind": _place(FRICTION_LAWS, parameters.ground.friction_law),
         "mu": mu if mu >= LEAST_FRICTION else 0.0,
+        "fill": liquid_fill(parameters),
         "K_t": tangential_stiffness(parameters),
         "zone": parameters.ground.slip_zone * parameters.ground.stick_displacement,
         "Lb": -parameters.main_strut.joint_depth,
@@ -84,6 +90,27 @@ def bearing_nothing_at_rest(leg: LegModel) -> LegModel:
     plain = leg._replace(F_0=0.0, U_0=0.0)
     force = auxiliary_strut(0.0, 0.0, plain).force
     return plain._replace(F_0=force, U_0=auxiliary_strut_energy(0.0, plain))
+
+
+def liquid_fill(parameters: Parameters) -> float:
+    """Mass of the liquid in both chambers over its density at ambient pressure [m3]."""
+    m = parameters.main_strut
+    air = (m.air_fraction, m.air_exponent)
+    stiffness = (m.bulk_modulus, m.bulk_modulus_slope)
+    charged = fluid(m.charge_pressure, *air, *stiffness, m.ambient_pressure)
+    return (m.volume_upper + m.volume_lower) / charged.v
+
+
+def touchdown_energy(parameters: Parameters) -> float:
+    """Energy [J] that a landing has to get rid of: the kinetic energy at first contact, and the
+    weight times a leg's stroke.
+    """
+    vehicle, drop = parameters.vehicle, parameters.drop
+    mass = vehicle.mass + vehicle.footpad_mass * len(LEGS)
+    moving = 0.5 * mass * (drop.horizontal_velocity**2 + drop.vertical_velocity**2)
+    turning = 0.5 * vehicle.inertia * drop.pitch_rate**2
+    fall = mass * parameters.ground.gravity * parameters.main_strut.stroke_max
+    return max(moving + turning + fall, LEAST_ENERGY)
 
 
 def tangential_stiffness(parameters: Parameters) -> float:
@@ -112,8 +139,9 @@ def build_system(parameters: Parameters, kind: type[Planar] = Planar) -> Planar:
     pure core's class.
     """
     legs = leg_models(parameters)
+    energy = touchdown_energy(parameters)
     scale = flat_state(
-        BODY_SCALE, [LEG_SCALE] * len(legs), Accounts(*(1.0 for _ in Accounts._fields))
+        BODY_SCALE, [LEG_SCALE] * len(legs), Accounts(*(energy for _ in Accounts._fields))
     )
     relative = flat_state(BODY_RELATIVE, [LEG_RELATIVE] * len(legs), NO_ENERGY)
     return kind(body_model(parameters), legs, leg_places(parameters), scale, relative)
@@ -164,7 +192,7 @@ def begin(
     solver: Solver, parameters: Parameters, inputs: Inputs = NO_INPUTS, rates: Inputs = NO_INPUTS
 ) -> None:
     """Take a solver to the start of the parameters' landing: time 0, counts 0, the `inputs` and
-    their `rates`.
+    their `rates`, an energy balance of 0.
 
     Raises LandingError as `start_state`; nothing is changed then.
     """
@@ -175,6 +203,10 @@ def begin(
     ):
         for i, value in enumerate(numbers):
             target[i] = value
+    system = cast(Planar, solver.system)
+    system.energy_start = 0.0
+    solver.start(0.0)
+    system.energy_start = solver.last[BODY_OUTPUTS + BALANCE]
     solver.start(0.0)
 
 

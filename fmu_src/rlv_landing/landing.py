@@ -127,10 +127,6 @@ class Landing:
         begin(self._solver, self.parameters, inputs, rates)
         self._inputs.begin()
         self._time = 0.0
-        self._system.energy_start = 0.0
-        self._out_time = inf
-        self._system.energy_start = self.get("energy.balance")
-        self._solver.start(0.0)
         self._out_time = inf
 
     def set_inputs(self, values: Mapping[str, Any], rates: Mapping[str, Any] | None = None) -> None:

@@ -313,6 +313,12 @@ class Parameters:
                 f"main_strut.stroke_max = {m.stroke_max:g} m sweeps {swept:g} m3 of main_strut.volume_lower = {m.volume_lower:g} m3; "
                 "at most 95 % may be swept: shorten the stroke or enlarge the volume"
             )
+        softest = m.bulk_modulus / m.bulk_modulus_slope
+        if m.ambient_pressure >= 0.9 * softest:
+            raise LandingError(
+                f"main_strut.ambient_pressure = {m.ambient_pressure:g} Pa leaves a liquid of main_strut.bulk_modulus = {m.bulk_modulus:g} Pa no "
+                f"stiffness at 0 Pa; stay below 0.9 bulk_modulus/bulk_modulus_slope = {0.9 * softest:g} Pa"
+            )
         if m.area_upper > m.area_lower:
             raise LandingError(
                 f"main_strut.area_upper = {m.area_upper:g} m2 (annulus) is above main_strut.area_lower = {m.area_lower:g} m2 (bore)"

@@ -12,11 +12,12 @@ from rlv_landing.assembly import leg_models
 from rlv_landing.core.ground.kinds import ground_force
 from rlv_landing.core.ground.normal import damping_ramp, normal_force
 from rlv_landing.core.ground.paper_friction import friction_along
-from rlv_landing.core.records import FootMotion
+from rlv_landing.core.leg import leg_forces, without_excess
+from rlv_landing.core.records import FootMotion, LegState
 from rlv_landing.core.struts.elastic import elastic
 from rlv_landing.core.struts.end_stops import stop_force
-from rlv_landing.core.struts.fluid import fluid
 from rlv_landing.core.struts.liquid_spring import (
+    chamber,
     liquid_spring,
     orifice_flow,
     orifice_slope,
@@ -57,16 +58,85 @@ def test_end_stops_only_push_back_and_only_dissipate(overlap, v):
     assert power >= -1e-9
 
 
-@given(st.floats(0.0, 0.03), speeds, st.floats(2e3, 1e7), st.floats(2e3, 1e7))
-def test_chambers_keep_the_liquid_mass(s, v, P1, P2):
-    """d(rho V)/dt of both chambers together is zero whatever the state: rho = rho0/v(P)."""
-    _, dP1, dP2, *_ = liquid_spring(s, v, P1, P2, P)
-    constants = (P.x_air, P.n_air, P.B0, P.kB, P.Pa)
-    v1, dv1, _ = fluid(P1, *constants)
-    v2, dv2, _ = fluid(P2, *constants)
-    V1, V2 = P.V10 + P.A1 * s, P.V20 - P.A2 * s
-    rates = (P.A1 * v / v1, -V1 * dv1 * dP1 / v1**2, -P.A2 * v / v2, -V2 * dv2 * dP2 / v2**2)
-    assert sum(rates) == approx(0.0, abs=1e-12 * max(map(abs, rates)) + 1e-18)
+# strokes beyond both ends, and chambers' states from deep in a cavity up
+strokes = st.floats(-0.2, 0.8)
+states = st.one_of(st.floats(-200.0, 100.0), st.floats(10.0, 1e7))
+
+
+@given(strokes, speeds, states, states)
+def test_chambers_keep_the_liquid_mass(s, v, z1, z2):
+    """The mass in parts of the fill is 1 + excess; its rate is zero whatever the state."""
+    given = liquid_spring(s, v, z1, z2, P)
+    step = 1e-6
+    by_stroke = (
+        liquid_spring(s + step, v, z1, z2, P).excess - liquid_spring(s - step, v, z1, z2, P).excess
+    ) / (2.0 * step)
+    rates = (by_stroke * v, given.excess_1 * given.dz1, given.excess_2 * given.dz2)
+    assert sum(rates) == approx(0.0, abs=1e-5 * max(map(abs, rates)) + 1e-9)
+
+
+@given(strokes, states, states)
+def test_slopes_of_the_excess_are_those_by_the_states(s, z1, z2):
+    given = liquid_spring(s, 0.0, z1, z2, P)
+    for slope, d1, d2 in (
+        (given.excess_1, 1e-4 * (10.0 + abs(z1)), 0.0),
+        (given.excess_2, 0.0, 1e-4 * (10.0 + abs(z2))),
+    ):
+        step = d1 + d2
+        assume(all(abs(z - 10.0) > 2.0 * step for z in (z1, z2)))  # where state and pressure part
+        high, low = (liquid_spring(s, 0.0, z1 + k * d1, z2 + k * d2, P) for k in (1, -1))
+        found = (high.excess - low.excess) / (2.0 * step)
+        assert slope == approx(found, rel=1e-3, abs=1e-13 + 1e-10 * abs(given.excess))
+        assert slope > 0.0
+
+
+@given(strokes, speeds, states, states)
+def test_what_the_piston_does_is_stored_or_lost(s, v, z1, z2):
+    """Power of the force = growth of what the liquid holds + what the passage dissipates."""
+    p = P._replace(Fc=0.0, Fs=0.0, kp=0.0, K_stop=0.0)
+    given = liquid_spring(s, v, z1, z2, p)
+    # a change of some pascals: above rounding, and small for a cavity
+    step = 5.0 / max(abs(given.dz1), abs(given.dz2), 1e6 * abs(v), 1.0)
+
+    def held(k):
+        at = (s + k * step * v, z1 + k * step * given.dz1, z2 + k * step * given.dz2)
+        return liquid_spring(at[0], v, at[1], at[2], p).held
+
+    growth = (held(1.0) - held(-1.0)) / (2.0 * step)
+    size = abs(given.force * v) + given.orifice
+    rounding = 1e-15 * p.B0 * (p.V10 + p.V20) / step
+    assert given.force * v == approx(growth + given.orifice, abs=1e-3 * size + 10.0 * rounding)
+
+
+@given(st.floats(1e-7, 1e-2), st.floats(1e-6, 1e-2), st.floats(-2.0, 2.0))
+def test_a_chamber_never_vanishes_and_its_area_is_its_slope(V0, area, travel):
+    step = 1e-6 * V0 / area
+    found = chamber(V0, area, travel)
+    low, high = (chamber(V0, area, travel + k * step).V for k in (-1, 1))
+    assert found.V >= 0.025 * V0
+    assert found.area == approx((high - low) / (2.0 * step), rel=1e-4, abs=1e-6 * area)
+    if V0 + area * travel >= 0.05 * V0:
+        assert found == (V0 + area * travel, area)
+
+
+@given(
+    states,
+    states,
+    st.one_of(st.floats(-0.5, -1e-7), st.floats(1e-7, 0.5), st.floats(-1e-4, 1e-4)),
+)
+def test_an_excess_is_taken_off_wherever_it_is(z1, z2, part):
+    """Of the liquid's mass: up to a half too much or too little, next to a cavity or in it."""
+    radius, height = P.Lc + 0.95, P.Ld - 0.63
+    leg = LegState(radius, height, 0.0, 0.0, z1, z2, 1e-4, 2e-4)
+    still = FootMotion(-1.0, 0.0, 0.0, 0.0)
+    filled = leg_forces(leg, still, P)
+    p = P._replace(fill=P.fill * (1.0 + filled.excess) / (1.0 + part))
+    forces = leg_forces(leg, still, p)
+    assert forces.excess == approx(part, rel=1e-6, abs=1e-12)
+    mended = without_excess(leg, forces, p)
+    assert abs(leg_forces(mended, still, p).excess) < 1e-9
+    assert mended[:4] == leg[:4]
+    assert mended[6:] == leg[6:]
 
 
 @given(st.floats(0.0, 0.03), speeds, st.floats(2e3, 1e7), st.floats(2e3, 1e7))

@@ -41,6 +41,11 @@ def leg_at(group: int) -> int:
     return access.BODY + access.LEG * group
 
 
+def chamber_state(power: float) -> float:
+    """A chamber's state [Pa]: from 10^3.7 Pa up a pressure, below in a cavity or next to it."""
+    return 10.0**power if power > 3.7 else 200.0 * (power - 3.5)
+
+
 def random_state(
     rng: np.random.Generator, mode: str, model: Vehicle3D, upright: float
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -73,7 +78,7 @@ def random_state(
         y[leg_at(g) : leg_at(g + 1)] = [
             *(rest[:2, 0] + rng.uniform(-0.04, 0.04, 2)),
             *rng.uniform(-2.0, 2.0, 2),
-            *10.0 ** rng.uniform(3.0, 7.5, 2),
+            *map(chamber_state, rng.uniform(3.0, 7.5, 2)),
             *rng.uniform(-1.5e-3, 1.5e-3, 2),
         ]
     if mode == "1-2-1":  # a leg in the symmetric plane neither slides nor sticks along z
@@ -247,6 +252,12 @@ LANDINGS = {
     "2-2 on a slope falling towards +x": ("2-2", SLOPE, Inputs(), 0.27),
     "1-2-1 on a slope falling towards -x, other legs first": ("1-2-1", LEANING, Inputs(), 0.27),
     "2-2 with force and moment": ("2-2", NEAR, LOADED, 0.27),
+    "2-2 with a chamber that cavitates and nearly closes": (
+        "2-2",
+        NEAR | {"main_strut.volume_upper": 2e-7, "main_strut.orifice_area_rebound": 4e-7},
+        Inputs(),
+        0.2,
+    ),
     "2-2 with play in the auxiliary struts' joints": ("2-2", NEAR | PLAY, Inputs(), 0.27),
     "1-2-1 on a slope with play in tension only": (
         "1-2-1",

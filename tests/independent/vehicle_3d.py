@@ -130,13 +130,30 @@ class Vehicle3D:
             A[rows, 14 + i] = -self.e_t[:, i]
         return A
 
+    def pressure(self, z: Array) -> tuple[Array, Array]:
+        """Absolute pressure [Pa] in a chamber of state `z` and its slope.
+
+        The pressure is the state itself, but below 10 Pa an exponential that never reaches 0.
+        """
+        fallen = np.exp(np.clip(z / 10.0 - 1.0, -150.0, 0.0))
+        return np.where(z < 10.0, 10.0 * fallen, z), np.where(z < 10.0, fallen, 1.0)
+
+    def chamber(self, whole: float, area: float, travel: Array) -> tuple[Array, Array]:
+        """Volume [m3] and its slope by the piston's travel.
+
+        The last 5 % of the `whole` are never displaced altogether.
+        """
+        past = 1.0 + area * travel / whole - 0.05
+        part = np.exp(np.minimum(past / 0.025, 0.0))
+        bent = whole * 0.025 * (1.0 + part)
+        return np.where(past < 0.0, bent, whole + area * travel), area * part
+
     def specific_volume(self, P: Array) -> tuple[Array, Array]:
         """Specific volume of liquid and air, and its slope [1/Pa].
 
         It is relative to that at ambient pressure.
         """
         d = self.damper
-        P = np.maximum(P, 1.0)
         swell = 1.0 + d.bulk_modulus_slope * (P - d.ambient_pressure) / d.bulk_modulus
         liquid = (1.0 - d.air_fraction) * swell ** (-1.0 / d.bulk_modulus_slope)
         air = d.air_fraction * (d.ambient_pressure / P) ** (1.0 / d.air_exponent)
@@ -145,26 +162,25 @@ class Vehicle3D:
     def main_strut(
         self, s: Array, v: Array, upper: Array, lower: Array
     ) -> tuple[Array, Array, Array]:
-        """Axial force [N], compression positive, and rates of the two pressures [Pa/s].
+        """Axial force [N], compression positive, and rates of the two chambers' states [Pa/s].
 
         The rates come from the mass balance of each chamber.
         """
         d = self.damper
+        (upper, lower), bend = self.pressure(np.array([upper, lower]))
+        upper_volume, upper_area = self.chamber(d.volume_upper, d.area_upper, s)
+        lower_volume, lower_area = self.chamber(d.volume_lower, d.area_lower, -s)
         volume, slope = self.specific_volume(np.array([upper, lower]))
         density = d.fluid_density / volume
-        stiffening = -density / volume * slope  # d(density)/dP
+        stiffening = -density / volume * slope * bend  # d(density)/d(state)
         mean = 0.5 * (density[0] + density[1])
         drop = lower - upper
         area = np.where(drop > 0.0, d.orifice_area_compression, d.orifice_area_rebound)
         mass_flow = (
             area * np.sqrt(2.0 * mean) * drop / (drop * drop + d.laminar_pressure**2) ** 0.25
         )
-        upper_rate = (mass_flow - density[0] * d.area_upper * v) / (
-            (d.volume_upper + d.area_upper * s) * stiffening[0]
-        )
-        lower_rate = (density[1] * d.area_lower * v - mass_flow) / (
-            (d.volume_lower - d.area_lower * s) * stiffening[1]
-        )
+        upper_rate = (mass_flow - density[0] * upper_area * v) / (upper_volume * stiffening[0])
+        lower_rate = (density[1] * lower_area * v - mass_flow) / (lower_volume * stiffening[1])
         gauge_upper, gauge_lower = upper - d.ambient_pressure, lower - d.ambient_pressure
         level = d.seal_coulomb + d.seal_pressure * 0.5 * (np.abs(gauge_upper) + np.abs(gauge_lower))
         seal = (level + d.seal_stribeck * np.exp(-((v / d.seal_stribeck_speed) ** 2))) * np.tanh(
@@ -176,7 +192,7 @@ class Vehicle3D:
             - out * np.maximum(1.0 - d.stop_damping * v, 0.0)
         )
         return (
-            gauge_lower * d.area_lower - gauge_upper * d.area_upper + seal + stop,
+            gauge_lower * lower_area - gauge_upper * upper_area + seal + stop,
             upper_rate,
             lower_rate,
         )

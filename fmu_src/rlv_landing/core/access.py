@@ -47,6 +47,10 @@ ENERGY_OUTPUTS = len(EnergyOutputs._fields)
 STATUS_OUTPUTS = len(StatusOutputs._fields)
 LEG_OUTPUTS = len(LegOutputs._fields)
 
+# where the energies that a user sees have what was dissipated, and their balance
+DISSIPATED = EnergyOutputs._fields.index("dissipated")
+BALANCE = EnergyOutputs._fields.index("balance")
+
 # where a leg's state has what may be stiff in it
 Z1 = LegState._fields.index("z1")
 Z2 = LegState._fields.index("z2")

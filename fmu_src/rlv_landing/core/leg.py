@@ -5,12 +5,19 @@ It knows neither the body's motion nor the mode.
 
 from __future__ import annotations
 
-from math import sqrt
+from math import fabs, sqrt
 
 from .ground.kinds import friction_energy, ground_force
 from .ground.normal import normal_energy
 from .records import FootMotion, LegForces, LegModel, LegState, LegStatus, StrutMotion
 from .struts.kinds import auxiliary_strut, auxiliary_strut_energy, main_strut, main_strut_status
+
+# how little is left, in parts, of an excess that has been taken off
+NOTHING_LEFT = 1e-12
+# the search for the states without it: how many corrections at most
+CORRECTIONS = 60
+# the first one's size, and where none is [the state's unit, Pa of a liquid spring]
+FIRST_REACH, FARTHEST = 1e3, 1e15
 
 
 def strut_motion(leg: LegState, joint_r: float, joint_h: float, length: float) -> StrutMotion:
@@ -67,6 +74,9 @@ def leg_forces(leg: LegState, foot: FootMotion, p: LegModel) -> LegForces:
         friction=ground.friction,
         held=strut.held,
         liquid_mass=strut.liquid_mass,
+        excess=strut.excess,
+        excess_1=strut.excess_1,
+        excess_2=strut.excess_2,
     )
 
 
@@ -83,3 +93,34 @@ def leg_status(leg: LegState, forces: LegForces, depth: float, p: LegModel) -> L
         pressure_upper=strut.pressure_upper,
         pressure_lower=strut.pressure_lower,
     )
+
+
+def without_excess(leg: LegState, forces: LegForces, p: LegModel) -> LegState:
+    """The leg with both states of its main strut law moved alike until the law's excess is gone.
+
+    Newton's steps, held between states known to have too little and too much, and no longer than a
+    reach that doubles: the excess grows with either state, but by many orders more in a cavity than
+    in a liquid, and deep in a cavity next to nothing.
+    """
+    moved = 0.0
+    low = -FARTHEST
+    high = FARTHEST
+    reach = FIRST_REACH
+    excess = forces.excess
+    slope = forces.excess_1 + forces.excess_2
+    for _ in range(CORRECTIONS):
+        if excess > 0.0:
+            high = moved
+        else:
+            low = moved
+        tried = min(max(moved - excess / slope, moved - reach), moved + reach)
+        if fabs(excess) < NOTHING_LEFT or tried == moved:
+            break
+        if tried <= low or tried >= high:
+            tried = 0.5 * (low + high)
+        moved = tried
+        reach *= 2.0
+        strut = main_strut(forces.stroke, forces.stroke_rate, leg.z1 + moved, leg.z2 + moved, p)
+        excess = strut.excess
+        slope = strut.excess_1 + strut.excess_2
+    return LegState(leg.r, leg.h, leg.vr, leg.vh, leg.z1 + moved, leg.z2 + moved, leg.q1, leg.q2)

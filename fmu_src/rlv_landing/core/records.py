@@ -58,8 +58,8 @@ class LegState(NamedTuple):
     h: float  # [m]
     vr: float  # [m/s]
     vh: float  # [m/s]
-    z1: float  # the main strut law's own; of a liquid spring the pressure in the upper chamber [Pa]
-    z2: float  # the main strut law's own; of a liquid spring the pressure in the lower chamber [Pa]
+    z1: float  # the main strut law's own; of a liquid spring the upper chamber's, see `struts.fluid` [Pa]
+    z2: float  # the main strut law's own; of a liquid spring the lower chamber's [Pa]
     q1: float  # the friction law's displacement along 1 [m]
     q2: float  # the friction law's displacement along 2 [m]
 
@@ -126,6 +126,7 @@ class LegModel(NamedTuple):
     A2: float
     V10: float
     V20: float
+    fill: float  # the liquid's mass over rho0 [m3]
     Pa: float
     rho0: float
     x_air: float
@@ -189,17 +190,27 @@ class LegPlace(NamedTuple):
 
 
 class FluidState(NamedTuple):
-    """The liquid with its air at a pressure, relative to that at ambient pressure."""
+    """The liquid with its air in a chamber, relative to that at ambient pressure."""
 
+    P: float  # absolute pressure, above 0 [Pa]
+    slope: float  # its derivative by the chamber's state
     v: float  # specific volume, 1 at ambient pressure
-    dv: float  # its derivative by pressure [1/Pa]
+    dv: float  # its derivative by the chamber's state [1/Pa]
     h: float  # energy that a flow carries: integral of v over pressure from the ambient one [J/m3]
+
+
+class Chamber(NamedTuple):
+    """A chamber's volume."""
+
+    V: float  # above 0 [m3]
+    area: float  # how fast it grows with the piston's motion away [m2]
 
 
 class StrutForce(NamedTuple):
     """What a main strut law gives.
 
-    A law without a passage, a seal or a stop gives 0 W for it, one without a liquid 0 kg.
+    A law without a passage, a seal or a stop gives 0 W for it, one without a liquid 0 kg, one
+    that conserves nothing an excess and slopes of 0.
     """
 
     force: float  # [N] compression positive
@@ -212,6 +223,9 @@ class StrutForce(NamedTuple):
     liquid_mass: float  # [kg]
     a1: float  # x = z2 - z1 decays: a change of x changes dz1 by a1 x [1/s]; 0 where nothing is stiff
     a2: float  # and dz2 by -a2 x [1/s]; 0 where nothing is stiff
+    excess: float  # of what the law conserves, in parts of it: of a liquid spring the liquid's mass
+    excess_1: float  # its derivative by z1
+    excess_2: float  # and by z2
 
 
 class StrutStatus(NamedTuple):
@@ -333,6 +347,9 @@ class LegForces(NamedTuple):
     friction: float  # dissipated by friction
     held: float  # energy held by the main strut's medium [J]
     liquid_mass: float  # [kg]
+    excess: float  # see StrutForce
+    excess_1: float
+    excess_2: float
 
 
 class LegStatus(NamedTuple):

@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from math import fabs, sqrt
 
 from ..access import (
+    BALANCE,
     BODY,
     BODY_OUTPUTS,
+    DISSIPATED,
     ENERGY_OUTPUTS,
     INPUTS,
     LEG,
@@ -47,6 +49,14 @@ from ..records import (
 from .planar_legs import footpad_kinetic_energy, footpad_moment
 from .planar_motion import PlanarMotion
 from .planar_status import is_phase, phase_of
+
+# The energy balance may come to this part of what was dissipated, of which a step may use up a share
+# of what is left; whatever is left, it may grow by so much more a second [1/s]
+MOST_LOST, STEP_SHARE, LOST_RATE = 4e-5, 0.25, 2e-5
+# of the energy at touchdown, so much counts as dissipated from the start on
+LEAST_TURNED = 0.1
+# what rounding does to it, in parts of the liquid's stiffness times its volume
+ROUNDING = 4e-15
 
 
 class Planar(PlanarMotion):
@@ -116,6 +126,26 @@ class Planar(PlanarMotion):
             leg = leg_state(shift, BODY + LEG * i)
             way = max(way, fabs(leg.r), fabs(leg.h))
         return way
+
+    def lost(self, before: Doubles, after: Doubles, h: float) -> float:
+        """The growth of the energy balance, in parts of what may be."""
+        at = BODY_OUTPUTS + BALANCE
+        was = fabs(before[at])
+        growth = fabs(after[at]) - was
+        if growth <= 0.0:
+            return 0.0
+        least = LEAST_TURNED * self.scale[BODY + LEG * self.groups]
+        turned = max(least, before[BODY_OUTPUTS + DISSIPATED])
+        left = max(MOST_LOST * turned + self._rounding() - was, 0.0)
+        return growth / (STEP_SHARE * left + LOST_RATE * h * turned)
+
+    def _rounding(self) -> float:
+        """How far rounding may put the energy balance off [J]."""
+        size = 0.0
+        for i in range(self.groups):
+            p = leg_model(self._legs, i)
+            size += leg_place(self._places, i).legs * p.B0 * (p.V10 + p.V20)
+        return ROUNDING * size
 
     def _put_body(self, y: Doubles, rates: Doubles, out: Doubles, at: int) -> None:
         s = body_state(y, 0)

@@ -62,10 +62,32 @@ class System:
     def project(self, y: Doubles) -> None:
         """Bring the state at the end of a step back to where it may be."""
 
+    def weigh(self, ceiling: Doubles) -> None:
+        """Write to `ceiling` [n] how large the error of a state may be at any tolerance, as it was
+        where `rhs` was called last; only where `relative` is 1.
+        """
+
+    def conserve(self, y: Doubles) -> float:
+        """Bring a state at which `rhs` was called last back to what the system conserves.
+
+        Returns how far it was away, in units of what a step may be; 0 where it was left as it is.
+        """
+        return 0.0
+
+    def lost(self, before: Doubles, after: Doubles, h: float) -> float:
+        """What a step of `h` [s] has lost of what the system conserves, from the outputs `before`
+        and `after` it, in units of what it may lose.
+        """
+        return 0.0
+
     def outputs(self, y: Doubles, u: Doubles, out: Doubles, at: int) -> None:
-        """Write the outputs at the state `y` and the inputs `u` to `out[at:]`."""
+        """Write the outputs at the state `y` and the inputs `u` to `out[at:]`, with `y` brought
+        back to what the system conserves.
+        """
         rates = data(self._rates)
         self.rhs(y, u, rates)
+        if self.conserve(y) > 0.0:
+            self.rhs(y, u, rates)
         self.read(y, u, rates, out, at)
 
     def may_rest(self, u: Doubles, rates: Doubles, outputs: Doubles) -> bool:

@@ -84,11 +84,11 @@ class DormandPrince(Solver):
         for i in range(n):
             e[i] = h * (E1 * k1[i] + E3 * k3[i] + E4 * k4[i] + E5 * k5[i] + E6 * k6[i] + E7 * k7[i])
 
-    def _dense_correction(self, h: float) -> None:
+    def _dense_correction(self, h: float, at: int) -> None:
         """The interpolant's fourth-order part."""
         n = self.n
         for i in range(n):
-            self.dense[self.dense_at + 4 * n + i] = h * (
+            self.dense[at + i] = h * (
                 D1 * self.k1[i]
                 + D3 * self.k3[i]
                 + D4 * self.k4[i]

@@ -22,6 +22,13 @@ from .step_control import (
 
 # tries of a step that a start or a jump of an input may take beside the limit
 FREE_TRIES = 10.0
+# [s]: what a shorter step loses is not judged, for it is at a force that jumps, and loses next to
+# nothing
+SHORTEST_JUDGED = 1e-10
+# part of the size of a step's ends that its interpolant may leave them by unseen
+BULGE = 0.1
+# at looser tolerances the inside of every step is judged
+LOOSE = 1e-4
 
 
 class Solver(Rest):
@@ -58,6 +65,7 @@ class Solver(Rest):
     k4: Buffer
     k_end: Buffer
     deviation: Buffer
+    ceiling: Buffer
 
     def __init__(self, system: System, rtol: float) -> None:
         super().__init__(system, rtol)
@@ -75,6 +83,7 @@ class Solver(Rest):
         self.k4 = array("d", bytes(8 * n))
         self.k_end = array("d", bytes(8 * n))
         self.deviation = array("d", bytes(8 * n))
+        self.ceiling = array("d", [inf] * n)
         self.h = FIRST_STEP
         self.error_old = LEAST_PREVIOUS_ERROR
         self.steps = 0.0
@@ -128,6 +137,8 @@ class Solver(Rest):
         self.h = min(self.h, FIRST_STEP)
         self.spent = max(self.spent - FREE_TRIES, 0.0)
         self._recompute_derived()
+        if self.system.conserve(data(self.y)) > 0.0:
+            self._recompute_derived()
         self._start_rows(data(self.y), data(self.k1))
         self._awake()
 
@@ -149,9 +160,9 @@ class Solver(Rest):
         `deviation` from its companion.
         """
 
-    def _dense_correction(self, h: float) -> None:
-        """Write the interpolant's fourth-order part, where the method has one, to the end of the
-        last step's.
+    def _dense_correction(self, h: float, at: int) -> None:
+        """Write the fourth-order part of a step's interpolant, where the method has one, to
+        `dense[at:]`.
         """
 
     def _error(self) -> float:
@@ -160,18 +171,41 @@ class Solver(Rest):
         """
         y, end, deviation = data(self.y), data(self.y_new), data(self.deviation)
         scale, relative = data(self.system.scale), data(self.system.relative)
+        ceiling = data(self.ceiling)
+        self.system.weigh(ceiling)
         total = 0.0
         m = self.system.controlled
         for i in range(m):
-            limit = scale[i]
+            limit = self.rtol * scale[i]
             if relative[i] > 0.0:
-                limit += max(fabs(y[i]), fabs(end[i]))
-            e = deviation[i] / (self.rtol * limit)
+                limit = min(self.rtol * (scale[i] + max(fabs(y[i]), fabs(end[i]))), ceiling[i])
+            e = deviation[i] / limit
             total += e * e
         return sqrt(total / m)
 
-    def _accept(self, h: float) -> None:
-        """Make the step just computed the last one: keep its interpolant, move on."""
+    def _loses(self, h: float) -> bool:
+        """Bring the end of a step of `h` [s] back to what the system conserves, read it, and write
+        the step's interpolant; whether the step loses more of what the system conserves than it
+        may, before it is brought back.
+        """
+        end, k_end = data(self.y_new), data(self.k_end)
+        self._read_end(end, k_end)
+        lost = self.system.lost(data(self.last), data(self._end), h)
+        away = self.system.conserve(end)
+        if away > 0.0:
+            self._derivatives(self.t + h, end, k_end)
+            self._read_end(end, k_end)
+        self._write_dense(h)
+        if h < SHORTEST_JUDGED:
+            return False
+        if max(lost, away) > 1.0:
+            return True
+        return self._loses_inside(h)
+
+    def _write_dense(self, h: float) -> None:
+        """Write the interpolant of the step of `h` [s] just computed in the place of that of the
+        step before the last.
+        """
         n = self.n
         d, y, end, k1, k_end = (
             data(self.dense),
@@ -180,19 +214,57 @@ class Solver(Rest):
             data(self.k1),
             data(self.k_end),
         )
-        self._next_row(end, k_end)
-        self.dense_at = self._other_dense()
+        at = self._other_dense()
         for i in range(n):
-            j = self.dense_at + i
+            j = at + i
             change = end[i] - y[i]
             bend = h * k1[i] - change
             d[j] = y[i]
             d[n + j] = change
             d[2 * n + j] = bend
             d[3 * n + j] = change - h * k_end[i] - bend
-            y[i] = end[i]
-        self._dense_correction(h)
+        self._dense_correction(h, at + 4 * n)
+
+    def _loses_inside(self, h: float) -> bool:
+        """The same inside the step: at its quarters, where its interpolant leaves its ends far
+        behind or the tolerance is loose.
+        """
+        inside = data(self.y_stage)
+        loses = False
+        looked = False
+        for i in range(2):
+            ahead = (0.25 + 0.5 * i) * h
+            t = self.t + ahead
+            self._inside(self._other_dense(), t, self.t, self.t + h, inside)
+            if self.rtol > LOOSE or self._bulges(inside):
+                self._outputs_at(t, inside, data(self._half), 0)
+                if self.system.lost(data(self.last), data(self._half), ahead) > 1.0:
+                    loses = True
+                looked = True
+        if looked:
+            self._derivatives(self.t + h, data(self.y_new), data(self.k_end))
+        return loses
+
+    def _bulges(self, inside: Doubles) -> bool:
+        """Whether a state `inside` the step just computed is far off its ends, in a part whose
+        error is relative to its size.
+        """
+        y, end, relative = data(self.y), data(self.y_new), data(self.system.relative)
+        for i in range(self.system.controlled):
+            if relative[i] > 0.0:
+                out = fabs(inside[i] - 0.5 * (y[i] + end[i]))
+                if out > fabs(end[i] - y[i]) + BULGE * (fabs(y[i]) + fabs(end[i])):
+                    return True
+        return False
+
+    def _accept(self, h: float) -> None:
+        """Make the step just computed the last one: take up its interpolant, move on."""
+        n = self.n
+        y, end, k1, k_end = data(self.y), data(self.y_new), data(self.k1), data(self.k_end)
+        self._next_row()
+        self.dense_at = self._other_dense()
         for i in range(n):
+            y[i] = end[i]
             k1[i] = k_end[i]
         self.system.project(y)
         self.t_before = self.t_old
@@ -246,7 +318,10 @@ class Solver(Rest):
         error = self._error()
         self.h = h * step_factor(error, self.error_old, self.exponent)
         self.spent += 1.0
-        if error <= 1.0:
+        if error <= 1.0 and self._loses(h):
+            self.h = 0.5 * h
+            self.rejected += 1.0
+        elif error <= 1.0:
             self._accept(h)
             self.h = min(self.h, LONGEST_STEP)
             self.error_old = max(error, LEAST_PREVIOUS_ERROR)

@@ -46,6 +46,7 @@ class Watch(Path):
     before: Buffer
     middle: Buffer
     last: Buffer
+    _end: Buffer
     _half: Buffer
     _now: Buffer
     _look: Buffer
@@ -65,6 +66,7 @@ class Watch(Path):
         self.before = array("d", bytes(8 * row))
         self.middle = array("d", bytes(8 * row))
         self.last = array("d", bytes(8 * row))
+        self._end = array("d", bytes(8 * row))
         self._half = array("d", bytes(8 * row))
         self._now = array("d", bytes(8 * row))
         self._look = array("d", bytes(8 * row))
@@ -119,15 +121,19 @@ class Watch(Path):
         if self.t == self.t_start:
             self._begin(data(self.last), self.t, data(self.kept))
 
-    def _next_row(self, y: Doubles, dy: Doubles) -> None:
-        """Keep the outputs at the end of a step: at the state `y`, whose rates `dy` were just
+    def _read_end(self, y: Doubles, dy: Doubles) -> None:
+        """Read the outputs at the end of a step: at the state `y`, whose rates `dy` were just
         computed.
         """
+        self.system.read(y, data(self.u_now), dy, data(self._end), 0)
+
+    def _next_row(self) -> None:
+        """Keep the outputs that were read at the end of a step."""
         copy(data(self.middle), data(self.before), self.row)
         copy(data(self.last), data(self.middle), self.row)
         self.seen = min(self.seen + 1, 3)
         self.noted = False
-        self.system.read(y, data(self.u_now), dy, data(self.last), 0)
+        copy(data(self._end), data(self.last), self.row)
 
     def _note_step(self) -> None:
         """Judge the outputs at the start of the last step, which is about to be left behind."""

@@ -2,18 +2,45 @@
 
 Eq. (12).
 
-Its states z1, z2 are the absolute pressures P1, P2 [Pa] in the upper annulus (chamber 1) and the
-lower bore (chamber 2).
+Its states z1, z2 [Pa] are those of the upper annulus (chamber 1) and the lower bore (chamber 2):
+their absolute pressures P1, P2 except in a cavity, see `fluid`.
 """
 
 from __future__ import annotations
 
 from math import exp, fabs, sqrt, tanh
 
-from ..records import LegModel, StrutForce, StrutStatus
+from ..records import Chamber, FluidState, LegModel, StrutForce, StrutStatus
 from .end_stops import stop_energy, stop_force
 from .fluid import fluid, strain_energy
 from .laws import MAIN_STRUTS, MainStrutLaw
+
+# parts of a chamber's volume at full extension: below which the piston displaces less and less, and
+# which it never displaces
+LAST_PART, DEAD_PART = 0.05, 0.025
+
+
+def chamber(V0: float, area: float, travel: float) -> Chamber:
+    """A chamber of `V0` [m3] whose piston has moved away by `travel` [m]: V0 + area travel, down to
+    5 % of V0. [closure]
+
+    Below, V falls as exp(travel) towards 2.5 % of V0, with the same slope to begin with, so that
+    however far a soft stop lets the piston go, a chamber is left. The area that the pressure acts
+    on is dV/dtravel throughout.
+    """
+    V = V0 + area * travel
+    past = V - LAST_PART * V0
+    if past >= 0.0:
+        return Chamber(V, area)
+    dead = DEAD_PART * V0
+    displaced = LAST_PART * V0 - dead
+    part = exp(past / displaced)
+    return Chamber(dead + displaced * part, area * part)
+
+
+def mixture(z: float, p: LegModel) -> FluidState:
+    """The mixture in a chamber of state `z` [Pa]."""
+    return fluid(z, p.x_air, p.n_air, p.B0, p.kB, p.Pa)
 
 
 def orifice_flow(dP: float, density_ratio: float, p: LegModel) -> float:
@@ -50,46 +77,50 @@ def seal_friction(v: float, P1: float, P2: float, p: LegModel) -> float:
     return level * tanh(v / p.v_sm)
 
 
-def liquid_spring(s: float, v: float, P1: float, P2: float, p: LegModel) -> StrutForce:
+def liquid_spring(s: float, v: float, z1: float, z2: float, p: LegModel) -> StrutForce:
     """The damper at stroke `s` [m] and stroke rate `v` [m/s]. Eq. (12).
 
-    The flow evens x = P2 - P1 out: a change of x changes the pressures' rates by a1 x and -a2 x.
+    The flow evens x = z2 - z1 out: a change of x changes the states' rates by a1 x and -a2 x.
     """
-    f1 = fluid(P1, p.x_air, p.n_air, p.B0, p.kB, p.Pa)
-    f2 = fluid(P2, p.x_air, p.n_air, p.B0, p.kB, p.Pa)
+    f1 = mixture(z1, p)
+    f2 = mixture(z2, p)
+    upper = chamber(p.V10, p.A1, s)
+    lower = chamber(p.V20, p.A2, -s)
     density1 = 1.0 / f1.v
     density2 = 1.0 / f2.v
     ratio = 0.5 * (density1 + density2)
-    Q = orifice_flow(P2 - P1, ratio, p)
-    V1 = p.V10 + p.A1 * s
-    V2 = p.V20 - p.A2 * s
-    stiffness1 = -f1.v / f1.dv / V1
-    stiffness2 = -f2.v / f2.dv / V2
-    dP1 = stiffness1 * (ratio * f1.v * Q - p.A1 * v)
-    dP2 = stiffness2 * (p.A2 * v - ratio * f2.v * Q)
-    slope = ratio * orifice_slope(P2 - P1, ratio, p)
-    F_seal = seal_friction(v, P1, P2, p)
+    dP = f2.P - f1.P
+    Q = orifice_flow(dP, ratio, p)
+    stiffness1 = -f1.v / f1.dv / upper.V
+    stiffness2 = -f2.v / f2.dv / lower.V
+    slope = ratio * orifice_slope(dP, ratio, p) * max(f1.slope, f2.slope)
+    F_seal = seal_friction(v, f1.P, f2.P, p)
     stop = stop_force(s, v, p)
-    force = (P2 - p.Pa) * p.A2 - (P1 - p.Pa) * p.A1 + F_seal + stop.force
-    held1 = strain_energy(f1, density1, P1, V1, p.Pa)
-    held2 = strain_energy(f2, density2, P2, V2, p.Pa)
+    held1 = strain_energy(f1, density1, upper.V, p.Pa)
+    held2 = strain_energy(f2, density2, lower.V, p.Pa)
+    # the chambers' masses over rho0
+    m1 = upper.V * density1
+    m2 = lower.V * density2
     return StrutForce(
-        force=force,
-        dz1=dP1,
-        dz2=dP2,
+        force=(f2.P - p.Pa) * lower.area - (f1.P - p.Pa) * upper.area + F_seal + stop.force,
+        dz1=stiffness1 * (ratio * f1.v * Q - upper.area * v),
+        dz2=stiffness2 * (lower.area * v - ratio * f2.v * Q),
         orifice=ratio * Q * (f2.h - f1.h),
         seal=F_seal * v,
         stop=stop.dissipated,
         held=held1 + held2,
-        liquid_mass=p.rho0 * (V1 * density1 + V2 * density2),
+        liquid_mass=p.rho0 * (m1 + m2),
         a1=stiffness1 * f1.v * slope,
         a2=stiffness2 * f2.v * slope,
+        excess=(m1 + m2) / p.fill - 1.0,
+        excess_1=-m1 * density1 * f1.dv / p.fill,
+        excess_2=-m2 * density2 * f2.dv / p.fill,
     )
 
 
-def liquid_spring_status(s: float, P1: float, P2: float, p: LegModel) -> StrutStatus:
+def liquid_spring_status(s: float, z1: float, z2: float, p: LegModel) -> StrutStatus:
     """What the end stops hold at stroke `s` [m], and the pressures."""
-    return StrutStatus(stop_energy(s, p), P1, P2)
+    return StrutStatus(stop_energy(s, p), mixture(z1, p).P, mixture(z2, p).P)
 
 
 MAIN_STRUTS["liquid-spring"] = MainStrutLaw(liquid_spring, liquid_spring_status)

@@ -1,0 +1,70 @@
+"""Dampers at random within their bounds: pressures stay above 0, liquid and energy are kept."""
+
+from __future__ import annotations
+
+import os
+import random
+
+import pytest
+from random_vehicles import some_vehicle, watch
+
+from rlv_landing import Landing, LandingError, Parameters
+from rlv_landing.landing import METHODS
+
+# seeds in the suite; in `make torture` so many times as many as RLV_TORTURE says, at most 2,000
+IN_SUITE, AT_MOST = 60, 2000
+SEEDS = range(min(IN_SUITE * int(os.environ.get("RLV_TORTURE", "1")), AT_MOST))
+TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6)
+# what a landing may lose, in parts of a damper's liquid and of the energy that was turned over
+MOST_MASS, MOST_ENERGY = 1e-6, 1e-4
+
+
+def assert_kept(landing: Landing, **how: float) -> None:
+    """Land, and find what is conserved."""
+    kept = watch(landing, **how)
+    assert kept.pressure > 0.0
+    assert kept.mass <= MOST_MASS
+    assert kept.energy <= MOST_ENERGY
+
+
+@pytest.mark.torture
+def test_any_damper_keeps_its_liquid_and_the_energy():
+    """One landing in a hundred at most may end as an error of the integrator instead."""
+    ended = 0
+    for seed in SEEDS:
+        rng = random.Random(seed)
+        parameters = some_vehicle(rng)
+        rtol = rng.choice(TOLERANCES)
+        for method in METHODS:
+            try:
+                assert_kept(Landing(parameters, rtol=rtol, method=method), most_steps=2000)
+            except LandingError:
+                ended += 1
+            except AssertionError as error:
+                raise AssertionError(f"seed {seed}, {method}, rtol {rtol:g}: {error}") from None
+    assert ended <= 0.01 * len(SEEDS) * len(METHODS)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("rtol", [1e-3, 1e-5, 1e-8])
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"main_strut.volume_upper": 1e-7},
+        {"main_strut.bulk_modulus": 1e7},
+        {"main_strut.bulk_modulus": 1e7, "main_strut.volume_upper": 1e-7},
+        {"main_strut.stop_stiffness": 1e3},
+        {"main_strut.stop_stiffness": 1e3, "main_strut.volume_lower": 8e-5},
+        {"main_strut.air_fraction": 1e-7, "main_strut.orifice_area_rebound": 1e-9},
+    ],
+    ids=lambda values: " ".join(f"{n.split('.')[1]}={v:g}" for n, v in values.items()),
+)
+def test_a_cavity_and_a_chamber_that_is_emptied_keep_them(values, rtol, method):
+    parameters = Parameters().with_values(values)
+    assert_kept(Landing(parameters, rtol=rtol, method=method), until=0.4)
+
+
+def test_a_landing_with_a_cavity_has_one():
+    """So that what the others claim of cavities is claimed of some."""
+    kept = watch(Landing(Parameters().with_values({"main_strut.volume_upper": 1e-7})), until=0.4)
+    assert 0.0 < kept.pressure < 100.0
