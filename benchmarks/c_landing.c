@@ -43,7 +43,7 @@ typedef struct {
     double radial, vertical, tangential, body_x, body_y, body_moment;
     double dz1, dz2, dsx, dsz, decay1, decay2;
     double orifice, seal, stop, auxiliary, contact, friction, ground;
-    double excess, excess1, excess2, stroke, rate, auxiliary_stroke, depth, held;
+    double mass, mass1, mass2, stroke, rate, auxiliary_stroke, depth, held;
 } Loads;
 
 /* Of one leg group: decay rates of its chambers' pressure difference, the driven rates of the
@@ -157,9 +157,9 @@ static double damper(double s, double v, double z1, double z2, const Parameters 
     w->decay2 = stiffness2 * f2.v * slope;
     w->orifice = ratio * Q * (f2.h - f1.h);
     w->seal = seal * v;
-    w->excess = (m1 + m2) / p->fill - 1.0;
-    w->excess1 = -m1 * density1 * f1.dv / p->fill;
-    w->excess2 = -m2 * density2 * f2.dv / p->fill;
+    w->mass = p->rho0 * (m1 + m2);
+    w->mass1 = -p->rho0 * m1 * density1 * f1.dv;
+    w->mass2 = -p->rho0 * m2 * density2 * f2.dv;
     w->stroke = s;
     w->rate = v;
     w->held = upper.V * (f1.h * density1 - (f1.P - p->Pa)) +
@@ -521,9 +521,9 @@ static double error(const Landing *s)
         double limit = s->rtol * s->scale[i];
         if (s->relative[i] > 0.0) {
             const Loads *w = &s->loads[(i - BODY) / LEG];
-            double excess = (i - BODY) % LEG == Z1 ? w->excess1 : w->excess2;
+            double slope = (i - BODY) % LEG == Z1 ? w->mass1 : w->mass2;
             limit = s->rtol * (s->scale[i] + MAX(fabs(s->y[i]), fabs(s->y_new[i])));
-            limit = MIN(limit, 1e-4 / MAX(fabs(excess), 1e-30));
+            limit = MIN(limit, 1e-4 * w->mass / slope);
         }
         double e = s->deviation[i] / limit;
         total += e * e;
@@ -537,13 +537,14 @@ static void take_off_excess(double *q, const Loads *found, const Parameters *p)
     Loads w = *found;
     double z1 = q[Z1], z2 = q[Z2], moved = 0.0, low = -1e15, high = 1e15, reach = 1e3;
     for (int k = 0; k < 60; k++) {
-        if (w.excess > 0.0)
+        double excess = w.mass - p->fill;
+        if (excess > 0.0)
             high = moved;
         else
             low = moved;
-        double newton = moved - w.excess / (w.excess1 + w.excess2);
+        double newton = moved - excess / (w.mass1 + w.mass2);
         double tried = MIN(MAX(newton, moved - reach), moved + reach);
-        if (fabs(w.excess) < 1e-12 || tried == moved)
+        if (fabs(excess) < 1e-12 * p->fill || tried == moved)
             break;
         if (tried <= low || tried >= high)
             tried = 0.5 * (low + high);
@@ -600,13 +601,15 @@ static double energy(const Landing *s, const double *y, double *dissipated)
 static double lost(const Landing *s, double balance, double h)
 {
     const Parameters *p = &s->p;
-    double was = fabs(s->balance), growth = fabs(balance) - was, legs = 0.0;
-    if (growth <= 0.0)
-        return 0.0;
+    double was = fabs(s->balance), legs = 0.0;
     for (int i = 0; i < s->groups; i++)
         legs += s->group[i].count;
+    double rounding = 4e-15 * legs * p->B0 * (p->V10 + p->V20);
+    double growth = fabs(balance) - was - rounding;
+    if (growth <= 0.0)
+        return 0.0;
     double turned = MAX(0.1 * s->scale[s->n - 1], s->dissipated);
-    double most = 4e-5 * turned + 4e-15 * legs * p->B0 * (p->V10 + p->V20);
+    double most = 4e-5 * turned + rounding;
     return growth / (0.25 * MAX(most - was, 0.0) + 2e-5 * h * turned);
 }
 
@@ -616,7 +619,7 @@ static double conserve(Landing *s, double t, double *y, double *dy)
 {
     double farthest = 0.0;
     for (int g = 0; g < s->groups; g++) {
-        double excess = fabs(s->loads[g].excess);
+        double excess = fabs(s->loads[g].mass / s->p.fill - 1.0);
         if (excess > 8e-7) {
             take_off_excess(y + BODY + LEG * g, &s->loads[g], &s->p);
             farthest = MAX(farthest, excess);
@@ -627,36 +630,41 @@ static double conserve(Landing *s, double t, double *y, double *dy)
     return farthest / 1e-5;
 }
 
-/* What is lost at a quarter of a step, on its interpolant. */
-static double lost_at(Landing *s, double part, double h, int *looked)
+/* Whether the interpolant of the step just computed leaves its ends far behind at a quarter. */
+static int bulges(const Landing *s, double h)
 {
-    double *y = s->y_stage, rest = 1.0 - part, dissipated, dy[MAX_STATES];
-    int bulges = s->rtol > 1e-4;
     for (int i = 0; i < s->n; i++) {
+        if (s->relative[i] == 0.0)
+            continue;
         double change = s->y_new[i] - s->y[i], bend = h * s->k1[i] - change;
-        double out = rest * (bend + part * (change - h * s->k5[i] - bend));
-        y[i] = s->y[i] + part * (change + out);
-        if (s->relative[i] > 0.0)
-            bulges |= fabs(y[i] - 0.5 * (s->y[i] + s->y_new[i])) >
-                      fabs(change) + 0.1 * (fabs(s->y[i]) + fabs(s->y_new[i]));
+        double last = change - h * s->k5[i] - bend;
+        double out = 0.1875 * MAX(fabs(bend + 0.25 * last), fabs(bend + 0.75 * last));
+        if (out > fabs(change) + 0.1 * (fabs(s->y[i]) + fabs(s->y_new[i])))
+            return 1;
     }
-    if (!bulges)
-        return 0.0;
-    *looked = 1;
-    slope(s, s->t + part * h, y, dy);
-    conserve(s, s->t + part * h, y, dy);
-    return lost(s, energy(s, y, &dissipated) - s->start_energy, part * h);
+    return 0;
 }
 
+/* What is lost at the quarters of a step, on its interpolant, where it bulges or the tolerance is
+ * loose. */
 static double lost_inside(Landing *s, double h)
 {
-    int looked = 0;
-    double calls = s->rhs_calls;
-    double first = lost_at(s, 0.25, h, &looked), second = lost_at(s, 0.75, h, &looked);
+    double most = 0.0, calls = s->rhs_calls, *y = s->y_stage, dissipated, dy[MAX_STATES];
+    if (s->rtol <= 1e-4 && !bulges(s, h))
+        return 0.0;
+    for (double part = 0.25; part < 1.0; part += 0.5) {
+        for (int i = 0; i < s->n; i++) {
+            double change = s->y_new[i] - s->y[i], bend = h * s->k1[i] - change;
+            double last = change - h * s->k5[i] - bend;
+            y[i] = s->y[i] + part * (change + (1.0 - part) * (bend + part * last));
+        }
+        slope(s, s->t + part * h, y, dy);
+        conserve(s, s->t + part * h, y, dy);
+        most = MAX(most, lost(s, energy(s, y, &dissipated) - s->start_energy, part * h));
+    }
     s->rhs_calls = calls;
-    if (looked)
-        slope(s, s->t + h, s->y_new, s->k5);
-    return MAX(first, second);
+    slope(s, s->t + h, s->y_new, s->k5);
+    return most;
 }
 
 /* What the step just computed has lost before it is brought back, in units of what it may lose. */

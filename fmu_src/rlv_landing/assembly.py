@@ -93,12 +93,12 @@ def bearing_nothing_at_rest(leg: LegModel) -> LegModel:
 
 
 def liquid_fill(parameters: Parameters) -> float:
-    """Mass of the liquid in both chambers over its density at ambient pressure [m3]."""
+    """Mass of the liquid in both chambers [kg]."""
     m = parameters.main_strut
     air = (m.air_fraction, m.air_exponent)
     stiffness = (m.bulk_modulus, m.bulk_modulus_slope)
     charged = fluid(m.charge_pressure, *air, *stiffness, m.ambient_pressure)
-    return (m.volume_upper + m.volume_lower) / charged.v
+    return m.fluid_density * (m.volume_upper + m.volume_lower) / charged.v
 
 
 def touchdown_energy(parameters: Parameters) -> float:

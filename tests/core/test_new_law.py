@@ -39,9 +39,9 @@ def linear_spring(s: float, v: float, z1: float, z2: float, p: LegModel) -> Stru
     damping = DAMPING * v
     held = 0.5 * SPRING_RATE * s * s
     force = SPRING_RATE * s + damping
-    # no liquid, nothing stiff, nothing that the law conserves
+    # no liquid, nothing stiff
     return StrutForce(
-        force, 0.0, 0.0, damping * v, 0.0, 0.0, held, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        force, 0.0, 0.0, damping * v, 0.0, 0.0, held, 0.0, 0.0, 0.0, 0.0, 0.0
     )
 
 

@@ -135,6 +135,27 @@ def test_an_interrupted_identification_keeps_its_best_and_can_go_on(tmp_path, nu
     )
 
 
+def test_a_killed_identification_leaves_no_process_and_no_lock(tmp_path):
+    process = subprocess.Popen(
+        command("--evaluations", 100000, "--workers", 2),
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    best = tmp_path / "identification" / "best.json"
+    try:
+        while not best.exists():
+            assert process.poll() is None, process.communicate()[1]
+            os.sched_yield()
+    finally:
+        process.kill()
+    # the ends of both pipes are the processes' ends
+    process.communicate(timeout=120)
+    done = run("--resume", "--evaluations", 1, "--polish", 0, cwd=tmp_path)
+    assert done.returncode in (0, 1), done.stderr
+
+
 def test_nothing_better_than_the_start_is_said_so(tmp_path):
     """The compression stop is never met in these landings, so where it is makes no difference."""
     bound = ("--free", "main_strut.stroke_max", "--bound", "main_strut.stroke_max=0.05..0.06")

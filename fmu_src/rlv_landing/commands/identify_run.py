@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from concurrent.futures import BrokenExecutor
 from pathlib import Path
+from types import FrameType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
@@ -19,6 +21,27 @@ FAILED = 1
 # a process with the model and its targets beyond what it shares, and both modes' landings, at least
 BYTES_PER_PROCESS = 30e6
 SECONDS_PER_EVALUATION = 6e-3
+
+
+class Interrupts:
+    """Ctrl-C and SIGTERM, each a KeyboardInterrupt.
+
+    Python may lose one that comes inside a callback; `check` raises it then.
+    """
+
+    def __init__(self) -> None:
+        self._came = False
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, self._interrupt)
+
+    def _interrupt(self, number: int, frame: FrameType | None) -> NoReturn:
+        self._came = True
+        raise KeyboardInterrupt
+
+    def check(self) -> None:
+        """Raise KeyboardInterrupt where one has come."""
+        if self._came:
+            raise KeyboardInterrupt
 
 
 def check_effort(options: dict[str, Any]) -> None:
@@ -53,7 +76,9 @@ def _fail(error: Exception, work: Path) -> NoReturn:
     sys.exit(FAILED)
 
 
-def run(search: Search, work: Path, options: dict[str, Any]) -> list[str] | None:
+def run(
+    search: Search, work: Path, options: dict[str, Any], interrupts: Interrupts
+) -> list[str] | None:
     """Search, and write the best point and the report; the fit in short lines.
 
     It is None where this was interrupted; the best point so far is then written.
@@ -61,7 +86,7 @@ def run(search: Search, work: Path, options: dict[str, Any]) -> list[str] | None
     try:
         with search:
             try:
-                _search(search, options)
+                _search(search, options, interrupts)
                 _write_best(search, work)
                 return _report(search, work)
             except KeyboardInterrupt:
@@ -108,7 +133,7 @@ def start_note(numbers: FreeNumbers) -> str:
     )
 
 
-def _search(search: Search, options: dict[str, Any]) -> None:
+def _search(search: Search, options: dict[str, Any], interrupts: Interrupts) -> None:
     """Search, with progress on a terminal."""
     from tqdm import tqdm
 
@@ -121,6 +146,7 @@ def _search(search: Search, options: dict[str, Any]) -> None:
     ) as bar:
 
         def show_progress(done: int, loss: float) -> None:
+            interrupts.check()
             bar.total = max(bar.total or 0, done)
             bar.update(done - bar.n)
             bar.set_postfix_str(f"{'misses' if search.best.counting else 'loss'} {loss:.2f}")

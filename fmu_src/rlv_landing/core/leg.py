@@ -12,11 +12,11 @@ from .ground.normal import normal_energy
 from .records import FootMotion, LegForces, LegModel, LegState, LegStatus, StrutMotion
 from .struts.kinds import auxiliary_strut, auxiliary_strut_energy, main_strut, main_strut_status
 
-# how little is left, in parts, of an excess that has been taken off
+# how little is left, in parts, of an excess of liquid that has been taken off
 NOTHING_LEFT = 1e-12
 # the search for the states without it: how many corrections at most
 CORRECTIONS = 60
-# the first one's size, and where none is [the state's unit, Pa of a liquid spring]
+# the first one's size, and where none is [the states' unit, Pa of a liquid spring]
 FIRST_REACH, FARTHEST = 1e3, 1e15
 
 
@@ -74,9 +74,8 @@ def leg_forces(leg: LegState, foot: FootMotion, p: LegModel) -> LegForces:
         friction=ground.friction,
         held=strut.held,
         liquid_mass=strut.liquid_mass,
-        excess=strut.excess,
-        excess_1=strut.excess_1,
-        excess_2=strut.excess_2,
+        mass_1=strut.mass_1,
+        mass_2=strut.mass_2,
     )
 
 
@@ -95,32 +94,42 @@ def leg_status(leg: LegState, forces: LegForces, depth: float, p: LegModel) -> L
     )
 
 
+def liquid_excess(forces: LegForces, p: LegModel) -> float:
+    """How much more liquid the main strut has than it was filled with, in parts of it; 0 for a law
+    without a liquid.
+    """
+    if forces.liquid_mass > 0.0:
+        return forces.liquid_mass / p.fill - 1.0
+    return 0.0
+
+
 def without_excess(leg: LegState, forces: LegForces, p: LegModel) -> LegState:
-    """The leg with both states of its main strut law moved alike until the law's excess is gone.
+    """The leg with both states of its main strut law moved alike until its liquid is that of the
+    fill.
 
     Newton's steps, held between states known to have too little and too much, and no longer than a
-    reach that doubles: the excess grows with either state, but by many orders more in a cavity than
+    reach that doubles: the mass grows with either state, but by many orders more in a cavity than
     in a liquid, and deep in a cavity next to nothing.
     """
     moved = 0.0
     low = -FARTHEST
     high = FARTHEST
     reach = FIRST_REACH
-    excess = forces.excess
-    slope = forces.excess_1 + forces.excess_2
+    excess = forces.liquid_mass - p.fill
+    slope = forces.mass_1 + forces.mass_2
     for _ in range(CORRECTIONS):
         if excess > 0.0:
             high = moved
         else:
             low = moved
         tried = min(max(moved - excess / slope, moved - reach), moved + reach)
-        if fabs(excess) < NOTHING_LEFT or tried == moved:
+        if fabs(excess) < NOTHING_LEFT * p.fill or tried == moved:
             break
         if tried <= low or tried >= high:
             tried = 0.5 * (low + high)
         moved = tried
         reach *= 2.0
         strut = main_strut(forces.stroke, forces.stroke_rate, leg.z1 + moved, leg.z2 + moved, p)
-        excess = strut.excess
-        slope = strut.excess_1 + strut.excess_2
+        excess = strut.liquid_mass - p.fill
+        slope = strut.mass_1 + strut.mass_2
     return LegState(leg.r, leg.h, leg.vr, leg.vh, leg.z1 + moved, leg.z2 + moved, leg.q1, leg.q2)

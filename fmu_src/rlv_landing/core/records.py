@@ -126,7 +126,7 @@ class LegModel(NamedTuple):
     A2: float
     V10: float
     V20: float
-    fill: float  # the liquid's mass over rho0 [m3]
+    fill: float  # the liquid's mass [kg]
     Pa: float
     rho0: float
     x_air: float
@@ -209,8 +209,7 @@ class Chamber(NamedTuple):
 class StrutForce(NamedTuple):
     """What a main strut law gives.
 
-    A law without a passage, a seal or a stop gives 0 W for it, one without a liquid 0 kg, one
-    that conserves nothing an excess and slopes of 0.
+    A law without a passage, a seal or a stop gives 0 W for it, one without a liquid 0 kg.
     """
 
     force: float  # [N] compression positive
@@ -223,9 +222,8 @@ class StrutForce(NamedTuple):
     liquid_mass: float  # [kg]
     a1: float  # x = z2 - z1 decays: a change of x changes dz1 by a1 x [1/s]; 0 where nothing is stiff
     a2: float  # and dz2 by -a2 x [1/s]; 0 where nothing is stiff
-    excess: float  # of what the law conserves, in parts of it: of a liquid spring the liquid's mass
-    excess_1: float  # its derivative by z1
-    excess_2: float  # and by z2
+    mass_1: float  # derivative of liquid_mass by z1 [kg]
+    mass_2: float  # and by z2 [kg]
 
 
 class StrutStatus(NamedTuple):
@@ -347,9 +345,8 @@ class LegForces(NamedTuple):
     friction: float  # dissipated by friction
     held: float  # energy held by the main strut's medium [J]
     liquid_mass: float  # [kg]
-    excess: float  # see StrutForce
-    excess_1: float
-    excess_2: float
+    mass_1: float  # see StrutForce
+    mass_2: float
 
 
 class LegStatus(NamedTuple):

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import threading
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
+from multiprocessing import parent_process
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,11 +42,23 @@ def misfits_at(z: Sequence[float]) -> NDArray[np.float64]:
 
 
 def _adopt(objective: Objective) -> None:
-    """Set up a process; Ctrl-C is the parent's to answer, and the parent may end it by SIGTERM."""
+    """Set up a process; Ctrl-C is the parent's to answer, and the parent may end it by SIGTERM.
+
+    It ends with the parent, however that ends.
+    """
     global _OBJECTIVE
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     _OBJECTIVE = objective
+
+
+def _end_with_parent() -> None:
+    """End this process when its parent has ended: it would wait for work, and hold the lock."""
+    parent = parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(1)
 
 
 def _start() -> None:

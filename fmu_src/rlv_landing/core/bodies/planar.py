@@ -65,10 +65,11 @@ class Planar(PlanarMotion):
 
     Strut forces change sign here: the user's are negative in compression. Mirror images are made
     where the names are made. `energy_start` [J] is the mechanical energy at the start, which the
-    energy balance is drawn up against.
+    energy balance is drawn up against; `rounding` [J] is how far rounding may put that off.
     """
 
     energy_start: float
+    rounding: float
     _status: Records[LegStatus]
 
     def __init__(
@@ -81,6 +82,9 @@ class Planar(PlanarMotion):
     ) -> None:
         super().__init__(body, legs, places, scale, relative)
         self.energy_start = 0.0
+        self.rounding = 0.0
+        for leg, place in zip(legs, places):
+            self.rounding += ROUNDING * place.legs * leg.B0 * (leg.V10 + leg.V20)
         self._status = room(self.groups, LEG_STATUS)
 
     def read(self, y: Doubles, u: Doubles, dy: Doubles, out: Doubles, at: int) -> None:
@@ -128,24 +132,16 @@ class Planar(PlanarMotion):
         return way
 
     def lost(self, before: Doubles, after: Doubles, h: float) -> float:
-        """The growth of the energy balance, in parts of what may be."""
+        """The growth of the energy balance beyond rounding, in parts of what may be."""
         at = BODY_OUTPUTS + BALANCE
         was = fabs(before[at])
-        growth = fabs(after[at]) - was
+        growth = fabs(after[at]) - was - self.rounding
         if growth <= 0.0:
             return 0.0
         least = LEAST_TURNED * self.scale[BODY + LEG * self.groups]
         turned = max(least, before[BODY_OUTPUTS + DISSIPATED])
-        left = max(MOST_LOST * turned + self._rounding() - was, 0.0)
+        left = max(MOST_LOST * turned + self.rounding - was, 0.0)
         return growth / (STEP_SHARE * left + LOST_RATE * h * turned)
-
-    def _rounding(self) -> float:
-        """How far rounding may put the energy balance off [J]."""
-        size = 0.0
-        for i in range(self.groups):
-            p = leg_model(self._legs, i)
-            size += leg_place(self._places, i).legs * p.B0 * (p.V10 + p.V20)
-        return ROUNDING * size
 
     def _put_body(self, y: Doubles, rates: Doubles, out: Doubles, at: int) -> None:
         s = body_state(y, 0)

@@ -31,7 +31,7 @@ from ..access import (
     put,
 )
 from ..ground.kinds import friction_bound
-from ..leg import leg_forces, without_excess
+from ..leg import leg_forces, liquid_excess, without_excess
 from ..memory import Buffer, Doubles, Records, room, stored
 from ..records import (
     Accounts,
@@ -59,11 +59,9 @@ from .planar_legs import (
 )
 from .system import System
 
-# Of what a main strut law conserves, in parts: the excess that is left where it is, that a step may
-# gather at most, and the error of it that a step's error in one of the law's states may stand for
+# Of a main strut's liquid, in parts: the excess that is left where it is, that a step may gather at
+# most, and the change that a step's error in one of the law's states may stand for
 CONSERVED, MOST_GATHERED, MOST_FOR_AN_ERROR = 8e-7, 1e-5, 1e-4
-# [1/unit of the state]: the slope of the excess of a law that conserves nothing counts as so much
-LEAST_SLOPE = 1e-30
 
 
 class PlanarMotion(System):
@@ -263,22 +261,26 @@ class PlanarMotion(System):
             )
 
     def weigh(self, ceiling: Doubles) -> None:
-        """An error of a main strut law's state counts by what it changes of what the law conserves,
+        """An error of a main strut law's state counts by what it changes of the liquid's mass,
         where that is more than by its size.
         """
         for i in range(self.groups):
             forces = leg_forces_of(self._forces, i)
             at = BODY + LEG * i
-            ceiling[at + Z1] = MOST_FOR_AN_ERROR / max(fabs(forces.excess_1), LEAST_SLOPE)
-            ceiling[at + Z2] = MOST_FOR_AN_ERROR / max(fabs(forces.excess_2), LEAST_SLOPE)
+            most = MOST_FOR_AN_ERROR * forces.liquid_mass
+            if most > 0.0:
+                ceiling[at + Z1] = most / forces.mass_1
+                ceiling[at + Z2] = most / forces.mass_2
 
     def conserve(self, y: Doubles) -> float:
-        """Take off what the main struts have gathered of what their laws conserve."""
+        """Take off what the main struts have gathered of liquid."""
         farthest = 0.0
         for i in range(self.groups):
             forces = leg_forces_of(self._forces, i)
-            if fabs(forces.excess) > CONSERVED:
+            model = leg_model(self._legs, i)
+            excess = fabs(liquid_excess(forces, model))
+            if excess > CONSERVED:
                 leg = leg_state(y, BODY + LEG * i)
-                put(without_excess(leg, forces, leg_model(self._legs, i)), y, BODY + LEG * i)
-                farthest = max(farthest, fabs(forces.excess))
+                put(without_excess(leg, forces, model), y, BODY + LEG * i)
+                farthest = max(farthest, excess)
         return farthest / MOST_GATHERED

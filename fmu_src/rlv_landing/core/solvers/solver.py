@@ -229,31 +229,37 @@ class Solver(Rest):
         """The same inside the step: at its quarters, where its interpolant leaves its ends far
         behind or the tolerance is loose.
         """
+        if self.rtol <= LOOSE and not self._bulges():
+            return False
         inside = data(self.y_stage)
-        loses = False
-        looked = False
+        most = 0.0
         for i in range(2):
             ahead = (0.25 + 0.5 * i) * h
             t = self.t + ahead
             self._inside(self._other_dense(), t, self.t, self.t + h, inside)
-            if self.rtol > LOOSE or self._bulges(inside):
-                self._outputs_at(t, inside, data(self._half), 0)
-                if self.system.lost(data(self.last), data(self._half), ahead) > 1.0:
-                    loses = True
-                looked = True
-        if looked:
-            self._derivatives(self.t + h, data(self.y_new), data(self.k_end))
-        return loses
+            self._outputs_at(t, inside, data(self._half), 0)
+            most = max(most, self.system.lost(data(self.last), data(self._half), ahead))
+        self._derivatives(self.t + h, data(self.y_new), data(self.k_end))
+        return most > 1.0
 
-    def _bulges(self, inside: Doubles) -> bool:
-        """Whether a state `inside` the step just computed is far off its ends, in a part whose
-        error is relative to its size.
+    def _bulges(self) -> bool:
+        """Whether the interpolant just written leaves its ends far behind at a quarter, in a state
+        whose error is relative to its size.
         """
-        y, end, relative = data(self.y), data(self.y_new), data(self.system.relative)
+        n = self.n
+        d, relative = data(self.dense), data(self.system.relative)
+        y, end = data(self.y), data(self.y_new)
+        at = self._other_dense()
         for i in range(self.system.controlled):
             if relative[i] > 0.0:
-                out = fabs(inside[i] - 0.5 * (y[i] + end[i]))
-                if out > fabs(end[i] - y[i]) + BULGE * (fabs(y[i]) + fabs(end[i])):
+                j = at + i
+                change = d[n + j]
+                # 3/16 of these are the interpolant's distances from the straight line
+                bend = d[2 * n + j] + 0.1875 * d[4 * n + j]
+                first = bend + 0.25 * d[3 * n + j]
+                second = bend + 0.75 * d[3 * n + j]
+                out = 0.1875 * max(fabs(first), fabs(second))
+                if out > fabs(change) + BULGE * (fabs(y[i]) + fabs(end[i])):
                     return True
         return False
 

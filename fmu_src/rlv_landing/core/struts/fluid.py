@@ -41,6 +41,13 @@ def fluid(z: float, x: float, n: float, B0: float, kB: float, Pa: float) -> Flui
     return FluidState(P, slope, v, dv, h)
 
 
+def pressure(z: float) -> float:
+    """Absolute pressure [Pa] at the state `z` [Pa] of a chamber, as in `fluid`."""
+    if z < CAVITY_PRESSURE:
+        return CAVITY_PRESSURE * exp(max((z - CAVITY_PRESSURE) / CAVITY_PRESSURE, LEAST_EXPONENT))
+    return z
+
+
 def strain_energy(f: FluidState, density: float, V: float, Pa: float) -> float:
     """Energy [J] stored in volume `V` [m3] of the mixture `f`, of `density` 1/v: V (h/v - (P -
     Pa)), zero at `Pa`.

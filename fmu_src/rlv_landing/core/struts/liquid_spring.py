@@ -12,7 +12,7 @@ from math import exp, fabs, sqrt, tanh
 
 from ..records import Chamber, FluidState, LegModel, StrutForce, StrutStatus
 from .end_stops import stop_energy, stop_force
-from .fluid import fluid, strain_energy
+from .fluid import fluid, pressure, strain_energy
 from .laws import MAIN_STRUTS, MainStrutLaw
 
 # parts of a chamber's volume at full extension: below which the piston displaces less and less, and
@@ -112,15 +112,14 @@ def liquid_spring(s: float, v: float, z1: float, z2: float, p: LegModel) -> Stru
         liquid_mass=p.rho0 * (m1 + m2),
         a1=stiffness1 * f1.v * slope,
         a2=stiffness2 * f2.v * slope,
-        excess=(m1 + m2) / p.fill - 1.0,
-        excess_1=-m1 * density1 * f1.dv / p.fill,
-        excess_2=-m2 * density2 * f2.dv / p.fill,
+        mass_1=-p.rho0 * m1 * density1 * f1.dv,
+        mass_2=-p.rho0 * m2 * density2 * f2.dv,
     )
 
 
 def liquid_spring_status(s: float, z1: float, z2: float, p: LegModel) -> StrutStatus:
     """What the end stops hold at stroke `s` [m], and the pressures."""
-    return StrutStatus(stop_energy(s, p), mixture(z1, p).P, mixture(z2, p).P)
+    return StrutStatus(stop_energy(s, p), pressure(z1), pressure(z2))
 
 
 MAIN_STRUTS["liquid-spring"] = MainStrutLaw(liquid_spring, liquid_spring_status)
