@@ -127,6 +127,8 @@ def test_accelerations_and_rates_are_the_same_at_random_states_to_rounding(
                 "auxiliary_strut.exponent": rng.uniform(1.0, 1.5),
                 "main_strut.seal_pressure": rng.uniform(0.0, 1e-4),
                 "main_strut.stroke_max": 0.02,
+                # so that the piston empties the upper chamber in some states
+                "main_strut.volume_upper": 2e-5,
                 **random_play(rng),
             }
         )
@@ -246,18 +248,14 @@ BOTH = Inputs(
     force=(-300.0, 200.0), moment=-120.0, heave=-0.02, heave_rate=-0.2, tilt=0.03, tilt_rate=-0.06
 )
 NEAR = {"drop.contact_time": 0.01}
+CAVITIES = "2-2 with cavities down to 4 Pa"
 LANDINGS = {
     "2-2 drop test": ("2-2", {}, Inputs(), 0.36),
     "1-2-1 drop test": ("1-2-1", {}, Inputs(), 0.36),
     "2-2 on a slope falling towards +x": ("2-2", SLOPE, Inputs(), 0.27),
     "1-2-1 on a slope falling towards -x, other legs first": ("1-2-1", LEANING, Inputs(), 0.27),
     "2-2 with force and moment": ("2-2", NEAR, LOADED, 0.27),
-    "2-2 with a chamber that cavitates and nearly closes": (
-        "2-2",
-        NEAR | {"main_strut.volume_upper": 2e-7, "main_strut.orifice_area_rebound": 4e-7},
-        Inputs(),
-        0.2,
-    ),
+    CAVITIES: ("2-2", NEAR | {"main_strut.air_fraction": 1e-6}, Inputs(), 0.27),
     "2-2 with play in the auxiliary struts' joints": ("2-2", NEAR | PLAY, Inputs(), 0.27),
     "1-2-1 on a slope with play in tension only": (
         "1-2-1",
@@ -323,10 +321,11 @@ def test_a_landing_is_that_of_the_three_dimensional_model(name: str) -> None:
     """Tolerances: the two solvers' errors, which contacts and friction carry on.
 
     The 3-D model's rtol 3e-8 of 0.1 m is 3e-9 m a step; 3e-8 m is seen at the end. Where a strut
-    turns round, its seal gives 1.5e4 N s/m and speeds differ by 4e-5 m/s: 0.6 N of 6 kN.
+    turns round, its seal gives 1.5e4 N s/m and speeds differ by 4e-5 m/s: 0.6 N of 6 kN. A cavity
+    that closes carries errors on as well; there the 3-D model lands with 1e-9.
     """
     mode, values, loads, until = LANDINGS[name]
-    ours, theirs = both_ways(mode, values, loads, until, 3e-8)
+    ours, theirs = both_ways(mode, values, loads, until, 1e-9 if name == CAVITIES else 3e-8)
     assert np.abs(ours["main_force"]).max() > 2000.0  # it did land
     for what in ("x", "y", "pitch"):
         assert worst(ours, theirs, what) < 5e-7
