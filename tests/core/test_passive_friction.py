@@ -48,7 +48,8 @@ def test_what_friction_takes_is_held_or_lost_and_nothing_is_ever_won(d, v1, v2, 
     Fn = Fn if d > 0.0 else 0.0
     taken, held, lost, size = powers(FootMotion(d, 0.0, v1, v2), Fn, q1, q2, p)
     assert lost >= -1e-12 * size
-    assert taken == approx(held + lost, abs=1e-12 * size)
+    # powers below the smallest normal number have few digits
+    assert taken == approx(held + lost, abs=1e-12 * size + 1e-300)
 
 
 @given(depths, slips, slips, forces, displacements, displacements, models)
@@ -130,7 +131,8 @@ def test_the_stiffness_scales_with_the_weight_unless_it_is_given():
     base = Parameters()
     heavy = base.with_values({"vehicle.mass": 10.0 * 178.0, "vehicle.footpad_mass": 42.0})
     assert tangential_stiffness(heavy) == approx(10.0 * tangential_stiffness(base))
-    assert tangential_stiffness(base) == approx((178.0 + 16.8) * 9.80665 / 0.0012289)
+    over = base.ground.stick_displacement
+    assert tangential_stiffness(base) == approx((178.0 + 16.8) * 9.80665 / over)
     given = base.with_values({"ground.tangential_stiffness": 2e6})
     assert tangential_stiffness(given) == 2e6
     assert leg_models(given)[0].K_t == 2e6

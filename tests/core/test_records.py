@@ -64,9 +64,11 @@ def test_every_number_of_the_models_comes_from_a_parameter_or_is_worked_out_of_s
 def test_the_numbers_of_laws_are_their_places():
     leg = leg_models(Parameters())[0]
     assert list(MAIN_STRUTS)[int(leg.main_kind)] == "liquid-spring"
-    assert list(AUXILIARY_STRUTS)[int(leg.auxiliary_kind)] == "elastic"
+    assert list(AUXILIARY_STRUTS)[int(leg.auxiliary_kind)] == "elastic-with-play"
     assert list(FRICTION_LAWS)[int(leg.friction_kind)] == "passive"
-    paper = leg_models(Parameters().with_values({"ground.friction_law": "paper"}))[0]
+    none = {"auxiliary_strut.play_tension": 0.0, "auxiliary_strut.play_compression": 0.0}
+    paper = leg_models(Parameters().with_values({"ground.friction_law": "paper", **none}))[0]
+    assert list(AUXILIARY_STRUTS)[int(paper.auxiliary_kind)] == "elastic"
     assert list(FRICTION_LAWS)[int(paper.friction_kind)] == "paper"
     assert tuple(FRICTION_LAWS) == PARAMETER_QUANTITIES["ground.friction_law"].choices
 

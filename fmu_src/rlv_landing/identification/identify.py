@@ -20,6 +20,7 @@ from .counting import KICKS, count_round
 from .free_numbers import folded
 from .global_search import GlobalSearch
 from .objective import Objective, cauchy_loss
+from .programme import programmes
 from .search_folder import Best, SearchFolder
 
 # difference for the Jacobian, on the unit cube
@@ -188,7 +189,10 @@ class Search:
         )
 
     def count(self, evaluations: int, progress: Progress) -> None:
-        """Search for the fewest missed bounds, in rounds from the best point (`count_round`).
+        """Search for the fewest missed bounds, in rounds from the best point.
+
+        They are in turn linear programmes (`programmes`) and a descent on the soft count
+        (`count_round`).
 
         Args:
             evaluations: The evaluations of the landings by this search, in all, after which no
@@ -209,9 +213,12 @@ class Search:
             return found
 
         while self.best.counted < evaluations:
-            kick = KICKS[self.best.rounds % len(KICKS)]
-            start, seed = folded(self.best.z).tolist(), (self.seed, self.best.rounds)
-            count_round(self.objective.soft_count, evaluate, start, seed, kick)
+            start, descents = folded(self.best.z).tolist(), self.best.rounds // 2
+            if self.best.rounds % 2 == 0:
+                programmes(self.objective.soft_count, evaluate, start)
+            else:
+                kick, seed = KICKS[descents % len(KICKS)], (self.seed, self.best.rounds)
+                count_round(self.objective.soft_count, evaluate, start, seed, kick)
             self.best.rounds += 1
             self.save()
 

@@ -22,8 +22,8 @@ CONDITION_PRICE = 30.0
 NEAR_CONDITION = 0.05
 # the part of Cauchy's loss that draws scalars far from every bound
 FAR_PULL = 0.05
-# the softness at which points are judged
-JUDGED = 0.05
+# the softness at which points are judged: almost the hard count
+JUDGED = 0.005
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class SoftCount:
             misfits: The misfits, as `Objective.misfits`.
             softness: The width of a bound as a part of it.
         """
-        scalars, conditions = self._parts(misfits)
+        scalars, conditions = self.parts(misfits)
         counted = (np.array(WORTH) @ _soft_misses(np.abs(scalars) * TOLERANCE, softness)).sum()
         far = FAR_PULL * np.log1p(scalars**2).sum()
         return float(counted + far + CONDITION_PRICE * conditions.sum())
@@ -62,7 +62,7 @@ class SoftCount:
             misfits: The misfits, as `Objective.misfits`.
             softness: The width of a bound as a part of it.
         """
-        scalars, conditions = self._parts(misfits)
+        scalars, conditions = self.parts(misfits)
         sizes = np.maximum(np.abs(scalars), 1e-3)
         misses = _soft_misses(sizes * TOLERANCE, softness)
         worth = np.array(WORTH) / np.array(BOUNDS)
@@ -74,9 +74,10 @@ class SoftCount:
         weights[len(misfits) - self.conditions :] = np.where(departed, priced, 0.0)
         return weights
 
-    def _parts(
+    def parts(
         self, misfits: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The misfits of the scalars, and those of the conditions."""
         return misfits[: self.scalars], misfits[len(misfits) - self.conditions :]
 
 
