@@ -137,11 +137,3 @@ def simulated_by_ecos(
         )
 
     return run
-
-
-@pytest.fixture(scope="session")
-def as_identified() -> tuple[str, ...]:
-    """Options for the laws that the preset's numbers were identified with."""
-    return (
-        "--set", "ground.friction_law=paper", "--set", "vehicle.transverse_load_at=joint",
-    )  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import TypeVar
 
@@ -11,10 +11,13 @@ from marks import Value
 
 from rlv_landing import Landing, load_preset
 from rlv_landing.history import History
-from rlv_landing.quantities import LEGS
+from rlv_landing.identification.conditions import CONDITIONS
+from rlv_landing.identification.free_numbers import FreeNumbers
+from rlv_landing.identification.targets import Fit, fit_of, paper_targets, targets_of_tests
+from rlv_landing.quantities import LEGS, MODES
 from rlv_landing.studies.envelope.tip_over import RigidBlock
 from rlv_landing.touchdown import footpad_at_rest
-from rlv_landing.validation.paper import paper_counts_against_test, printed_scalars
+from rlv_landing.validation.paper import LEVELS, paper_counts_against_test, printed_scalars
 from rlv_landing.validation.validate import Validation, validate
 
 Compute = TypeVar("Compute", bound=Callable[..., float | str])
@@ -61,8 +64,43 @@ def counts(against: str = "simulation", transverse: str = "") -> str:
         n = paper_counts_against_test()
     else:
         both = found(FIGURES, transverse)
-        n = both.counts if against == "simulation" else both.counts_against_test
+        n = {
+            "simulation": both.counts,
+            "test": both.counts_against_test,
+            "sensed": both.counts_against_test_sensed,
+        }[against]
     return f"{n['within_5']} / {n['within_10']} / {n['within_20']}"
+
+
+@quick
+def plain_counts() -> str:
+    """Printed scalars within 5 / 10 / 20 % of the simulation by the plain relative error."""
+    return within(fit_of(load_preset(FIGURES), paper_targets()), plain=True)
+
+
+@quick
+def counts_of_tests(rule: str = "scale", mode: str = "") -> str:
+    """What yue2022-tests reaches of the tests, through the sensors: in both modes, or in one."""
+    fits = fit_of(load_preset("yue2022-tests"), targets_of_tests(), sensors=True)
+    return within([f for f in fits if mode in ("", f.wanted.mode)], plain=rule == "plain")
+
+
+def within(fits: Sequence[Fit], *, plain: bool) -> str:
+    """Numbers wanted that are within 5 / 10 / 20 %; none that a landing lacks."""
+    errors = [abs(f.plain_error if plain else f.error) for f in fits]
+    return " / ".join(str(sum(e <= level / 100.0 for e in errors)) for level in LEVELS)
+
+
+@quick
+def free_numbers(*modes: str) -> float:
+    """The numbers that an identification with these landing modes varies (both: none named)."""
+    return float(len(FreeNumbers(load_preset(FIGURES), modes=modes or tuple(MODES))))
+
+
+@quick
+def value(name: str, mode: str = "2-2", preset: str = FIGURES) -> float:
+    """A parameter of a preset [SI]."""
+    return float(load_preset(preset, mode)[name])
 
 
 @quick
@@ -128,14 +166,14 @@ def auxiliary_load() -> float:
 
 @quick
 def auxiliary_yield() -> float:
-    """How far the spring of an auxiliary strut yields at the largest load [mm]."""
-    strut = load_preset(FIGURES).auxiliary_strut
-    return 1e3 * (auxiliary_load() / strut.stiffness) ** (1.0 / strut.exponent)
+    """How far an auxiliary strut yields beyond its joints' play [mm]."""
+    (condition,) = (c for c in CONDITIONS if c.name == "auxiliary strut's yield")
+    return 1e3 * max(condition.measure(landing(mode)) for mode in ("2-2", "1-2-1"))
 
 
 @quick
 def auxiliary_secant() -> float:
-    """Load over yield of an auxiliary strut at the largest load [N/m]."""
+    """The largest load over the largest yield of an auxiliary strut [N/m]."""
     return auxiliary_load() / (1e-3 * auxiliary_yield())
 
 
@@ -186,13 +224,6 @@ def peak_force(mode: str) -> float:
     """The main struts' most negative force, sampled each millisecond [N]."""
     h = Landing(load_preset(FIGURES), mode).run(1.0, 1e-3)
     return min(float(h[f"leg[{leg}].main_strut.force"].min()) for leg in LEGS)
-
-
-@quick
-def second_peak(samples: str) -> float:
-    """The largest axial acceleration at the top in 2-2, sampled each so many seconds [m/s2]."""
-    h = Landing(load_preset(FIGURES), "2-2").run(1.0, float(samples))
-    return float(h["body.top_axial_acceleration"].max())
 
 
 @quick

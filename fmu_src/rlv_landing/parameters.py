@@ -25,9 +25,9 @@ class Vehicle:
     """The body and its footpads."""
 
     mass: Annotated[float, Q("kg", "upper (elastic) mass", 1.0, 1e6, "m_u", "paper")] = 178.0
-    inertia: Annotated[float, Q("kg.m2", "rotational inertia of the upper mass about z through its CG", 0.1, 1e9, "I_u", "identified")] = 202.9365
+    inertia: Annotated[float, Q("kg.m2", "rotational inertia of the upper mass about z through its CG", 0.1, 1e9, "I_u", "identified")] = 116.2
     footpad_mass: Annotated[float, Q("kg", "lower (inelastic) mass of one leg, at its footpad", 0.01, 1e4, "m_d", "paper")] = 4.2
-    top_height: Annotated[float, Q("m", "height of the top acceleration sensor above the CG", 0.0, 100.0, "H", "identified")] = 0.5609749
+    top_height: Annotated[float, Q("m", "height of the top acceleration sensor above the CG", 0.0, 100.0, "H", "identified")] = 0.4582
     transverse_load_at: Annotated[str, Q("", "where the body feels the auxiliary struts' transverse force: footpad (consistent) or joint (the paper's assumption C; creates energy)", source="derived", choices=("footpad", "joint"))] = "footpad"
 
 
@@ -38,28 +38,28 @@ class MainStrut:
     joint_radius: Annotated[float, Q("m", "CG to body joint, radially", 0.0, 50.0, "La", "paper")] = 0.445
     joint_depth: Annotated[float, Q("m", "CG to body joint, downward", -50.0, 50.0, "Lb", "paper")] = 1.103
     length: Annotated[float, Q("m", "length, fully extended", 0.05, 100.0, "Lm0", "paper")] = 1.426
-    area_upper: Annotated[float, Q("m2", "piston area in the upper chamber (annulus)", 1e-6, 1.0, "A1", "identified", "mm2")] = 0.001077092
-    area_lower: Annotated[float, Q("m2", "piston area in the lower chamber (bore)", 1e-6, 1.0, "A2", "identified", "mm2")] = 0.001468027
-    volume_upper: Annotated[float, Q("m3", "upper chamber's volume, fully extended", 1e-7, 1.0, "V10", "identified", "cm3")] = 0.0001576004
-    volume_lower: Annotated[float, Q("m3", "lower chamber's volume, fully extended", 1e-7, 1.0, "V20", "identified", "cm3")] = 0.000786185
-    charge_pressure: Annotated[float, Q("Pa", "absolute pressure in both chambers before touchdown", 1e3, 1e8, "P0", "identified", "MPa")] = 147958.5
+    area_upper: Annotated[float, Q("m2", "piston area in the upper chamber (annulus)", 1e-6, 1.0, "A1", "identified", "mm2")] = 0.0009243
+    area_lower: Annotated[float, Q("m2", "piston area in the lower chamber (bore)", 1e-6, 1.0, "A2", "identified", "mm2")] = 0.001145
+    volume_upper: Annotated[float, Q("m3", "upper chamber's volume, fully extended", 1e-7, 1.0, "V10", "identified", "cm3")] = 0.0001858
+    volume_lower: Annotated[float, Q("m3", "lower chamber's volume, fully extended", 1e-7, 1.0, "V20", "identified", "cm3")] = 0.0001629
+    charge_pressure: Annotated[float, Q("Pa", "absolute pressure in both chambers before touchdown", 1e3, 1e8, "P0", "identified", "MPa")] = 390084.4
     ambient_pressure: Annotated[float, Q("Pa", "absolute pressure outside", 1e2, 1e7, "Pa", "closure", "MPa")] = 101300.0
     fluid_density: Annotated[float, Q("kg/m3", "density of the liquid with its air at ambient pressure", 100.0, 3000.0, "rho0", "closure")] = 960.0
-    air_fraction: Annotated[float, Q("", "volume fraction of entrapped air at ambient pressure", 1e-7, 0.2, "x_air", "identified")] = 7.386349e-06
-    air_exponent: Annotated[float, Q("", "polytropic exponent of the air (1.01: nearly isothermal)", 1.01, 1.67, "n_air", "identified")] = 1.285413
-    bulk_modulus: Annotated[float, Q("Pa", "bulk modulus of the liquid at ambient pressure", 1e7, 1e10, "B0", "identified", "MPa")] = 1129429000.0
-    bulk_modulus_slope: Annotated[float, Q("", "growth of the bulk modulus with pressure", 1.5, 30.0, "kB", "identified")] = 8.072677
-    orifice_area_compression: Annotated[float, Q("m2", "effective orifice area Cd Ao in compression", 1e-9, 1e-2, "CdAo_c", "identified", "mm2")] = 6.194802e-06
-    orifice_area_rebound: Annotated[float, Q("m2", "effective orifice area Cd Ao in rebound", 1e-9, 1e-2, "CdAo_r", "identified", "mm2")] = 4.704691e-06
-    laminar_pressure: Annotated[float, Q("Pa", "pressure drop below which the orifice flow turns laminar", 1e3, 1e7, "dP_lam", "identified", "MPa")] = 70811.18
-    seal_coulomb: Annotated[float, Q("N", "Coulomb part of the seal friction", 0.0, 1e6, "Fc", "identified")] = 44.58073
-    seal_pressure: Annotated[float, Q("N/Pa", "seal friction per mean gauge pressure of the chambers", 0.0, 1e-2, "kp", "identified")] = 1.612929e-06
-    seal_stribeck: Annotated[float, Q("N", "Stribeck part of the seal friction, at low speed", 0.0, 1e6, "Fs", "identified")] = 57.06124
-    seal_stribeck_speed: Annotated[float, Q("m/s", "speed at which the Stribeck part fades", 1e-4, 10.0, "v_str", "identified")] = 0.4798192
-    seal_smoothing_speed: Annotated[float, Q("m/s", "speed below which the seal friction is smoothed", 1e-5, 1.0, "v_sm", "identified")] = 0.01411063
+    air_fraction: Annotated[float, Q("", "volume fraction of entrapped air at ambient pressure", 1e-7, 0.2, "x_air", "identified")] = 2.613e-05
+    air_exponent: Annotated[float, Q("", "polytropic exponent of the air (1.01: nearly isothermal)", 1.01, 1.67, "n_air", "identified")] = 1.33
+    bulk_modulus: Annotated[float, Q("Pa", "bulk modulus of the liquid at ambient pressure", 1e7, 1e10, "B0", "identified", "MPa")] = 1244000000.0
+    bulk_modulus_slope: Annotated[float, Q("", "growth of the bulk modulus with pressure", 1.5, 30.0, "kB", "identified")] = 12.73
+    orifice_area_compression: Annotated[float, Q("m2", "effective orifice area Cd Ao in compression", 1e-9, 1e-2, "CdAo_c", "identified", "mm2")] = 5.552e-06
+    orifice_area_rebound: Annotated[float, Q("m2", "effective orifice area Cd Ao in rebound", 1e-9, 1e-2, "CdAo_r", "identified", "mm2")] = 6.054e-06
+    laminar_pressure: Annotated[float, Q("Pa", "pressure drop below which the orifice flow turns laminar", 1e3, 1e7, "dP_lam", "identified", "MPa")] = 50602.75
+    seal_coulomb: Annotated[float, Q("N", "Coulomb part of the seal friction", 0.0, 1e6, "Fc", "identified")] = 35.31
+    seal_pressure: Annotated[float, Q("N/Pa", "seal friction per mean gauge pressure of the chambers", 0.0, 1e-2, "kp", "identified")] = 2.157e-07
+    seal_stribeck: Annotated[float, Q("N", "Stribeck part of the seal friction, at low speed", 0.0, 1e6, "Fs", "identified")] = 162.0
+    seal_stribeck_speed: Annotated[float, Q("m/s", "speed at which the Stribeck part fades", 1e-4, 10.0, "v_str", "identified")] = 0.3791511
+    seal_smoothing_speed: Annotated[float, Q("m/s", "speed below which the seal friction is smoothed", 1e-5, 1.0, "v_sm", "identified")] = 0.03693
     stroke_max: Annotated[float, Q("m", "stroke at which the damper meets its compression stop", 1e-3, 10.0, "s_max", "closure", "mm")] = 0.05
-    stop_stiffness: Annotated[float, Q("N/m", "stiffness of both end stops", 1e3, 1e11, "K_stop", "identified")] = 16896190.0
-    stop_damping: Annotated[float, Q("s/m", "damping of both end stops: force is K e (1 + c e')", 0.0, 100.0, "c_stop", "identified")] = 0.05446362
+    stop_stiffness: Annotated[float, Q("N/m", "stiffness of both end stops", 1e3, 1e11, "K_stop", "identified")] = 48880000.0
+    stop_damping: Annotated[float, Q("s/m", "damping of both end stops: force is K e (1 + c e')", 0.0, 100.0, "c_stop", "identified")] = 0.01048
 
 
 @dataclass(frozen=True)
@@ -69,13 +69,13 @@ class AuxiliaryStrut:
     joint_radius: Annotated[float, Q("m", "CG to body joint, radially", 0.0, 50.0, "Lc", "paper")] = 0.463
     joint_depth: Annotated[float, Q("m", "CG to body joint, downward", -50.0, 50.0, "Ld", "paper")] = 1.513
     length: Annotated[float, Q("m", "length, unloaded", 0.05, 100.0, "Ls0", "paper")] = 1.145
-    stiffness: Annotated[float, Q("N/m", "axial stiffness Ka (N/m^ek)", 1e3, 1e11, "Ka", "identified")] = 4444293.0
-    exponent: Annotated[float, Q("", "hardening exponent ek", 1.0, 3.0, "ek", "identified")] = 1.062278
-    damping: Annotated[float, Q("N.s/m", "axial damping Ca", 0.0, 1e7, "Ca", "identified")] = 1859.117
-    play_tension: Annotated[float, Q("m", "play of the joints in tension, before the strut bears; 0 on both sides: no play", 0.0, 0.1, "g_t", "closure", "mm")] = 0.0
-    play_compression: Annotated[float, Q("m", "play of the joints in compression, before the strut bears", 0.0, 0.1, "g_c", "closure", "mm")] = 0.0
-    play_stiffness: Annotated[float, Q("N/m", "axial stiffness within the play, and beside Ka beyond it", 0.0, 1e9, "k_play", "closure")] = 0.0
-    play_damping: Annotated[float, Q("", "part of the axial damping that acts within the play", 0.0, 1.0, "c_play", "closure")] = 0.0
+    stiffness: Annotated[float, Q("N/m", "axial stiffness Ka (N/m^ek)", 1e3, 1e11, "Ka", "identified")] = 4000000.0
+    exponent: Annotated[float, Q("", "hardening exponent ek", 1.0, 3.0, "ek", "identified")] = 1.074
+    damping: Annotated[float, Q("N.s/m", "axial damping Ca", 0.0, 1e7, "Ca", "identified")] = 8200.0
+    play_tension: Annotated[float, Q("m", "play of the joints in tension, before the strut bears; 0 on both sides: no play", 0.0, 0.1, "g_t", "identified", "mm")] = 0.0008819
+    play_compression: Annotated[float, Q("m", "play of the joints in compression, before the strut bears", 0.0, 0.1, "g_c", "identified", "mm")] = 0.001
+    play_stiffness: Annotated[float, Q("N/m", "axial stiffness within the play, and beside Ka beyond it", 0.0, 1e9, "k_play", "identified")] = 182200.0
+    play_damping: Annotated[float, Q("", "part of the axial damping that acts within the play", 0.0, 1.0, "c_play", "identified")] = 1.0
 
 
 @dataclass(frozen=True)
@@ -84,18 +84,18 @@ class Ground:
 
     slope: Annotated[float, Q("rad", "slope of the ground at rest, clockwise positive (falling towards +x)", -0.7, 0.7, "alpha", "paper", "deg")] = 0.0
     gravity: Annotated[float, Q("m/s2", "gravitational acceleration", 0.0, 50.0, "g", "closure")] = 9.81
-    stiffness: Annotated[float, Q("N/m", "normal stiffness Kg (N/m^en)", 1e3, 1e13, "Kg", "identified")] = 61010130.0
-    exponent: Annotated[float, Q("", "exponent en of the normal stiffness", 1.0, 3.0, "en", "identified")] = 1.624252
-    damping: Annotated[float, Q("N.s/m", "normal damping Cgmax at full depth", 0.0, 1e8, "Cgmax", "identified")] = 6950.935
-    damping_depth: Annotated[float, Q("m", "penetration at which the normal damping is full", 1e-7, 0.1, "d_ramp", "identified", "mm")] = 0.0001397513
-    friction: Annotated[float, Q("", "friction coefficient mu; below 1e-7 it counts as 0", 0.0, 3.0, "mu", "identified")] = 0.2882521
+    stiffness: Annotated[float, Q("N/m", "normal stiffness Kg (N/m^en)", 1e3, 1e13, "Kg", "identified")] = 42000000.0
+    exponent: Annotated[float, Q("", "exponent en of the normal stiffness", 1.0, 3.0, "en", "identified")] = 1.419
+    damping: Annotated[float, Q("N.s/m", "normal damping Cgmax at full depth", 0.0, 1e8, "Cgmax", "identified")] = 3168.0
+    damping_depth: Annotated[float, Q("m", "penetration at which the normal damping is full", 1e-7, 0.1, "d_ramp", "identified", "mm")] = 2.165829e-05
+    friction: Annotated[float, Q("", "friction coefficient mu; below 1e-7 it counts as 0", 0.0, 3.0, "mu", "identified")] = 0.2801
     friction_law: Annotated[str, Q("", "passive: an elastic displacement of constant stiffness and a slider, which never supplies energy; paper: Eqs. (16), (17), which may", choices=("passive", "paper"))] = "passive"
-    stick_displacement: Annotated[float, Q("m", "displacement s_r0 of a sticking footpad: where friction_law = paper starts to slip; of which tangential_stiffness = 0 and slip_zone are made", 1e-6, 0.1, "s_r0", "identified", "mm")] = 0.0012289
+    stick_displacement: Annotated[float, Q("m", "displacement s_r0 of a sticking footpad: where friction_law = paper starts to slip; of which tangential_stiffness = 0 and slip_zone are made", 1e-6, 0.1, "s_r0", "identified", "mm")] = 0.0009128
     tangential_stiffness: Annotated[float, Q("N/m", "stiffness K of a sticking footpad along the ground, friction_law = passive; 0: the whole vehicle's mass times 9.80665 m/s2 over stick_displacement", 0.0, 1e12, "K_t", "closure")] = 0.0
     slip_zone: Annotated[float, Q("", "part of stick_displacement over which a footpad passes from sticking to slipping, friction_law = passive", 1e-3, 1.0, source="closure")] = 0.07
-    stribeck_gain: Annotated[float, Q("", "excess ar of the sticking over the sliding friction", 0.0, 2.0, "ar", "identified")] = 0.05135416
-    stribeck_speed: Annotated[float, Q("m/s", "slip speed b_strib at which that excess fades", 1e-4, 10.0, "b_strib", "identified")] = 0.01511486
-    stick_damping: Annotated[float, Q("N.s/m", "damping Cr of a sticking footpad", 0.0, 1e6, "Cr", "identified")] = 8.077528
+    stribeck_gain: Annotated[float, Q("", "excess ar of the sticking over the sliding friction", 0.0, 2.0, "ar", "identified")] = 0.005419
+    stribeck_speed: Annotated[float, Q("m/s", "slip speed b_strib at which that excess fades", 1e-4, 10.0, "b_strib", "identified")] = 0.02604
+    stick_damping: Annotated[float, Q("N.s/m", "damping Cr of a sticking footpad", 0.0, 1e6, "Cr", "identified")] = 19.19
     direction_speed: Annotated[float, Q("m/s", "slip speed below which friction is shared evenly between x and z, friction_law = paper", 1e-5, 0.1, "v_dir", "closure")] = 0.005
     release_time: Annotated[float, Q("s", "time constant at which the friction displacement returns to 0 out of contact", 1e-5, 1.0, "tau_sr", "closure")] = 0.002
 
@@ -105,11 +105,11 @@ class Drop:
     """The vehicle's state at the first contact, and the duration of the free flight before it."""
 
     mode: Annotated[str, Q("", "landing mode: legs that touch first - second - third", source="paper", choices=tuple(MODES))] = "2-2"
-    contact_time: Annotated[float, Q("s", "time of the first contact; the flight before it is free", 0.0, 60.0, source="identified")] = 0.08965464
-    tilt: Annotated[float, Q("rad", "pitch at first contact, clockwise positive", -1.5, 1.5, source="identified", display_unit="deg")] = -0.1300537
-    pitch_rate: Annotated[float, Q("rad/s", "pitch rate at first contact, clockwise positive", -10.0, 10.0, source="identified", display_unit="deg/s")] = 0.3485004
-    horizontal_velocity: Annotated[float, Q("m/s", "velocity of the CG along inertial x at first contact", -50.0, 50.0, source="identified")] = 0.3416442
-    vertical_velocity: Annotated[float, Q("m/s", "velocity of the CG along inertial y (up) at first contact", -50.0, 50.0, source="identified")] = -1.379071
+    contact_time: Annotated[float, Q("s", "time of the first contact; the flight before it is free", 0.0, 60.0, source="identified")] = 0.089502
+    tilt: Annotated[float, Q("rad", "pitch at first contact, clockwise positive", -1.5, 1.5, source="identified", display_unit="deg")] = -0.1378
+    pitch_rate: Annotated[float, Q("rad/s", "pitch rate at first contact, clockwise positive", -10.0, 10.0, source="identified", display_unit="deg/s")] = 0.4
+    horizontal_velocity: Annotated[float, Q("m/s", "velocity of the CG along inertial x at first contact", -50.0, 50.0, source="identified")] = 0.3492
+    vertical_velocity: Annotated[float, Q("m/s", "velocity of the CG along inertial y (up) at first contact", -50.0, 50.0, source="identified")] = -1.359
 
 
 @dataclass(frozen=True)

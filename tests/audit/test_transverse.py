@@ -6,6 +6,7 @@ import pytest
 
 from rlv_landing import Landing, load_preset
 from rlv_landing.audit.transverse import joint_warning, warning_of
+from rlv_landing.presets import preset_names
 
 JOINT = {"vehicle.transverse_load_at": "joint"}
 SET = ("--set", "vehicle.transverse_load_at=joint")
@@ -60,7 +61,7 @@ def test_it_names_what_the_landing_itself_creates_and_the_remedy(mode):
 
 
 def test_there_is_none_at_the_footpad_which_is_the_default_of_every_preset(mode):
-    vehicles = [load_preset(name, mode) for name in ("yue2022-figures", "yue2022-table2")]
+    vehicles = [load_preset(name, mode) for name in preset_names()]
     assert joint_warning(vehicles) is None
     assert warning_of(Landing(vehicles[0]).run(0.1)) is None
 

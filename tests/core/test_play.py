@@ -71,7 +71,7 @@ def test_well_inside_the_play_the_strut_hardly_bears(part, p):
 
 @given(st.floats(2.0, 10.0), st.floats(1e-4, 2e-3))
 def test_well_past_the_play_it_is_the_strut_that_is_shorter_by_the_play(part, g):
-    p = BASE._replace(auxiliary_kind=1.0, g_t=g, g_c=g)
+    p = bearing_nothing_at_rest(BASE._replace(auxiliary_kind=1.0, g_t=g, g_c=g, k_play=0.0))
     s = part * g
     rest = elastic(s - g, 0.0, p).force
     assert auxiliary_strut(s, 0.0, p).force == approx(rest, rel=5e-3)
@@ -79,10 +79,12 @@ def test_well_past_the_play_it_is_the_strut_that_is_shorter_by_the_play(part, g)
 
 
 def test_without_play_the_law_is_the_papers_whatever_else_is_set():
+    none = {"auxiliary_strut.play_tension": 0.0, "auxiliary_strut.play_compression": 0.0}
     values = {"auxiliary_strut.play_stiffness": 1e6, "auxiliary_strut.play_damping": 0.5}
-    p = leg_models(Parameters().with_values(values))[0]
+    p = leg_models(Parameters().with_values(none | values))[0]
     assert p.auxiliary_kind == 0.0
-    plain, other = (Landing(load_preset("yue2022-figures").with_values(v)) for v in ({}, values))
+    rigid = load_preset("yue2022-figures").with_values(none)
+    plain, other = (Landing(rigid.with_values(v)) for v in ({}, values))
     assert list(plain.run(0.3).data.ravel()) == list(other.run(0.3).data.ravel())
 
 

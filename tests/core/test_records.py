@@ -64,9 +64,11 @@ def test_every_number_of_the_models_comes_from_a_parameter_or_is_worked_out_of_s
 def test_the_numbers_of_laws_are_their_places_in_the_order_of_names():
     leg = leg_models(Parameters())[0]
     assert sorted(MAIN_STRUTS)[int(leg.main_kind)] == "liquid-spring"
-    assert sorted(AUXILIARY_STRUTS)[int(leg.auxiliary_kind)] == "elastic"
+    assert sorted(AUXILIARY_STRUTS)[int(leg.auxiliary_kind)] == "elastic-with-play"
     assert sorted(FRICTION_LAWS)[int(leg.friction_kind)] == "passive"
-    paper = leg_models(Parameters().with_values({"ground.friction_law": "paper"}))[0]
+    none = {"auxiliary_strut.play_tension": 0.0, "auxiliary_strut.play_compression": 0.0}
+    paper = leg_models(Parameters().with_values({"ground.friction_law": "paper", **none}))[0]
+    assert sorted(AUXILIARY_STRUTS)[int(paper.auxiliary_kind)] == "elastic"
     assert sorted(FRICTION_LAWS)[int(paper.friction_kind)] == "paper"
     assert set(FRICTION_LAWS) == set(PARAMETER_QUANTITIES["ground.friction_law"].choices)
 

@@ -106,20 +106,15 @@ def test_names_are_escaped(text):
     assert "yue2022-figures &lt;&amp;&gt;" in text
 
 
-def test_the_command_writes_the_page_and_does_not_overwrite_unless_told(
-    as_identified, command, tmp_path
-):
+def test_the_command_writes_the_page_and_does_not_overwrite_unless_told(command, tmp_path):
     path = tmp_path / "report.html"
-    assert command("validate", *as_identified, "--mode", "2-2", "--html", str(path)).code == 0
+    assert command("validate", "--mode", "2-2", "--html", str(path)).code == 0
     assert path.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
     path.write_text("precious")
-    done = command("validate", *as_identified, "--mode", "2-2", "--html", str(path))
+    done = command("validate", "--mode", "2-2", "--html", str(path))
     assert (done.code, path.read_text()) == (2, "precious")
     assert "report.html exists; --force overwrites it" in done.err
-    assert (
-        command("validate", *as_identified, "--mode", "2-2", "--html", str(path), "--force").code
-        == 0
-    )
+    assert command("validate", "--mode", "2-2", "--html", str(path), "--force").code == 0
     assert path.stat().st_size > 100_000
     assert [p.name for p in tmp_path.iterdir()] == ["report.html"]
 

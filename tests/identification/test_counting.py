@@ -16,10 +16,10 @@ from pytest import approx
 
 from rlv_landing import Landing, load_preset
 from rlv_landing.identification.conditions import CONDITIONS
-from rlv_landing.identification.counting import SOFTNESSES, damped_points
+from rlv_landing.identification.counting.descent import SOFTNESSES, damped_points
+from rlv_landing.identification.counting.soft_count import BOUNDS, TOLERANCE, WORTH
 from rlv_landing.identification.free_numbers import FreeNumbers
 from rlv_landing.identification.objective import Objective
-from rlv_landing.identification.soft_count import BOUNDS, TOLERANCE, WORTH
 from rlv_landing.identification.targets import (
     Fit,
     Wanted,
@@ -53,7 +53,7 @@ def test_soft_misses_are_the_hard_ones_where_no_error_is_near_a_bound(errors):
     """But for the small pull, which is Cauchy's loss."""
     hard = sum(worth * (e > bound) for e in errors for bound, worth in zip(BOUNDS, WORTH))
     pull = misses(errors) - sum(
-        w / (1.0 + np.exp((p - e) / (0.05 * p))) for e in errors for p, w in zip(BOUNDS, WORTH)
+        w / (1.0 + np.exp((p - e) / (0.005 * p))) for e in errors for p, w in zip(BOUNDS, WORTH)
     )
     assert pull == approx(0.05 * np.log1p((np.array(errors) / TOLERANCE) ** 2).sum(), abs=1e-9)
     assert misses(errors) - pull == approx(hard, abs=0.06 * sum(WORTH) * N)

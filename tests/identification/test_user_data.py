@@ -15,12 +15,12 @@ from pytest import approx
 
 from rlv_landing import Landing, LandingError, load_preset
 from rlv_landing.history import History
+from rlv_landing.identification.counting.soft_count import TOLERANCE, SoftCount
 from rlv_landing.identification.free_numbers import FreeNumbers
 from rlv_landing.identification.measured.series import Series
 from rlv_landing.identification.measured.target_file import read_targets
 from rlv_landing.identification.objective import Objective
 from rlv_landing.identification.search_folder import Best, SearchFolder
-from rlv_landing.identification.soft_count import TOLERANCE, SoftCount
 from rlv_landing.identification.targets import Landed, Wanted, fit_of
 from rlv_landing.presets import read_toml
 from rlv_landing.studies.sweep.responses import Measure

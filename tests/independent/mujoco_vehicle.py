@@ -53,6 +53,8 @@ def linear_struts(parameters: Parameters) -> Parameters:
     return parameters.with_values(
         {
             "auxiliary_strut.exponent": 1.0,
+            "auxiliary_strut.play_tension": 0.0,
+            "auxiliary_strut.play_compression": 0.0,
             **{f"main_strut.{name}": value for name, value in main.items()},
         }
     )

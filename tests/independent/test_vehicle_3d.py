@@ -240,6 +240,11 @@ PLAY = {
     "auxiliary_strut.play_stiffness": 1e5,
     "auxiliary_strut.play_damping": 0.2,
 }
+RIGID = {
+    "auxiliary_strut.play_tension": 0.0,
+    "auxiliary_strut.play_compression": 0.0,
+    "auxiliary_strut.damping": 2000.0,
+}
 PAPER = {"ground.friction_law": "paper"}
 JOINT = {"vehicle.transverse_load_at": "joint"}
 LOADED = Inputs(force=(400.0, -300.0), moment=150.0)
@@ -256,6 +261,7 @@ LANDINGS = {
     "1-2-1 on a slope falling towards -x, other legs first": ("1-2-1", LEANING, Inputs(), 0.27),
     "2-2 with force and moment": ("2-2", NEAR, LOADED, 0.27),
     CAVITIES: ("2-2", NEAR | {"main_strut.air_fraction": 1e-6}, Inputs(), 0.27),
+    "2-2 without play": ("2-2", NEAR | RIGID, Inputs(), 0.27),
     "2-2 with play in the auxiliary struts' joints": ("2-2", NEAR | PLAY, Inputs(), 0.27),
     "1-2-1 on a slope with play in tension only": (
         "1-2-1",

@@ -54,11 +54,11 @@ def test_free_fall_is_a_parabola_to_1e10_m_whatever_the_play_of_the_joints(mode,
 
 
 def test_first_contact_comes_at_its_time_with_the_state_that_was_asked_for(mode):
-    """The legs yield by some micrometres in the turning flight."""
+    """The legs yield in the turning flight, by some hundredths of a millimetre of joint play."""
     landing = Landing(load_preset(FIGURES, mode))
     drop = landing.parameters.drop
     landing.advance_to(drop.contact_time)
-    assert landing.get("leg[1].footpad.y") == approx(0.0, abs=2e-5)
+    assert landing.get("leg[1].footpad.y") == approx(0.0, abs=5e-5)
     assert landing.get("body.pitch") == approx(drop.tilt, abs=1e-6)
     assert landing.get("body.vx") == approx(drop.horizontal_velocity, abs=1e-4)
     assert landing.get("body.vy") == approx(drop.vertical_velocity, abs=1e-4)
@@ -294,7 +294,7 @@ def test_bottoming_out_stays_near_the_stop_and_is_in_the_summary():
 def test_a_strong_moment_topples_the_vehicle():
     landing = Landing(load_preset(FIGURES))
     landing.set_inputs({"external.moment": 5000.0})
-    landing.run(1.5)
+    landing.run(0.8)
     assert landing.get("status.phase") == 3.0
     assert landing.get("status.stability_margin") < 0.0
 

@@ -129,6 +129,7 @@ LENGTHS = (
     "vehicle.top_height", "main_strut.joint_radius", "main_strut.joint_depth", "main_strut.length",
     "main_strut.stroke_max", "auxiliary_strut.joint_radius", "auxiliary_strut.joint_depth",
     "auxiliary_strut.length", "ground.damping_depth", "ground.stick_displacement",
+    "auxiliary_strut.play_tension", "auxiliary_strut.play_compression",
 )  # fmt: skip
 
 
@@ -155,6 +156,7 @@ def scaled(mass: float, length: float) -> Parameters:
         **{f"main_strut.orifice_area_{name}": mass * speed for name in ("compression", "rebound")},
         "main_strut.seal_pressure": mass,
         "main_strut.stop_stiffness": mass / length,
+        "auxiliary_strut.play_stiffness": mass / length,
         "main_strut.stop_damping": 1.0 / speed,
         **{f"{group}.damping": mass / speed for group in ("auxiliary_strut", "ground")},
         "ground.stick_damping": mass / speed,

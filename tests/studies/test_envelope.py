@@ -166,7 +166,7 @@ def test_a_limit_passed_is_lost_by_the_criterion_limit_only():
 
 
 def test_a_vehicle_that_bottoms_out_says_with_which_leg():
-    landing = judged_landing(small(), {V: 0.3, TILT: -0.13, "main_strut.stroke_max": 0.02})
+    landing = judged_landing(small(), {V: 0.3, TILT: -0.13, "main_strut.stroke_max": 0.015})
     assert (landing.name, landing.condition.split(",")[0]) == (
         "bottomed out",
         f"leg {landing.leg} bottoms out",

@@ -31,8 +31,8 @@ drop.horizontal_velocity = 0.0
 [[factor]]
 name = "drop.tilt"
 unit = "deg"
-low = -2.0
-high = 2.0
+low = -1.0
+high = 1.0
 [[factor]]
 name = "drop.vertical_velocity"
 distribution = "normal"
@@ -41,8 +41,8 @@ deviation = 0.1
 [[factor]]
 name = "main_strut.stroke_max"
 unit = "mm"
-low = 100
-high = 140
+low = 60
+high = 100
 """
 
 

@@ -25,7 +25,7 @@ def parameter_options(command: F) -> F:
         click.option(
             "--preset",
             metavar="NAME",
-            help="Named parameters [default: yue2022-figures]; also yue2022-table2.",
+            help="Named parameters [default: yue2022-figures]; also yue2022-tests, yue2022-table2.",
         ),
         click.option(
             "--parameters", "file", metavar="FILE.toml", help="Parameters from a TOML file instead."

@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..workers import default_workers
-from .counting import KICKS, count_round
+from .counting.descent import KICKS, count_round
+from .counting.programme import programmes
 from .free_numbers import folded
 from .global_search import GlobalSearch
 from .objective import Objective, cauchy_loss
@@ -174,7 +175,10 @@ class Search:
         )
 
     def count(self, evaluations: int, progress: Progress) -> None:
-        """Search for the fewest missed bounds, in rounds from the best point (`count_round`).
+        """Search for the fewest missed bounds, in rounds from the best point.
+
+        They are in turn linear programmes (`programmes`) and a descent on the soft count
+        (`count_round`).
 
         Args:
             evaluations: The evaluations of the landings by this search, in all, after which no
@@ -195,9 +199,12 @@ class Search:
             return found
 
         while self.best.counted < evaluations:
-            kick = KICKS[self.best.rounds % len(KICKS)]
-            start, seed = folded(self.best.z).tolist(), (self.seed, self.best.rounds)
-            count_round(self.objective.soft_count, evaluate, start, seed, kick)
+            start, descents = folded(self.best.z).tolist(), self.best.rounds // 2
+            if self.best.rounds % 2 == 0:
+                programmes(self.objective.soft_count, evaluate, start)
+            else:
+                kick, seed = KICKS[descents % len(KICKS)], (self.seed, self.best.rounds)
+                count_round(self.objective.soft_count, evaluate, start, seed, kick)
             self.best.rounds += 1
             self.save()
 

@@ -9,12 +9,12 @@ from .. import __version__
 from ..parameters import Parameters
 from ..quantities import MODES
 from ..validation.paper import LEVELS
+from .counting.soft_count import TOLERANCE
 from .determination import determinations
 from .identify import Search
 from .measured.series import CurveFit
 from .objective import Objective
 from .search_folder import Best
-from .soft_count import TOLERANCE
 from .targets import Fit, fit_of, paper_targets, targets_of_tests
 
 

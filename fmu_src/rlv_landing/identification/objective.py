@@ -12,9 +12,9 @@ from ..errors import LandingError
 from ..parameters import Parameters
 from ..quantities import MODES
 from .conditions import CONDITIONS, Condition
+from .counting.soft_count import TOLERANCE, SoftCount
 from .free_numbers import FreeNumbers
 from .measured.series import Series
-from .soft_count import TOLERANCE, SoftCount
 from .targets import Landed, Wanted, paper_targets, targets_of_tests
 
 LARGEST_MISFIT = 2.0

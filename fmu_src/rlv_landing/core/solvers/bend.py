@@ -12,7 +12,7 @@ LEVEL = 1e-30
 # a crest is known well enough where the parabola promises no more than this part of its size beyond
 ENOUGH = 2e-4
 # and where no side falls by more than this part
-STEEP = 0.001
+STEEP = 0.0005
 # a steep side may hide this part of its height above the crest
 HIDDEN = 0.5
 # it is looked for no nearer to a known point than this part of the gap between them

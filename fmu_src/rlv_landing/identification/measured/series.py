@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ...errors import LandingError, unknown
 from ...history import History
 from ...quantities import MODES, OUTPUT_QUANTITIES, shown
-from ..soft_count import TOLERANCE
+from ..counting.soft_count import TOLERANCE
 
 Vector = NDArray[np.float64]
 CURVE_SAMPLES = 100

@@ -34,6 +34,8 @@ LOCKED: dict[str, float | str] = {
     "auxiliary_strut.stiffness": 2e8,
     "auxiliary_strut.exponent": 1.0,
     "auxiliary_strut.damping": 5e4,
+    "auxiliary_strut.play_tension": 0.0,
+    "auxiliary_strut.play_compression": 0.0,
     "ground.stiffness": 1e6,
     "ground.exponent": 1.0,
     "ground.damping": 5e4,

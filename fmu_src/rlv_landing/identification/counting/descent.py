@@ -14,13 +14,13 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .soft_count import JUDGED, SoftCount
+from .soft_count import SoftCount
 
 Vector = NDArray[np.float64]
 # the misfits at points of the unit cube, tried side by side
 Evaluate = Callable[[Sequence[Sequence[float]]], list[Vector]]
 
-SOFTNESSES = (0.6, 0.4, 0.25, 0.15, 0.1, JUDGED)
+SOFTNESSES = (0.6, 0.4, 0.25, 0.15, 0.1, 0.05)
 # standard deviations of the rounds' first steps, on the unit cube
 KICKS = (0.0, 0.02, 0.04, 0.02, 0.08)
 DAMPINGS = tuple(10.0 ** (0.5 * k) for k in range(-3, 8))

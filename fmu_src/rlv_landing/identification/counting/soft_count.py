@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..validation.paper import LEVELS
+from ...validation.paper import LEVELS
 
 # a scalar's error [fraction of its scale] that counts as a misfit of one: below it, scalars are as
 # good as reached
@@ -22,8 +22,8 @@ CONDITION_PRICE = 30.0
 NEAR_CONDITION = 0.05
 # the part of Cauchy's loss that draws scalars far from every bound
 FAR_PULL = 0.05
-# the softness at which points are judged
-JUDGED = 0.05
+# the softness at which points are judged: almost the hard count
+JUDGED = 0.005
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class SoftCount:
             misfits: The misfits, as `Objective.misfits`.
             softness: The width of a bound as a part of it.
         """
-        factors, scalars, conditions = self._parts(misfits)
+        factors, scalars, conditions = self.parts(misfits)
         missed = np.array(WORTH) @ _soft_misses(np.abs(scalars) * TOLERANCE, softness)
         counted = (factors * missed).sum()
         far = FAR_PULL * (factors * np.log1p(scalars**2)).sum()
@@ -66,7 +66,7 @@ class SoftCount:
             misfits: The misfits, as `Objective.misfits`.
             softness: The width of a bound as a part of it.
         """
-        factors, scalars, conditions = self._parts(misfits)
+        factors, scalars, conditions = self.parts(misfits)
         sizes = np.maximum(np.abs(scalars), 1e-3)
         misses = _soft_misses(sizes * TOLERANCE, softness)
         worth = np.array(WORTH) / np.array(BOUNDS)
@@ -80,7 +80,7 @@ class SoftCount:
         weights[len(misfits) - self.conditions :] = np.where(departed, priced, 0.0)
         return weights
 
-    def _parts(
+    def parts(
         self, misfits: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """The scalars' factors, their misfits without these, and the conditions' misfits."""

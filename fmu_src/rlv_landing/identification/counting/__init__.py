@@ -1,0 +1,1 @@
+"""The search that counts the scalars within 5, 10 and 20 %."""
