@@ -212,3 +212,10 @@ def test_missing_file_unreadable_file_and_unknown_preset(tmp_path):
 )
 def test_values_may_carry_their_unit(name, text, value):
     assert parse_value(PARAMETER_QUANTITIES[name], text) == approx(value, rel=1e-12)
+
+
+def test_a_liquid_without_stiffness_at_zero_pressure_is_refused():
+    soft = {"main_strut.bulk_modulus": 1e7, "main_strut.bulk_modulus_slope": 30.0}
+    Parameters().with_values({**soft, "main_strut.ambient_pressure": 2.99e5})
+    with pytest.raises(LandingError, match=r"stay below .* = 300000 Pa"):
+        Parameters().with_values({**soft, "main_strut.ambient_pressure": 3.01e5})
