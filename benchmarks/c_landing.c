@@ -562,8 +562,9 @@ static double springs(const double *q, const Loads *w, const Parameters *p)
     double s = w->auxiliary_stroke, n = p->ek + 1.0, slope;
     double held = p->Ka / n * pow(fabs(s), n);
     if (p->g_t + p->g_c > 0.0)
-        held = p->Ka / n * (pow(bearing(-s - p->g_t, p, &slope), n) +
-                            pow(bearing(s - p->g_c, p, &slope), n)) +
+        held = MAX(0.0, p->Ka / n * (pow(bearing(-s - p->g_t, p, &slope), n) +
+                                     pow(bearing(s - p->g_c, p, &slope), n)) -
+                            p->U_0 - p->F_0 * s) +
                0.5 * p->k_play * s * s;
     double past = w->stroke < 0.0 ? w->stroke : MAX(w->stroke - p->s_max, 0.0);
     held += 0.5 * p->K_stop * past * past;
@@ -649,7 +650,7 @@ static int bulges(const Landing *s, double h)
  * loose. */
 static double lost_inside(Landing *s, double h)
 {
-    double most = 0.0, calls = s->rhs_calls, *y = s->y_stage, dissipated, dy[MAX_STATES];
+    double most = 0.0, *y = s->y_stage, dissipated, dy[MAX_STATES];
     if (s->rtol <= 1e-4 && !bulges(s, h))
         return 0.0;
     for (double part = 0.25; part < 1.0; part += 0.5) {
@@ -659,10 +660,8 @@ static double lost_inside(Landing *s, double h)
             y[i] = s->y[i] + part * (change + (1.0 - part) * (bend + part * last));
         }
         slope(s, s->t + part * h, y, dy);
-        conserve(s, s->t + part * h, y, dy);
         most = MAX(most, lost(s, energy(s, y, &dissipated) - s->start_energy, part * h));
     }
-    s->rhs_calls = calls;
     slope(s, s->t + h, s->y_new, s->k5);
     return most;
 }

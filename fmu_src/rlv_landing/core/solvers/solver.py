@@ -227,7 +227,7 @@ class Solver(Rest):
 
     def _loses_inside(self, h: float) -> bool:
         """The same inside the step: at its quarters, where its interpolant leaves its ends far
-        behind or the tolerance is loose.
+        behind or the tolerance is loose. What is conserved is not brought back there.
         """
         if self.rtol <= LOOSE and not self._bulges():
             return False
@@ -237,7 +237,8 @@ class Solver(Rest):
             ahead = (0.25 + 0.5 * i) * h
             t = self.t + ahead
             self._inside(self._other_dense(), t, self.t, self.t + h, inside)
-            self._outputs_at(t, inside, data(self._half), 0)
+            self._derivatives(t, inside, data(self.k_end))
+            self.system.read(inside, data(self.u_now), data(self.k_end), data(self._half), 0)
             most = max(most, self.system.lost(data(self.last), data(self._half), ahead))
         self._derivatives(self.t + h, data(self.y_new), data(self.k_end))
         return most > 1.0
