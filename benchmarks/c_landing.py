@@ -32,8 +32,8 @@ PARAMETERS = (
     "m_u", "I_u", "m_d", "at_joint", "La", "Lb", "Lm0", "A1", "A2", "V10", "V20", "fill", "Pa",
     "rho0", "x_air", "n_air", "B0", "kB", "CdAo_c", "CdAo_r", "dP_lam", "Fc", "kp", "Fs", "v_str",
     "v_sm", "s_max", "K_stop", "c_stop", "Lc", "Ld", "Ls0", "Ka", "ek", "Ca", "g_t", "g_c",
-    "k_play", "c_play", "F_0", "U_0", "alpha", "Kg", "en", "Cgmax", "d_ramp", "mu", "ar", "b_strib", "Cr",
-    "tau_sr", "K_t", "zone", "g",
+    "k_play", "c_play", "F_0", "U_0", "alpha", "Kg", "en", "Cgmax", "d_ramp", "mu", "ar", "b_strib",
+    "Cr", "tau_sr", "K_t", "zone", "g",
 )  # fmt: skip
 # the core's own options, and options that may change the digits
 EXACT: tuple[str, ...] = tuple(COMPILE_ARGS)
