@@ -1,9 +1,9 @@
 """Builds `build/RlvLanding.fmu`; run by `build_fmu.sh`.
 
-pythonfmu builds an FMU of the slave and its own copy of the package. This unpacks it, puts the
-front before its binary, completes its description, adds the documentation and packs it again. The
-same sources give the same bytes. FMPy validates the FMU and simulates one landing before it
-replaces an older file.
+pythonfmu builds an FMU of the slave and its own copy of the package. This unpacks it, completes its
+description, adds the documentation, gives it an identity of its own, puts the front in place of
+pythonfmu's binary, and packs it again. The same sources and compilers give the same bytes. FMPy
+validates the FMU and simulates one landing before it replaces an older file.
 """
 
 from __future__ import annotations
@@ -23,10 +23,11 @@ import fmpy
 from fmpy.validation import validate_fmu
 from pythonfmu.builder import FmuBuilder
 
-from .binary import replace_binaries
+from .binary import record_libpython, replace_binaries
 from .core_source import package_name
 from .description import describe
 from .documentation import write_documentation
+from .identity import NO_GUID, identify
 
 HERE = Path(__file__).parent.parent
 ROOT = HERE.parent
@@ -51,12 +52,10 @@ IMPORTS_BUILDER = "from .builder import FmuBuilder\n"
 # dates that a zip file can hold, 1980 to 2107 [s since 1970]; 1980 also for sources without a date
 OLDEST, NEWEST = 315532800, 4354819199
 
-# pythonfmu runs its script for each instance, so the slave's class is in a module, made once
 SCRIPT = """\
-from {package}.slave import RlvLanding, keep
+from {package}.slave import RlvLanding
 
 __all__ = ["RlvLanding"]
-keep(globals())  # pythonfmu releases one reference too many
 """
 
 
@@ -99,7 +98,7 @@ def source_date() -> datetime:
 def copy_sources(folder: Path) -> tuple[Path, Path]:
     """Copy slave and package to `folder`; return pythonfmu's script and the package.
 
-    Their names carry the version, so that FMUs of two versions can run in one process.
+    Their names carry the version; `identify` adds the build.
     """
     name = "rlv_landing_" + re.sub(r"\W", "_", version())
     package = folder / name
@@ -115,36 +114,47 @@ def copy_sources(folder: Path) -> tuple[Path, Path]:
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(file, target)
     text = (HERE / "landing_fmu.py").read_text()
-    (package / "slave.py").write_text(
-        re.sub(r"^from rlv_landing\b", f"from {name}", text, flags=re.M)
-    )
+    (package / "slave.py").write_text(re.sub(r"^from rlv_landing\.?", "from .", text, flags=re.M))
     script = folder / f"{name.replace('rlv_landing', 'landing_fmu')}.py"
     script.write_text(SCRIPT.format(package=name))
     return script, package
 
 
-def build_with_pythonfmu(folder: Path) -> Path:
+def build_with_pythonfmu(folder: Path) -> tuple[Path, Path, str]:
     """Build an FMU of slave and package by pythonfmu, and unpack it.
 
     Args:
         folder: Empty folder to work in.
 
     Returns:
-        Folder of the FMU's files, without those of NOT_NEEDED.
+        Folder of the FMU's files; in it the package; name of the script that imports it.
 
     Raises:
         SystemExit: pythonfmu is of a version whose `__init__.py` differs.
     """
-    slave, package = copy_sources(folder)
+    script, package = copy_sources(folder)
     built = FmuBuilder.build_FMU(
-        slave, dest=folder / "out" / "RlvLanding.fmu", project_files=[package]
+        script, dest=folder / "out" / "RlvLanding.fmu", project_files=[package]
     )
     files = folder / "files"
     with zipfile.ZipFile(built) as archive:
         archive.extractall(files)
+    package = files / "resources" / package.name
+    take_pythonfmu(files / "resources" / "pythonfmu", package)
+    return files, package, script.stem
+
+
+def take_pythonfmu(own: Path, package: Path) -> None:
+    """Move the FMU's copy of pythonfmu into its package, without what a slave does not need.
+
+    There it has a name that no other pythonfmu in the process has.
+
+    Raises:
+        SystemExit: pythonfmu is of a version whose `__init__.py` differs.
+    """
     for name in NOT_NEEDED:
-        (files / "resources" / "pythonfmu" / name).unlink()
-    init = files / "resources" / "pythonfmu" / "__init__.py"
+        (own / name).unlink()
+    init = own / "__init__.py"
     text = init.read_text()
     if text.count(IMPORTS_BUILDER) != 1:
         raise SystemExit(
@@ -152,7 +162,9 @@ def build_with_pythonfmu(folder: Path) -> Path:
             "change IMPORTS_BUILDER in fmu_build/build.py"
         )
     init.write_text(text.replace(IMPORTS_BUILDER, ""))
-    return files
+    own.rename(package / "pythonfmu")
+    slave = package / "slave.py"
+    slave.write_text(re.sub(r"^from pythonfmu", "from .pythonfmu", slave.read_text(), flags=re.M))
 
 
 def write_description(files: Path, date: datetime) -> ElementTree.Element:
@@ -160,6 +172,7 @@ def write_description(files: Path, date: datetime) -> ElementTree.Element:
     path = files / "modelDescription.xml"
     tree = ElementTree.parse(path)
     root = tree.getroot()
+    root.set("guid", NO_GUID)
     describe(root, date.strftime("%Y-%m-%dT%H:%M:%SZ"))
     ElementTree.indent(tree, "\t")
     tree.write(path, encoding="UTF-8", xml_declaration=True)
@@ -213,15 +226,19 @@ def main(destination: str) -> None:
     date = source_date()
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         folder = Path(name)
-        files = build_with_pythonfmu(folder)
-        replace_binaries(files)
+        files, package, script = build_with_pythonfmu(folder)
+        record_libpython(files)
         root = write_description(files, date)
         write_documentation(files, root)
+        identify(files, package.name, script)
+        compilers = replace_binaries(files)
         made = folder / "RlvLanding.fmu"
         pack(files, made, date)
         found = check(made)
         shutil.copy(made, target.with_suffix(".part"))
         target.with_suffix(".part").replace(target)
+    for platform, compiler in compilers.items():
+        print(f"{platform}: compiled by {compiler}")
     print(f"{target}: {found}")
 
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { OLDEST = 10, NEWEST = 13 };
+struct python py;
 
 /* Minor version of the Python 3 whose Py_GetVersion this is; 0 for another Python. */
 static int minor_version(void *get_version)
@@ -32,38 +32,134 @@ static bool find_home(const char *library, int minor, char home[PATH_SIZE])
     return false;
 }
 
+/* Set up Python as isolated as start_python says, by the interface of Python 3.14 and later. */
+static bool start_by_config(const char *home, struct message *reason)
+{
+    static const struct {
+        const char *name;
+        int64_t value;
+    } options[] = {{"isolated", 1},         {"use_environment", 0},
+                   {"site_import", 0},      {"user_site_directory", 0},
+                   {"utf8_mode", 1},        {"install_signal_handlers", 0},
+                   {"configure_locale", 0}, {"parse_argv", 0}};
+    void *(*create)(void), (*release)(void *);
+    int (*set_int)(void *, const char *, int64_t), (*set_text)(void *, const char *, const char *);
+    int (*start)(void *), (*get_error)(void *, const char **);
+    *(void **)&create = process_symbol("PyInitConfig_Create");
+    *(void **)&release = process_symbol("PyInitConfig_Free");
+    *(void **)&set_int = process_symbol("PyInitConfig_SetInt");
+    *(void **)&set_text = process_symbol("PyInitConfig_SetStr");
+    *(void **)&start = process_symbol("Py_InitializeFromInitConfig");
+    *(void **)&get_error = process_symbol("PyInitConfig_GetError");
+    void *config = release && set_int && set_text && start && get_error ? create() : NULL;
+    if (!config) {
+        append_text(reason, ": not a complete Python library");
+        return false;
+    }
+    bool set = set_text(config, "home", home) == 0;
+    for (size_t i = 0; set && i < sizeof options / sizeof *options; i++)
+        set = set_int(config, options[i].name, options[i].value) == 0;
+    bool started = set && start(config) == 0;
+    const char *error = NULL;
+    if (!started && get_error(config, &error))
+        append_text(reason, ": it does not start: %s", error);
+    release(config);
+    return started;
+}
+
 /*
- * Start the Python whose symbols are global, with the standard library in `home` and nothing of the
- * environment.
+ * The same by the flags of Python 3.10 to 3.13.
  *
  * Flags rather than PyConfig, whose layout differs between versions: one front serves all of them.
- * Without its standard library Python would end the process, so the caller checks `home`.
  */
-static bool start_python(const char *home, struct message *reason)
+static bool start_by_flags(const char *home, struct message *reason)
 {
     static const char *const flags[] = {"Py_NoSiteFlag", "Py_IgnoreEnvironmentFlag",
                                         "Py_NoUserSiteDirectory", "Py_IsolatedFlag", "Py_UTF8Mode"};
     void (*initialize)(int), (*set_home)(const wchar_t *);
-    void *(*release)(void);
     *(void **)&initialize = process_symbol("Py_InitializeEx");
     *(void **)&set_home = process_symbol("Py_SetPythonHome");
-    *(void **)&release = process_symbol("PyEval_SaveThread");
     static wchar_t wide_home[PATH_SIZE];
-    if (!initialize || !set_home || !release || !decode_utf8(home, wide_home, PATH_SIZE)) {
+    if (!initialize || !set_home || !decode_utf8(home, wide_home, PATH_SIZE)) {
         append_text(reason, ": not a complete Python library");
         return false;
     }
-    for (size_t i = 0; i < sizeof flags / sizeof *flags; i++) {
-        int *flag = process_symbol(flags[i]);
-        if (flag)
-            *flag = 1;
-    }
+    int *found[sizeof flags / sizeof *flags];
+    for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
+        if (!(found[i] = process_symbol(flags[i]))) {
+            append_text(reason, ": it has no %s, so it cannot be kept from the environment",
+                        flags[i]);
+            return false;
+        }
+    for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
+        *found[i] = 1;
     set_home(wide_home);
-    save_locale();
     initialize(0);
-    restore_locale();
-    release();
     return true;
+}
+
+/*
+ * Start the Python whose symbols are global, with the standard library in `home` and nothing of the
+ * environment.
+ *
+ * Without its standard library Python would end the process, so the caller checks `home`.
+ */
+static bool start_python(const char *home, struct message *reason)
+{
+    save_locale();
+    bool started = process_symbol("PyInitConfig_Create") ? start_by_config(home, reason)
+                                                         : start_by_flags(home, reason);
+    restore_locale();
+    if (started)
+        py.PyEval_SaveThread();
+    return started;
+}
+
+/* Functions that tell interpreters apart; none of them is in the limited API. */
+static struct {
+    int minor;
+    PyInterpreterState *(*first)(void), *(*next)(PyInterpreterState *);
+    PyThreadState *(*current_thread)(void);
+} interpreters;
+
+static void find_interpreter_functions(void)
+{
+    interpreters.minor = minor_version(*(void **)&py.Py_GetVersion);
+    *(void **)&interpreters.first = process_symbol("PyInterpreterState_Head");
+    *(void **)&interpreters.next = process_symbol("PyInterpreterState_Next");
+    void *current = process_symbol("PyThreadState_GetUnchecked");
+    if (!current)
+        current = process_symbol("_PyThreadState_UncheckedGet");
+    *(void **)&interpreters.current_thread = current;
+}
+
+/* Look up the functions of `py` in the Python whose symbols are global, once. */
+static bool find_functions(struct message *reason)
+{
+    static const char *const names[] = {
+#define NAME(result, name, arguments) #name,
+        PYTHON_FUNCTIONS(NAME)
+#undef NAME
+    };
+    void **const places[] = {
+#define PLACE(result, name, arguments) (void **)&py.name,
+        PYTHON_FUNCTIONS(PLACE)
+#undef PLACE
+    };
+    if (py.PyExc_KeyboardInterrupt)
+        return true;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (!(*places[i] = process_symbol(names[i]))) {
+            append_text(reason, ": not a complete Python library, it has no %s", names[i]);
+            return false;
+        }
+    find_interpreter_functions();
+    /* keep it loaded, whatever the host does with its own reference */
+    char path[PATH_SIZE];
+    if (library_path(*places[0], path))
+        library_open(path, false);
+    py.PyExc_KeyboardInterrupt = process_symbol("PyExc_KeyboardInterrupt");
+    return py.PyExc_KeyboardInterrupt != NULL;
 }
 
 /* Open the library `path`, check it and start its Python; `what` names its origin in the message.
@@ -80,12 +176,12 @@ static bool try_library(const char *path, const char *what, struct message *reas
     void *get_version = library_symbol(library, "Py_GetVersion");
     int minor = get_version ? minor_version(get_version) : 0;
     char real[PATH_SIZE], home[PATH_SIZE];
-    if (minor < OLDEST) {
-        append_text(reason, ": not Python 3.%d or newer", OLDEST);
+    if (minor < OLDEST_PYTHON) {
+        append_text(reason, ": not Python 3.%d or newer", OLDEST_PYTHON);
     } else if (!library_path(get_version, real) || !find_home(real, minor, home)) {
         append_text(reason, ": its standard library is not above it");
     } else {
-        if (library_open(path, true) && start_python(home, reason))
+        if (library_open(path, true) && find_functions(reason) && start_python(home, reason))
             return true; /* stays open: Python cannot be unloaded */
     }
     library_close(library);
@@ -118,45 +214,46 @@ static bool find_python(const char *resources, struct message *reason)
         try_library(path, "recorded at build:", reason))
         return true;
     /* first the version that built the FMU, which has a compiled core for it */
-    for (int i = NEWEST + 1; i >= OLDEST; i--) {
-        int minor = i > NEWEST ? BUILD_PYTHON_MINOR : i;
+    for (int i = NEWEST_PYTHON + 1; i >= OLDEST_PYTHON; i--) {
+        int minor = i > NEWEST_PYTHON ? BUILD_PYTHON_MINOR : i;
         if (i == BUILD_PYTHON_MINOR)
             continue;
         snprintf(path, sizeof path, PYTHON_LIBRARY, minor);
         if (try_library(path, "the loader's", reason))
             return true;
     }
-    if (installed_python(OLDEST, NEWEST, path))
+    if (installed_python(OLDEST_PYTHON, NEWEST_PYTHON, path))
         return try_library(path, INSTALLED_PYTHON_SOURCE, reason);
     append_text(reason, "; %s none that names its library", INSTALLED_PYTHON_SOURCE);
     return false;
 }
 
+/* Start the Python that the process has in it. */
+static bool start_own_python(int minor, struct message *reason)
+{
+    char path[PATH_SIZE] = "", home[PATH_SIZE];
+    void *get_version = process_symbol("Py_GetVersion");
+    if (library_path(get_version, path) && find_home(path, minor, home))
+        return start_python(home, reason);
+    append_text(reason, ", which is not started, and its standard library is not above %s", path);
+    return false;
+}
+
 bool python_ready(const char *resources, struct message *reason)
 {
-    int (*is_initialized)(void);
     if (!process_symbol("Py_IsInitialized"))
         make_loaded_python_global();
-    *(void **)&is_initialized = process_symbol("Py_IsInitialized");
-    if (is_initialized) {
-        void *get_version = process_symbol("Py_GetVersion");
-        int minor = get_version ? minor_version(get_version) : 0;
-        if (minor < OLDEST) {
-            append_text(reason,
-                        "this process has a Python older than 3.%d; the FMU needs 3.%d to 3.%d",
-                        OLDEST, OLDEST, NEWEST);
+    void *get_version = process_symbol("Py_GetVersion");
+    if (get_version) {
+        int minor = minor_version(get_version);
+        append_text(reason, "this process has a Python 3.%d", minor);
+        if (minor < OLDEST_PYTHON) {
+            append_text(reason, " or older; the FMU needs 3.%d to 3.%d", OLDEST_PYTHON,
+                        NEWEST_PYTHON);
             return false;
         }
-        if (is_initialized())
-            return true;
-        char path[PATH_SIZE], home[PATH_SIZE];
-        if (library_path(get_version, path) && find_home(path, minor, home))
-            return start_python(home, reason);
-        append_text(reason,
-                    "this process has a Python 3.%d that is not started, and its standard library "
-                    "is not above %s",
-                    minor, path);
-        return false;
+        return find_functions(reason) &&
+               (py.Py_IsInitialized() || start_own_python(minor, reason));
     }
     struct message tried = {""};
     if (find_python(resources, &tried))
@@ -164,14 +261,78 @@ bool python_ready(const char *resources, struct message *reason)
     append_text(reason,
                 "no Python library (libpython) of 3.%d to 3.%d was found for this process%s; set "
                 "RLV_LANDING_LIBPYTHON to the path of one",
-                OLDEST, NEWEST, tried.text);
+                OLDEST_PYTHON, NEWEST_PYTHON, tried.text);
     return false;
 }
 
-void interrupt_python(void)
+static bool is_main(PyInterpreterState *interpreter)
 {
-    void (*set_interrupt)(void);
-    *(void **)&set_interrupt = process_symbol("PyErr_SetInterrupt");
-    if (set_interrupt)
-        set_interrupt();
+    return py.PyInterpreterState_GetID(interpreter) == 0;
+}
+
+/*
+ * True if this thread may take Python's lock for the main interpreter.
+ *
+ * PyGILState_Ensure waits for ever, or ends the process, in a thread that runs in a
+ * sub-interpreter. Before Python 3.12 such a thread cannot be told from others.
+ */
+static bool is_in_main_interpreter(struct message *reason)
+{
+    if (!interpreters.first || !interpreters.next || !interpreters.next(interpreters.first()))
+        return true;
+    if (!interpreters.current_thread || interpreters.minor < 12) {
+        append_text(reason, "this process has several Python interpreters, with which the FMU "
+                            "works from Python 3.12 on");
+        return false;
+    }
+    PyThreadState *own = py.PyGILState_GetThisThreadState(), *current = interpreters.current_thread();
+    if ((!own || is_main(py.PyThreadState_GetInterpreter(own))) && (!current || current == own))
+        return true;
+    append_text(reason, "this thread is in a sub-interpreter of Python; call the FMU from the main "
+                        "interpreter");
+    return false;
+}
+
+bool python_enter(long life, PyGILState_STATE *lock, struct message *reason)
+{
+    if (!py.Py_IsInitialized()) {
+        append_text(reason, "the Python of this process has ended, and the FMU's slave with it");
+        return false;
+    }
+    if (!is_in_main_interpreter(reason))
+        return false;
+    *lock = py.PyGILState_Ensure();
+    if (life == 0 || life == python_life())
+        return true;
+    py.PyGILState_Release(*lock);
+    append_text(reason, "the Python of this process was ended and started again, and the FMU's "
+                        "slave has ended with it");
+    return false;
+}
+
+void python_leave(PyGILState_STATE lock)
+{
+    py.PyGILState_Release(lock);
+}
+
+long python_life(void)
+{
+    static long last;
+    static char key[40]; /* each copy of this library counts for itself */
+    if (!key[0])
+        snprintf(key, sizeof key, "rlv_landing life %p", (void *)&last);
+    PyObject *kept = py.PyInterpreterState_GetDict(py.PyInterpreterState_Get());
+    PyObject *known = kept ? py.PyDict_GetItemString(kept, key) : NULL;
+    if (known) {
+        long life = py.PyLong_AsLong(known);
+        if (life > last)
+            last = life;
+        return life;
+    }
+    PyObject *number = py.PyLong_FromLong(++last);
+    if (kept && number)
+        py.PyDict_SetItemString(kept, key, number);
+    if (number)
+        py.Py_DecRef(number);
+    return last;
 }

@@ -3,15 +3,12 @@
 import re
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
-from xml.etree import ElementTree
 
 import fmpy
-import pytest
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-
-OF_MODEL_EXCHANGE = re.compile("Event|Continuous|Integrator|NewDiscrete|SetTime|GetDerivatives")
 
 
 def test_build_script_writes_the_named_file_and_prints_what_it_checked(tmp_path):
@@ -31,17 +28,12 @@ def test_build_script_writes_the_named_file_and_prints_what_it_checked(tmp_path)
 
 
 def test_the_front_compiles_without_a_warning_and_exports_fmi_functions_only(
-    unpacked, tmp_path, monkeypatch
+    binary, header, monkeypatch
 ):
-    monkeypatch.syspath_prepend(ROOT / "fmu_src")
-    from fmu_build import binary
-
-    root = ElementTree.parse(unpacked / "modelDescription.xml").getroot()
-    (tmp_path / "variables.h").write_text(binary.variables_header(root, "pythonfmu.so"))
     monkeypatch.setattr(binary, "FLAGS", [*binary.FLAGS, "-Werror", "-Wpedantic"])
-    binary.compile_front(tmp_path / "front.so", tmp_path)
+    binary.compile_front(header / "front.so", header, binary.for_linux())
     listed = subprocess.run(
-        ["nm", "-D", "--defined-only", tmp_path / "front.so"],
+        ["nm", "-D", "--defined-only", header / "front.so"],
         capture_output=True,
         text=True,
         check=True,
@@ -50,16 +42,22 @@ def test_the_front_compiles_without_a_warning_and_exports_fmi_functions_only(
     declared = re.findall(
         r"#define (fmi2\w+) +fmi2FullName", (binary.HEADERS / "fmi2Functions.h").read_text()
     )
-    assert names == {name for name in declared if not OF_MODEL_EXCHANGE.search(name)}
+    assert names == set(declared)
 
 
-def test_an_unknown_binary_of_pythonfmus_stops_the_build(monkeypatch, unpacked):
-    """A binary with other finalisers than the known two needs a person to look at it."""
-    monkeypatch.syspath_prepend(ROOT / "fmu_src")
-    from fmu_build import binary
-
-    edited = next((unpacked / "binaries" / "linux64").glob("pythonfmu-export-*.so")).read_bytes()
-    with pytest.raises(SystemExit, match="has 1 finalisers, not 2"):
-        binary.without_last_finaliser(edited)
-    with pytest.raises(SystemExit, match="no 64-bit little-endian ELF file"):
-        binary.without_last_finaliser(b"MZ" + edited)
+def test_the_fronts_declarations_of_python_are_those_of_its_limited_api(binary, tmp_path):
+    """A compiler compares each with the header of this Python, as that of 3.10."""
+    source = tmp_path / "compare.c"
+    source.write_text(
+        "#define Py_LIMITED_API 0x030A0000\n"
+        "#include <Python.h>\n"
+        '#include "python.h"\n'
+        "#define COMPARE(result, name, arguments) \\\n"
+        "    _Static_assert( \\\n"
+        "        __builtin_types_compatible_p(__typeof__(py.name), __typeof__(&name)), #name);\n"
+        "PYTHON_FUNCTIONS(COMPARE)\n"
+    )
+    command = ["gcc", "-std=c11", "-fsyntax-only", "-Werror", f"-I{binary.FRONT}"]
+    includes = [f"-I{sysconfig.get_path('include')}", str(source)]
+    done = subprocess.run([*command, *includes], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
