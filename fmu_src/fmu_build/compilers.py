@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 import platform
+import shlex
 import shutil
 import subprocess
 import sys
@@ -19,6 +20,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 GLIBC = "2.17"
+ZIG = (sys.executable, "-m", "ziglang")
 MINGW = "x86_64-w64-mingw32-gcc"
 # undefined behaviour is tested for, and not checked in what users run
 ZIG_FLAGS = ("-fno-sanitize=undefined",)
@@ -43,16 +45,15 @@ class Compiler:
     @property
     def name(self) -> str:
         """What the build says of it: program and version in one line."""
-        return _first_line(self.command)
+        if self.is_zig:
+            return f"zig {_first_line((*ZIG, 'version'))}"
+        return _first_line((*self.command, "--version"))
 
 
 @cache
 def _first_line(command: tuple[str, ...]) -> str:
-    done = subprocess.run(
-        [*command, "--version"], capture_output=True, text=True, check=False, env=environment()
-    )
-    version = (done.stdout or done.stderr).splitlines() or ["unknown version"]
-    return f"{'zig' if 'ziglang' in command else Path(command[0]).name}: {version[0]}"
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment())
+    return (done.stdout.splitlines() or [f"{command[0]} of unknown version"])[0]
 
 
 def has_zig() -> bool:
@@ -61,13 +62,13 @@ def has_zig() -> bool:
 
 
 def _zig(target: str) -> tuple[str, ...]:
-    return (sys.executable, "-m", "ziglang", "cc", "-target", target)
+    return (*ZIG, "cc", "-target", target)
 
 
 def for_linux() -> Compiler:
     """The compiler for this machine's Linux."""
     if os.environ.get("CC"):
-        return Compiler(tuple(os.environ["CC"].split()))
+        return Compiler(tuple(shlex.split(os.environ["CC"])))
     if has_zig() and platform.machine() == "x86_64":
         return Compiler(_zig(f"x86_64-linux-gnu.{GLIBC}"), ZIG_FLAGS)
     return Compiler(("gcc",))
