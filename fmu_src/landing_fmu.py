@@ -32,6 +32,7 @@ from pythonfmu import (
 from pythonfmu.enums import Fmi2Status
 
 from rlv_landing import Landing, LandingError, Parameters, __version__
+from rlv_landing.core import COMPILED
 from rlv_landing.landing import DEFAULT_RTOL
 from rlv_landing.parameters import PARAMETER_QUANTITIES, check_value
 from rlv_landing.quantities import (
@@ -198,7 +199,9 @@ class RlvLanding(Fmi2Slave):
             if not 0.0 < step_size < math.inf:
                 raise LandingError(f"step = {step_size:g} s must be finite and above 0 s")
             now = current_time - self._start_time
-            if not abs(now - landing.time) <= 1e-9 * (1.0 + landing.time):
+            # the rounding of the importer's time, as a sum of doubles from its start, or as float32
+            rounding = 2.0**-50 * abs(current_time) + 2.0**-22 * landing.time
+            if not abs(now - landing.time) <= 1e-9 + rounding:
                 raise LandingError(
                     f"the importer's time is {now:g} s, the landing's is {landing.time:g} s; "
                     "restore a state or reset to go back"
@@ -246,7 +249,8 @@ class RlvLanding(Fmi2Slave):
         calculated: list[Any] = self._outputs
         if max(vrs, default=0) >= first + len(OUTPUT_QUANTITIES):
             counts = self._current_landing().statistics.values()
-            calculated = [*calculated, *(min(count, LARGEST_INTEGER) for count in counts)]
+            limited = [min(count, LARGEST_INTEGER) for count in counts]
+            calculated = [*calculated, *limited, COMPILED]
         return [self._values[vr] if vr < first else calculated[vr - first] for vr in vrs]
 
     @log_exceptions

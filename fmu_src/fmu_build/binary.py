@@ -93,9 +93,15 @@ def compile_front(target: Path, include: Path, compiler: Compiler) -> None:
         *(str(p) for p in front_sources() if p.suffix == ".c" and p.name != other_system),
         *([] if windows else ["-fPIC", "-ldl"]),
     ]
-    done = subprocess.run(
-        command, capture_output=True, text=True, check=False, env=environment(), cwd=include
-    )
+    try:
+        done = subprocess.run(
+            command, capture_output=True, text=True, check=False, env=environment(), cwd=include
+        )
+    except FileNotFoundError:
+        raise SystemExit(
+            f"error: there is no C compiler {compiler.command[0]} for the FMU's front; "
+            "pip install ziglang, or name one by CC"
+        ) from None
     if done.returncode != 0:
         raise SystemExit(
             f"error: the FMU's front does not compile: {' '.join(command)}\n{done.stderr}"

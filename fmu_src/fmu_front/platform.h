@@ -29,6 +29,9 @@ bool library_path(const void *address, char path[PATH_SIZE]);
  */
 bool is_in_own_namespace(const void *address);
 
+/* True if the process has loaded a library from below the folder. */
+bool library_is_loaded_below(const char *folder);
+
 bool file_exists(const char *path);
 /* Write the path in an environment variable. Returns false if it is not set or empty. */
 bool environment_path(const char *name, char value[PATH_SIZE]);

@@ -86,6 +86,24 @@ bool is_in_own_namespace(const void *address)
     return namespace != LM_ID_BASE;
 }
 
+static int is_below(struct dl_phdr_info *info, size_t size, void *folder)
+{
+    (void)size;
+    char *real = realpath(info->dlpi_name, NULL);
+    const size_t length = strlen(folder);
+    bool below = real && strncmp(real, folder, length) == 0 && real[length] == '/';
+    free(real);
+    return below;
+}
+
+bool library_is_loaded_below(const char *folder)
+{
+    char *real = realpath(folder, NULL);
+    bool loaded = real && dl_iterate_phdr(is_below, real);
+    free(real);
+    return loaded;
+}
+
 bool file_exists(const char *path)
 {
     return access(path, R_OK) == 0;

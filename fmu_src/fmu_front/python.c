@@ -293,21 +293,21 @@ static bool is_in_main_interpreter(struct message *reason)
     return false;
 }
 
-bool python_enter(long life, PyGILState_STATE *lock, struct message *reason)
+enum entry python_enter(long life, PyGILState_STATE *lock, struct message *reason)
 {
     if (!py.Py_IsInitialized()) {
         append_text(reason, "the Python of this process has ended, and the FMU's slave with it");
-        return false;
+        return ENDED;
     }
     if (!is_in_main_interpreter(reason))
-        return false;
+        return NOT_HERE;
     *lock = py.PyGILState_Ensure();
     if (life == 0 || life == python_life())
-        return true;
+        return ENTERED;
     py.PyGILState_Release(*lock);
     append_text(reason, "the Python of this process was ended and started again, and the FMU's "
                         "slave has ended with it");
-    return false;
+    return ENDED;
 }
 
 void python_leave(PyGILState_STATE lock)

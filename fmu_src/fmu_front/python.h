@@ -98,15 +98,20 @@ extern struct python py;
  */
 bool python_ready(const char *resources, struct message *reason);
 
+/* Whether a thread has come into Python. */
+enum entry {
+    ENTERED,
+    NOT_HERE, /* it is in a sub-interpreter: the slave lives in the main one */
+    ENDED     /* the Python that the caller's objects belong to has ended */
+};
+
 /*
  * Take Python's lock for this thread; python_leave gives it back.
  *
- * `life` is the python_life that the caller's objects belong to, or 0 if it has none.
- *
- * Returns false with the reason if that Python has ended, or if the thread is in a sub-interpreter:
- * the slave lives in the main one.
+ * `life` is the python_life that the caller's objects belong to, or 0 if it has none. The reason is
+ * given if the answer is not ENTERED.
  */
-bool python_enter(long life, PyGILState_STATE *lock, struct message *reason);
+enum entry python_enter(long life, PyGILState_STATE *lock, struct message *reason);
 void python_leave(PyGILState_STATE lock);
 
 /* The number of the running Python's life; another one after it was ended and started again. Call

@@ -64,14 +64,16 @@ struct visit {
     bool interrupted;
 };
 
-static bool visit_begin(struct visit *v, const struct listener *listener, long life)
+/* Begin a visit to the Python of the number `life`; the answer is DONE if it has begun. */
+static enum answer visit_begin(struct visit *v, const struct listener *listener, long life)
 {
     struct message reason = {""};
     *v = (struct visit){.listener = listener, .last = &v->first};
-    if (python_enter(life, &v->lock, &reason))
-        return true;
+    enum entry entry = python_enter(life, &v->lock, &reason);
+    if (entry == ENTERED)
+        return DONE;
     listener->hear(listener->owner, STATUS_ERROR, NULL, reason.text);
-    return false;
+    return entry == ENDED ? LOST : REFUSED;
 }
 
 static void visit_end(struct visit *v)
@@ -205,8 +207,9 @@ static enum answer end_call(struct visit *v, struct slave *s, enum method method
 static enum answer do_call(struct slave *s, enum method method)
 {
     struct visit v;
-    if (!visit_begin(&v, &s->listener, s->life))
-        return LOST;
+    enum answer entry = visit_begin(&v, &s->listener, s->life);
+    if (entry != DONE)
+        return entry;
     release(py.PyObject_CallObject(s->methods[method], NULL));
     return end_call(&v, s, method);
 }
@@ -253,12 +256,30 @@ static void release_methods(struct slave *s)
         release(s->methods[i]);
 }
 
+/*
+ * True if a compiled core of this FMU was loaded in an earlier life of Python, and so cannot be
+ * loaded again: its module is gone, and the library would return it.
+ */
+static bool core_is_spent(const char *resources)
+{
+    static const char key[] = "rlv_landing core " GUID;
+    PyObject *kept = py.PyInterpreterState_GetDict(py.PyInterpreterState_Get());
+    if (!kept || py.PyDict_GetItemString(kept, key))
+        return false;
+    bool loaded = library_is_loaded_below(resources);
+    PyObject *mark = py.PyBool_FromLong(1);
+    if (!loaded && mark)
+        py.PyDict_SetItemString(kept, key, mark);
+    release(mark);
+    return loaded;
+}
+
 struct slave *slave_create(const char *resources, const char *name, bool visible,
                            const struct listener *listener)
 {
     struct slave *s = calloc(1, sizeof *s);
     struct visit v;
-    if (!s || !visit_begin(&v, listener, 0)) {
+    if (!s || visit_begin(&v, listener, 0) != DONE) {
         free(s);
         return NULL;
     }
@@ -266,8 +287,9 @@ struct slave *slave_create(const char *resources, const char *name, bool visible
     s->life = python_life();
     PyObject *create = creator(), *object = NULL;
     if (create) {
-        PyObject *arguments = py.Py_BuildValue("(NssN)", py.PyUnicode_DecodeFSDefault(resources),
-                                               SLAVE_MODULE, name, py.PyBool_FromLong(visible));
+        PyObject *arguments = py.Py_BuildValue(
+            "(NssNN)", py.PyUnicode_DecodeFSDefault(resources), SLAVE_MODULE, name,
+            py.PyBool_FromLong(visible), py.PyBool_FromLong(core_is_spent(resources)));
         object = arguments ? py.PyObject_CallObject(create, arguments) : NULL;
         release(arguments);
     }
@@ -291,7 +313,7 @@ void slave_free(struct slave *s)
     PyGILState_STATE lock;
     struct message reason = {""};
     /* what an ended Python has left is gone with it */
-    if (python_enter(s->life, &lock, &reason)) {
+    if (python_enter(s->life, &lock, &reason) == ENTERED) {
         release(s->strings);
         release_methods(s);
         python_leave(lock);
@@ -308,8 +330,9 @@ static PyObject *optional_float(const double *value)
 enum answer slave_setup(struct slave *s, double start, const double *stop, const double *tolerance)
 {
     struct visit v;
-    if (!visit_begin(&v, &s->listener, s->life))
-        return LOST;
+    enum answer entry = visit_begin(&v, &s->listener, s->life);
+    if (entry != DONE)
+        return entry;
     release(call(
         s, SETUP,
         py.Py_BuildValue("(dNN)", start, optional_float(stop), optional_float(tolerance))));
@@ -334,8 +357,9 @@ enum answer slave_terminate(struct slave *s)
 enum answer slave_step(struct slave *s, double time, double step)
 {
     struct visit v;
-    if (!visit_begin(&v, &s->listener, s->life))
-        return LOST;
+    enum answer entry = visit_begin(&v, &s->listener, s->life);
+    if (entry != DONE)
+        return entry;
     PyObject *result = call(s, STEP, py.Py_BuildValue("(dd)", time, step));
     bool refused = result && py.PyObject_IsTrue(result) == 0;
     release(result);
@@ -367,8 +391,9 @@ enum answer slave_read(struct slave *s, enum kind kind, const uint32_t vr[], siz
 {
     enum method method = kind == REAL ? GET_REAL : kind == INTEGER ? GET_INTEGER : GET_BOOLEAN;
     struct visit v;
-    if (!visit_begin(&v, &s->listener, s->life))
-        return LOST;
+    enum answer entry = visit_begin(&v, &s->listener, s->life);
+    if (entry != DONE)
+        return entry;
     PyObject *list = call(s, method, py.Py_BuildValue("(N)", references(vr, n)));
     copy_numbers(list, n, value);
     release(list);
@@ -383,8 +408,9 @@ bool slave_has_outputs(const struct slave *s)
 enum answer slave_read_outputs(struct slave *s, size_t n, double value[])
 {
     struct visit v;
-    if (!visit_begin(&v, &s->listener, s->life))
-        return LOST;
+    enum answer entry = visit_begin(&v, &s->listener, s->life);
+    if (entry != DONE)
+        return entry;
     PyObject *list = py.PyObject_CallObject(s->methods[GET_OUTPUTS], NULL);
     copy_numbers(list, n, value);
     release(list);
@@ -394,8 +420,9 @@ enum answer slave_read_outputs(struct slave *s, size_t n, double value[])
 enum answer slave_read_strings(struct slave *s, const uint32_t vr[], size_t n, const char *value[])
 {
     struct visit v;
-    if (!visit_begin(&v, &s->listener, s->life))
-        return LOST;
+    enum answer entry = visit_begin(&v, &s->listener, s->life);
+    if (entry != DONE)
+        return entry;
     PyObject *list = call(s, GET_STRING, py.Py_BuildValue("(N)", references(vr, n)));
     for (size_t i = 0; list && i < n; i++) {
         PyObject *item = py.PyList_GetItem(list, (Py_ssize_t)i);
@@ -421,8 +448,9 @@ enum answer slave_write(struct slave *s, enum kind kind, const uint32_t vr[], si
 {
     enum method method = kind == REAL ? SET_REAL : kind == INTEGER ? SET_INTEGER : SET_BOOLEAN;
     struct visit v;
-    if (!visit_begin(&v, &s->listener, s->life))
-        return LOST;
+    enum answer entry = visit_begin(&v, &s->listener, s->life);
+    if (entry != DONE)
+        return entry;
     PyObject *values = py.PyList_New((Py_ssize_t)n);
     for (size_t i = 0; values && i < n; i++)
         py.PyList_SetItem(values, (Py_ssize_t)i, number(kind, value[i]));
@@ -434,8 +462,9 @@ enum answer slave_write_strings(struct slave *s, const uint32_t vr[], size_t n,
                                 const char *const value[])
 {
     struct visit v;
-    if (!visit_begin(&v, &s->listener, s->life))
-        return LOST;
+    enum answer entry = visit_begin(&v, &s->listener, s->life);
+    if (entry != DONE)
+        return entry;
     PyObject *values = py.PyList_New((Py_ssize_t)n);
     for (size_t i = 0; values && i < n; i++)
         py.PyList_SetItem(values, (Py_ssize_t)i, py.PyUnicode_FromString(value[i]));
@@ -458,8 +487,9 @@ enum answer slave_get_state(struct slave *s, struct slave_state **state)
 {
     struct visit v;
     *state = NULL;
-    if (!visit_begin(&v, &s->listener, s->life))
-        return LOST;
+    enum answer entry = visit_begin(&v, &s->listener, s->life);
+    if (entry != DONE)
+        return entry;
     *state = new_state(s, py.PyObject_CallObject(s->methods[GET_STATE], NULL));
     return end_call(&v, s, GET_STATE);
 }
@@ -479,8 +509,9 @@ enum answer slave_set_state(struct slave *s, const struct slave_state *state)
     struct visit v;
     if (!lives(s, state))
         return REFUSED;
-    if (!visit_begin(&v, &s->listener, s->life))
-        return LOST;
+    enum answer entry = visit_begin(&v, &s->listener, s->life);
+    if (entry != DONE)
+        return entry;
     release(call(s, SET_STATE, py.Py_BuildValue("(O)", state->object)));
     return end_call(&v, s, SET_STATE);
 }
@@ -493,8 +524,9 @@ enum answer slave_state_bytes(struct slave *s, struct slave_state *state, const 
     Py_ssize_t length = 0;
     if (!lives(s, state))
         return REFUSED;
-    if (!visit_begin(&v, &s->listener, s->life))
-        return LOST;
+    enum answer entry = visit_begin(&v, &s->listener, s->life);
+    if (entry != DONE)
+        return entry;
     if (!state->bytes)
         state->bytes = call(s, STATE_TO_BYTES, py.Py_BuildValue("(O)", state->object));
     if (state->bytes)
@@ -509,8 +541,9 @@ enum answer slave_state_from_bytes(struct slave *s, const char *bytes, size_t si
 {
     struct visit v;
     *state = NULL;
-    if (!visit_begin(&v, &s->listener, s->life))
-        return LOST;
+    enum answer entry = visit_begin(&v, &s->listener, s->life);
+    if (entry != DONE)
+        return entry;
     PyObject *copy = py.PyBytes_FromStringAndSize(bytes, (Py_ssize_t)size);
     *state = new_state(s, call(s, STATE_FROM_BYTES, py.Py_BuildValue("(N)", copy)));
     return end_call(&v, s, STATE_FROM_BYTES);
@@ -520,7 +553,7 @@ void slave_free_state(struct slave_state *state)
 {
     PyGILState_STATE lock;
     struct message reason = {""};
-    if (python_enter(state->life, &lock, &reason)) {
+    if (python_enter(state->life, &lock, &reason) == ENTERED) {
         release(state->object);
         release(state->bytes);
         python_leave(lock);

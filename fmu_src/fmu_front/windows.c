@@ -87,15 +87,23 @@ void *process_symbol(const char *name)
     return python ? library_symbol(python, name) : NULL;
 }
 
+/* The modules of this process that fit in `modules`; returns their number. */
+static DWORD loaded_modules(HMODULE modules[], DWORD room)
+{
+    DWORD size = 0;
+    if (!EnumProcessModules(GetCurrentProcess(), modules, room * sizeof *modules, &size))
+        return 0;
+    DWORD count = size / sizeof *modules;
+    return count < room ? count : room;
+}
+
+enum { MOST_MODULES = 1024 };
+
 void make_loaded_python_global(void)
 {
-    HMODULE modules[1024];
-    DWORD size = 0;
-    if (!EnumProcessModules(GetCurrentProcess(), modules, sizeof modules, &size))
-        return;
-    if (size > sizeof modules)
-        size = sizeof modules;
-    for (DWORD i = 0; i < size / sizeof *modules; i++) {
+    HMODULE modules[MOST_MODULES];
+    DWORD count = loaded_modules(modules, MOST_MODULES);
+    for (DWORD i = 0; i < count; i++) {
         char path[PATH_SIZE];
         int minor, length = 0;
         if (!module_path(modules[i], path) || !strrchr(path, '/'))
@@ -106,6 +114,20 @@ void make_loaded_python_global(void)
             return;
         }
     }
+}
+
+bool library_is_loaded_below(const char *folder)
+{
+    HMODULE modules[MOST_MODULES];
+    DWORD count = loaded_modules(modules, MOST_MODULES);
+    const size_t length = strlen(folder);
+    for (DWORD i = 0; i < count; i++) {
+        char path[PATH_SIZE];
+        if (module_path(modules[i], path) && _strnicmp(path, folder, length) == 0 &&
+            path[length] == '/')
+            return true;
+    }
+    return false;
 }
 
 bool library_path(const void *address, char path[PATH_SIZE])

@@ -1,12 +1,15 @@
 """The build of the FMU: `build_fmu.sh` as a user calls it, and the front in C."""
 
 import re
+import shutil
 import subprocess
 import sys
 import sysconfig
+import zipfile
 from pathlib import Path
 
 import fmpy
+import pytest
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 
@@ -25,6 +28,52 @@ def test_build_script_writes_the_named_file_and_prints_what_it_checked(tmp_path)
     assert "valid; trial landing" in done.stdout
     assert [p.name for p in target.parent.iterdir()] == ["mine.fmu"]
     assert fmpy.read_model_description(str(target)).modelName == "RlvLanding"
+
+
+def test_build_script_prints_help_and_builds_nothing(tmp_path):
+    environment = {"PYTHON": sys.executable, "PATH": "/usr/bin:/bin"}
+    for option in ("--help", "-h"):
+        done = subprocess.run(
+            ["./build_fmu.sh", option], cwd=ROOT, capture_output=True, text=True, env=environment
+        )
+        assert done.returncode == 0, done.stderr
+        assert done.stdout.startswith("usage: build_fmu.sh [-h] [--pure] [file]")
+
+
+@pytest.fixture(scope="module")
+def sources(tmp_path_factory) -> Path:
+    """A copy of the sources without a compiled core."""
+    root = tmp_path_factory.mktemp("sources")
+    for name in ("LICENSE", "CHANGELOG.md", "build_fmu.sh", "setup.py"):
+        shutil.copy(ROOT / name, root)
+    ignored = shutil.ignore_patterns("__pycache__", "*.so")
+    shutil.copytree(ROOT / "fmu_src", root / "fmu_src", ignore=ignored)
+    return root
+
+
+def build(root: Path, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        ["./build_fmu.sh", *arguments],
+        cwd=root,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        env={"PYTHON": sys.executable, "PATH": "/usr/bin:/bin", **environment},
+    )
+
+
+def test_build_without_a_compiled_core_is_an_error_unless_pure_asks_for_it(sources, tmp_path):
+    """The compiler fails here."""
+    target = tmp_path / "mine.fmu"
+    done = build(sources, str(target), CC="/bin/false")
+    assert done.returncode == 1
+    assert "error: there is no compiled core of the present kernels" in done.stderr
+    assert not target.exists()
+    done = build(sources, "--pure", str(target))
+    assert done.returncode == 0, done.stderr
+    assert "core: not compiled, as --pure asks for" in done.stdout
+    with zipfile.ZipFile(target) as archive:
+        assert not [name for name in archive.namelist() if "core/compiled" in name]
 
 
 def test_the_front_compiles_without_a_warning_and_exports_fmi_functions_only(
