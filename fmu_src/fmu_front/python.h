@@ -98,6 +98,11 @@ extern struct python py;
  */
 bool python_ready(const char *resources, struct message *reason);
 
+/* Minor version of the Python 3 whose Py_GetVersion this is; 0 for another Python. */
+int python_minor_version(void *get_version);
+/* Look up the functions of `py` in the Python whose symbols are global, once. */
+bool python_find_functions(struct message *reason);
+
 /* Whether a thread has come into Python. */
 enum entry {
     ENTERED,

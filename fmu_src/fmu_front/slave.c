@@ -1,10 +1,9 @@
 /* The slave: its methods, called with C values. */
 #include "slave.h"
-#include "python.h"
 #include "variables.h"
+#include "visit.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #define METHODS(X) \
     X(GET_LOG_QUEUE, _get_log_queue) \
@@ -48,106 +47,6 @@ struct slave_state {
     long life;
     PyObject *object, *bytes; /* bytes is NULL until they are asked for */
 };
-
-/* A message that waits until Python's lock is released: the listener may wait for other threads. */
-struct note {
-    struct note *next;
-    enum status status;
-    char *category, *text;
-};
-
-/* A visit to Python, from visit_begin to visit_end. */
-struct visit {
-    const struct listener *listener;
-    PyGILState_STATE lock;
-    struct note *first, **last;
-    bool interrupted;
-};
-
-/* Begin a visit to the Python of the number `life`; the answer is DONE if it has begun. */
-static enum answer visit_begin(struct visit *v, const struct listener *listener, long life)
-{
-    struct message reason = {""};
-    *v = (struct visit){.listener = listener, .last = &v->first};
-    enum entry entry = python_enter(life, &v->lock, &reason);
-    if (entry == ENTERED)
-        return DONE;
-    listener->hear(listener->owner, STATUS_ERROR, NULL, reason.text);
-    return entry == ENDED ? LOST : REFUSED;
-}
-
-static void visit_end(struct visit *v)
-{
-    python_leave(v->lock);
-    while (v->first) {
-        struct note *note = v->first;
-        v->first = note->next;
-        v->listener->hear(v->listener->owner, note->status, note->category, note->text);
-        free(note->category);
-        free(note->text);
-        free(note);
-    }
-    /* the Python of the host shall hear of its Ctrl-C; its logger, which has run by now, need not */
-    if (v->interrupted)
-        py.PyErr_SetInterrupt();
-}
-
-static char *copy_of(const char *text)
-{
-    char *copy = malloc(strlen(text) + 1);
-    return copy ? strcpy(copy, text) : NULL;
-}
-
-static void add_note(struct visit *v, enum status status, const char *category, const char *text)
-{
-    struct note *note = calloc(1, sizeof *note);
-    if (!note || !(note->text = copy_of(text))) {
-        free(note);
-        return;
-    }
-    note->status = status;
-    note->category = category ? copy_of(category) : NULL;
-    *v->last = note;
-    v->last = &note->next;
-}
-
-/* Give up a reference that may be NULL. */
-static void release(PyObject *object)
-{
-    if (object)
-        py.Py_DecRef(object);
-}
-
-/* The text of `object`, which may be NULL; `*holder` keeps it and is to be released. */
-static const char *text_of(PyObject *object, PyObject **holder)
-{
-    *holder = object ? py.PyObject_Str(object) : NULL;
-    const char *text = *holder ? py.PyUnicode_AsUTF8AndSize(*holder, NULL) : NULL;
-    if (text)
-        return text;
-    py.PyErr_Clear();
-    return "(no text)";
-}
-
-/* Note the exception that `where` has raised, and clear it. */
-static void note_exception(struct visit *v, const char *where)
-{
-    PyObject *type = NULL, *value = NULL, *trace = NULL, *name, *names_text, *values_text;
-    py.PyErr_Fetch(&type, &value, &trace);
-    py.PyErr_NormalizeException(&type, &value, &trace);
-    if (type && py.PyErr_GivenExceptionMatches(type, *py.PyExc_KeyboardInterrupt))
-        v->interrupted = true;
-    name = type ? py.PyObject_GetAttrString(type, "__name__") : NULL;
-    struct message message = {""};
-    append_text(&message, "internal error in %s: %s", where, text_of(name, &names_text));
-    const char *text = text_of(value, &values_text);
-    if (*text)
-        append_text(&message, ": %s", text);
-    add_note(v, STATUS_ERROR, NULL, message.text);
-    PyObject *made[] = {values_text, names_text, name, type, value, trace};
-    for (size_t i = 0; i < sizeof made / sizeof *made; i++)
-        release(made[i]);
-}
 
 static void note_log_message(struct visit *v, PyObject *message)
 {

@@ -1,9 +1,9 @@
 /*
  * The slave: an object in Python, of the class that the FMU's script defines.
  *
- * Only slave.c and python.c call Python. The class is one of pythonfmu's `Fmi2Slave`; its methods
- * are called as pythonfmu's own binary calls them. One more is called if it is there:
- * `get_outputs()` gives all numeric outputs, in the order of the description.
+ * Only slave.c and visit.c, with python.c and libpython.c, call Python. The class is one of
+ * pythonfmu's `Fmi2Slave`; its methods are called as pythonfmu's own binary calls them. One more is
+ * called if it is there: `get_outputs()` gives all numeric outputs, in the order of the description.
  */
 #ifndef SLAVE_H
 #define SLAVE_H
