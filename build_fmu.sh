@@ -1,8 +1,13 @@
 #!/bin/sh
 # Builds build/RlvLanding.fmu, or the file that the first argument names, and checks it with FMPy.
-# Needs python3 (3.10 to 3.13) and gcc, and makes .venv on first use. PYTHON=... names another
-# Python that has the packages.
+# Needs python3 (3.10 to 3.13), and makes .venv on first use. PYTHON=... names another Python that
+# has the packages. `--pure` builds without the compiled core; `--help` says more.
 set -eu
+for option; do
+    case $option in
+        --pure | -h | --help) CORE=none ;;
+    esac
+done
 cd "$(dirname "$0")"
 if [ -z "${PYTHON:-}" ]; then
     PYTHON=.venv/bin/python
@@ -11,5 +16,5 @@ if [ -z "${PYTHON:-}" ]; then
         make -s .venv/.packages
     fi
 fi
-"$PYTHON" setup.py -q build_ext --inplace
+[ "${CORE:-}" = none ] || "$PYTHON" setup.py -q build_ext --inplace
 PYTHONPATH="fmu_src${PYTHONPATH:+:$PYTHONPATH}" exec "$PYTHON" -m fmu_build.build "$@"

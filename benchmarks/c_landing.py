@@ -24,7 +24,7 @@ from rlv_landing.quantities import INPUT_NAMES
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent / "fmu_src"))
-from fmu_build.core_source import COMPILE_ARGS  # noqa: E402
+from fmu_build.core_source import COMPILE_ARGS, GCC_ARGS  # noqa: E402
 
 # of the core's `BodyModel` and `LegModel`, which are the same for all legs here, in the order of
 # the C struct that is made from them
@@ -36,7 +36,7 @@ PARAMETERS = (
     "Cr", "tau_sr", "K_t", "zone", "g",
 )  # fmt: skip
 # the core's own options, and options that may change the digits
-EXACT: tuple[str, ...] = tuple(COMPILE_ARGS)
+EXACT: tuple[str, ...] = (*COMPILE_ARGS, *GCC_ARGS)
 FAST: tuple[str, ...] = ("-O3", "-march=native", "-ffast-math")
 
 

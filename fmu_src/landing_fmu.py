@@ -1,11 +1,12 @@
 """The FMI 2.0 co-simulation slave: maps FMI variables and calls to `Landing`.
 
-The C front (`fmu_front/`) calls it through pythonfmu's binary. The front passes only value
-references that exist and are of the right type, in the order that FMI allows. It returns the worst
-status that is logged here during a call.
+It is a plain slave of pythonfmu. In the FMU that `fmu_build/build.py` makes, the C front
+(`fmu_front/`) calls it in place of pythonfmu's binary. The front passes only value references that
+exist and are of the right type, in the order that FMI allows. It returns the worst status that is
+logged here during a call.
 
-`fmu_build/build.py` packs this file into the FMU's own copy of the package, whose name carries the
-version. `fmu_build/description.py` adds units, types and dependencies to the description.
+The build packs this file into the FMU's own copy of the package, whose name no other build has.
+`fmu_build/description.py` adds units, types and dependencies to the description.
 """
 
 import json
@@ -16,8 +17,6 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import wraps
 from typing import Any
-from uuid import NAMESPACE_URL, uuid5
-from xml.etree.ElementTree import Element
 
 from pythonfmu import (
     Boolean,
@@ -33,6 +32,7 @@ from pythonfmu import (
 from pythonfmu.enums import Fmi2Status
 
 from rlv_landing import Landing, LandingError, Parameters, __version__
+from rlv_landing.core import COMPILED
 from rlv_landing.landing import DEFAULT_RTOL
 from rlv_landing.parameters import PARAMETER_QUANTITIES, check_value
 from rlv_landing.quantities import (
@@ -47,9 +47,6 @@ from rlv_landing.quantities import (
 # the front sets the rate of input i as the real RATES + i, a value reference of no variable
 RATES = 2_000_000
 LARGEST_INTEGER = 2**31 - 1
-_references: list[Any] = []
-# holds one more reference to an object, for the rest of the process
-keep = _references.append
 KINDS = {"real": Real, "integer": Integer, "boolean": Boolean, "string": String}
 
 
@@ -146,7 +143,6 @@ class RlvLanding(Fmi2Slave):
                 Fmi2Variability.continuous if q.kind == "real" else Fmi2Variability.discrete
             )
             self._register(q, 0.0, Fmi2Causality.output, variability, Fmi2Initial.calculated)
-        self._output_references = list(range(self._first_output, len(self.vars)))
         for q in STATISTIC_QUANTITIES:
             self._register(
                 q, 0.0, Fmi2Causality.local, Fmi2Variability.discrete, Fmi2Initial.calculated
@@ -156,21 +152,6 @@ class RlvLanding(Fmi2Slave):
                 q, 0.0, Fmi2Causality.local, Fmi2Variability.continuous, Fmi2Initial.calculated
             )
         self._names = [v.name for v in self.vars.values()]
-
-    def to_xml(self, model_options: dict[str, str] | None = None) -> Element:
-        """The description by pythonfmu, with a GUID derived from version and variables.
-
-        Called at build time only.
-        """
-        quantities = [
-            *PARAMETER_QUANTITIES.values(),
-            INPUT_QUANTITIES,
-            OUTPUT_QUANTITIES,
-            STATISTIC_QUANTITIES,
-            PEAK_QUANTITIES,
-        ]
-        self.guid = uuid5(NAMESPACE_URL, f"rlv-landing {__version__} {quantities!r}")
-        return super().to_xml(model_options or {})
 
     def _register(
         self, q: Quantity, value: Any, causality: Any, variability: Any, initial: Any
@@ -226,7 +207,9 @@ class RlvLanding(Fmi2Slave):
             if not 0.0 < step_size < math.inf:
                 raise LandingError(f"step = {step_size:g} s must be finite and above 0 s")
             now = current_time - self._start_time
-            if not abs(now - landing.time) <= 1e-9 * (1.0 + landing.time):
+            # the rounding of the importer's time, as a sum of doubles from its start, or as float32
+            rounding = 2.0**-50 * abs(current_time) + 2.0**-22 * landing.time
+            if not abs(now - landing.time) <= 1e-9 + rounding:
                 raise LandingError(
                     f"the importer's time is {now:g} s, the landing's is {landing.time:g} s; "
                     "restore a state or reset to go back"
@@ -269,19 +252,25 @@ class RlvLanding(Fmi2Slave):
     @log_exceptions
     def _read(self, vrs: list[int]) -> list[Any]:
         first = self._first_output
-        # the front reads all outputs at once
-        all_outputs = vrs == self._output_references
-        if all_outputs or max(vrs, default=0) >= first:
+        if max(vrs, default=0) >= first:
             self._update_outputs()
-        if all_outputs:
-            return self._outputs
         calculated: list[Any] = self._outputs
         if max(vrs, default=0) >= first + len(OUTPUT_QUANTITIES):
             counts = self._current_landing().statistics.values()
-            calculated = [*calculated, *(min(count, LARGEST_INTEGER) for count in counts)]
+            limited = [min(count, LARGEST_INTEGER) for count in counts]
+            calculated = [*calculated, *limited, COMPILED]
         if max(vrs, default=0) >= first + len(calculated):
             calculated = [*calculated, *self._read_peaks()]
         return [self._values[vr] if vr < first else calculated[vr - first] for vr in vrs]
+
+    @log_exceptions
+    def _read_outputs(self) -> list[float]:
+        self._update_outputs()
+        return self._outputs
+
+    def get_outputs(self) -> list[float]:
+        """All outputs, in order, for the front; NaN after an error."""
+        return self._read_outputs() or [math.nan] * len(OUTPUT_QUANTITIES)
 
     def _update_outputs(self) -> None:
         landing = self._current_landing()

@@ -67,11 +67,12 @@ def add_front(fmu: Path) -> None:
     Without it the FMU runs only in hosts that are Python processes.
     """
     sys.path.insert(0, str(ROOT / "fmu_src"))
-    from fmu_build.binary import replace_binaries
+    from fmu_build.binary import record_libpython, replace_binaries
 
     with TemporaryDirectory() as folder:
         files = Path(folder) / "files"
         with zipfile.ZipFile(fmu) as archive:
             archive.extractall(files)
+        record_libpython(files)
         replace_binaries(files)
         shutil.move(shutil.make_archive(str(Path(folder) / "fmu"), "zip", files), fmu)

@@ -1,18 +1,18 @@
 """Builds `build/RlvLanding.fmu`; run by `build_fmu.sh`.
 
-pythonfmu builds an FMU of the slave and its own copy of the package. This unpacks it, puts the
-front before its binary, completes its description, adds the documentation and packs it again. The
-same sources give the same bytes. FMPy validates the FMU and simulates one landing before it
-replaces an older file.
+pythonfmu builds an FMU of the slave and its own copy of the package. This unpacks it, completes its
+description, adds the documentation, gives it an identity of its own, puts the front in place of
+pythonfmu's binary, and packs it again. The same sources and compilers give the same bytes. FMPy
+validates the FMU and simulates one landing before it replaces an older file.
 """
 
 from __future__ import annotations
 
+import argparse
 import os
 import re
 import shutil
 import subprocess
-import sys
 import tempfile
 import zipfile
 from datetime import datetime, timezone
@@ -23,10 +23,11 @@ import fmpy
 from fmpy.validation import validate_fmu
 from pythonfmu.builder import FmuBuilder
 
-from .binary import replace_binaries
+from .binary import record_libpython, replace_binaries
 from .core_source import package_name
 from .description import describe
 from .documentation import write_documentation
+from .identity import NO_GUID, identify
 
 HERE = Path(__file__).parent.parent
 ROOT = HERE.parent
@@ -51,15 +52,16 @@ NOT_NEEDED = ("__main__.py", "csvbuilder.py", "deploy.py", "builder.py", "osutil
 # the line of pythonfmu's `__init__.py` that imports the builder, and with it argparse, logging and
 # minidom: a third of the time that the first instance takes
 IMPORTS_BUILDER = "from .builder import FmuBuilder\n"
+# modules that its slave needs to write a description only; Python 3.12.1 crashes when it imports
+# datetime after it was ended and started again
+IMPORTS_OF_SLAVE = "import datetime\n"
 # dates that a zip file can hold, 1980 to 2107 [s since 1970]; 1980 also for sources without a date
 OLDEST, NEWEST = 315532800, 4354819199
 
-# pythonfmu runs its script for each instance, so the slave's class is in a module, made once
 SCRIPT = """\
-from {package}.slave import RlvLanding, keep
+from {package}.slave import RlvLanding
 
 __all__ = ["RlvLanding"]
-keep(globals())  # pythonfmu releases one reference too many
 """
 
 
@@ -99,10 +101,22 @@ def source_date() -> datetime:
     return datetime.fromtimestamp(max(int(text or OLDEST), OLDEST), timezone.utc)
 
 
-def copy_sources(folder: Path) -> tuple[Path, Path]:
+def compiled_cores() -> list[Path]:
+    """The compiled cores for all Python versions, but none that older kernels were compiled to."""
+    return [
+        file
+        for file in sorted((PACKAGE / "core").iterdir())
+        if file.suffix in (".so", ".pyd") and package_name().encode() in file.read_bytes()
+    ]
+
+
+def copy_sources(folder: Path, *, pure: bool) -> tuple[Path, Path]:
     """Copy slave and package to `folder`; return pythonfmu's script and the package.
 
-    Their names carry the version, so that FMUs of two versions can run in one process.
+    Their names carry the version; `identify` adds the build. `pure` leaves the compiled core out.
+
+    Raises:
+        SystemExit: There is no compiled core of the present kernels, and `pure` is not set.
     """
     name = "rlv_landing_" + re.sub(r"\W", "_", version())
     package = folder / name
@@ -111,53 +125,70 @@ def copy_sources(folder: Path) -> tuple[Path, Path]:
         target = package / module
         target.parent.mkdir(exist_ok=True)
         shutil.copy(PACKAGE / module, target)
-    for file in sorted((PACKAGE / "core").rglob("*")):
-        # the compiled cores for all Python versions, but none that older kernels were compiled to
-        if file.suffix == ".py" or (
-            file.suffix in (".so", ".pyd") and package_name().encode() in file.read_bytes()
-        ):
-            target = package / file.relative_to(PACKAGE)
-            target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(file, target)
+    cores = [] if pure else compiled_cores()
+    if not cores and not pure:
+        raise SystemExit(
+            "error: there is no compiled core of the present kernels: see why the compiler failed, "
+            "or run ./build_fmu.sh; --pure builds an FMU without it, which lands to the same "
+            "digits and takes ten times as long"
+        )
+    for file in [*sorted((PACKAGE / "core").rglob("*.py")), *cores]:
+        target = package / file.relative_to(PACKAGE)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(file, target)
     text = (HERE / "landing_fmu.py").read_text()
-    (package / "slave.py").write_text(
-        re.sub(r"^from rlv_landing\b", f"from {name}", text, flags=re.M)
-    )
+    (package / "slave.py").write_text(re.sub(r"^from rlv_landing\.?", "from .", text, flags=re.M))
     script = folder / f"{name.replace('rlv_landing', 'landing_fmu')}.py"
     script.write_text(SCRIPT.format(package=name))
     return script, package
 
 
-def build_with_pythonfmu(folder: Path) -> Path:
+def build_with_pythonfmu(folder: Path, *, pure: bool) -> tuple[Path, Path, str]:
     """Build an FMU of slave and package by pythonfmu, and unpack it.
 
     Args:
         folder: Empty folder to work in.
+        pure: Whether to leave the compiled core out.
 
     Returns:
-        Folder of the FMU's files, without those of NOT_NEEDED.
+        Folder of the FMU's files; in it the package; name of the script that imports it.
 
     Raises:
-        SystemExit: pythonfmu is of a version whose `__init__.py` differs.
+        SystemExit: pythonfmu is of a version whose files differ.
     """
-    slave, package = copy_sources(folder)
+    script, package = copy_sources(folder, pure=pure)
     built = FmuBuilder.build_FMU(
-        slave, dest=folder / "out" / "RlvLanding.fmu", project_files=[package]
+        script, dest=folder / "out" / "RlvLanding.fmu", project_files=[package]
     )
     files = folder / "files"
     with zipfile.ZipFile(built) as archive:
         archive.extractall(files)
+    package = files / "resources" / package.name
+    take_pythonfmu(files / "resources" / "pythonfmu", package)
+    return files, package, script.stem
+
+
+def take_pythonfmu(own: Path, package: Path) -> None:
+    """Move the FMU's copy of pythonfmu into its package, without what a slave does not need.
+
+    There it has a name that no other pythonfmu in the process has.
+
+    Raises:
+        SystemExit: pythonfmu is of a version whose files differ.
+    """
     for name in NOT_NEEDED:
-        (files / "resources" / "pythonfmu" / name).unlink()
-    init = files / "resources" / "pythonfmu" / "__init__.py"
-    text = init.read_text()
-    if text.count(IMPORTS_BUILDER) != 1:
-        raise SystemExit(
-            "error: pythonfmu's __init__.py does not import its builder as that of 0.7.0 does; "
-            "change IMPORTS_BUILDER in fmu_build/build.py"
-        )
-    init.write_text(text.replace(IMPORTS_BUILDER, ""))
-    return files
+        (own / name).unlink()
+    for name, line in (("__init__.py", IMPORTS_BUILDER), ("fmi2slave.py", IMPORTS_OF_SLAVE)):
+        text = (own / name).read_text()
+        if text.count(line) != 1:
+            raise SystemExit(
+                f"error: pythonfmu's {name} has no line {line.strip()!r}, as that of 0.7.0 has; "
+                "change the lines in fmu_build/build.py"
+            )
+        (own / name).write_text(text.replace(line, ""))
+    own.rename(package / "pythonfmu")
+    slave = package / "slave.py"
+    slave.write_text(re.sub(r"^from pythonfmu", "from .pythonfmu", slave.read_text(), flags=re.M))
 
 
 def write_description(files: Path, date: datetime) -> ElementTree.Element:
@@ -165,6 +196,7 @@ def write_description(files: Path, date: datetime) -> ElementTree.Element:
     path = files / "modelDescription.xml"
     tree = ElementTree.parse(path)
     root = tree.getroot()
+    root.set("guid", NO_GUID)
     describe(root, date.strftime("%Y-%m-%dT%H:%M:%SZ"))
     ElementTree.indent(tree, "\t")
     tree.write(path, encoding="UTF-8", xml_declaration=True)
@@ -211,24 +243,58 @@ def check(fmu: Path) -> str:
     )
 
 
-def main(destination: str) -> None:
-    """Build and check the FMU, then put it at `destination` in one step."""
-    target = Path(destination)
+def build(target: Path, *, pure: bool) -> None:
+    """Build and check the FMU, then put it at `target` in one step; print what was done.
+
+    Args:
+        target: The FMU's file.
+        pure: Whether to leave the compiled core out.
+    """
     target.parent.mkdir(parents=True, exist_ok=True)
     date = source_date()
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         folder = Path(name)
-        files = build_with_pythonfmu(folder)
-        replace_binaries(files)
+        files, package, script = build_with_pythonfmu(folder, pure=pure)
+        record_libpython(files)
         root = write_description(files, date)
         write_documentation(files, root)
+        identify(files, package.name, script)
+        compilers = replace_binaries(files)
         made = folder / "RlvLanding.fmu"
         pack(files, made, date)
         found = check(made)
         shutil.copy(made, target.with_suffix(".part"))
         target.with_suffix(".part").replace(target)
+    for platform, compiler in compilers.items():
+        print(f"{platform}: front compiled by {compiler}")
+    cores = [] if pure else [file.name for file in compiled_cores()]
+    print(f"core: {', '.join(cores) or 'not compiled, as --pure asks for'}")
     print(f"{target}: {found}")
 
 
+def main() -> None:
+    """Build the FMU that the command line asks for."""
+    parser = argparse.ArgumentParser(
+        prog="build_fmu.sh",
+        description="Builds the FMU and checks it: FMPy validates it and simulates one landing.",
+        epilog="The front is compiled by ziglang where it is installed, else by gcc, or by the "
+        "compiler that CC names. The same sources and compilers give the same bytes.",
+    )
+    parser.add_argument(
+        "file",
+        nargs="?",
+        type=Path,
+        default=ROOT / "build" / "RlvLanding.fmu",
+        help="the FMU's file [default: build/RlvLanding.fmu]",
+    )
+    parser.add_argument(
+        "--pure",
+        action="store_true",
+        help="leave the compiled core out: the same digits, ten times as slow",
+    )
+    arguments = parser.parse_args()
+    build(arguments.file, pure=arguments.pure)
+
+
 if __name__ == "__main__":
-    main(sys.argv[1] if len(sys.argv) > 1 else str(ROOT / "build" / "RlvLanding.fmu"))
+    main()

@@ -43,9 +43,11 @@ def room(count, size):
 """
 # the first version whose limited API has buffers
 LIMITED_API = "0x030B0000"
+COMPILE_ARGS = ["-O3", "-ffp-contract=off", "-fno-math-errno", "-g0"]
 # records go from function to function by value: the compiler puts one function into the other, so
 # that no copy is left
-COMPILE_ARGS = ["-O3", "-ffp-contract=off", "-fno-math-errno", "-g0", "-finline-limit=1000"]
+GCC_ARGS = ["-finline-limit=1000"]
+ZIG_ARGS = ["-mllvm", "-inline-threshold=5000", "-mllvm", "-inlinecold-threshold=5000"]
 
 
 def files(core: Path = CORE) -> list[Path]:

@@ -50,7 +50,7 @@ PHYSICAL_KINDS = {
     DIMENSIONLESS: "Dimensionless",
 }
 CAPABILITIES = {
-    "needsExecutionTool": True,  # a Python library on the host
+    "needsExecutionTool": False,  # a library in the process is no external tool
     "canHandleVariableCommunicationStepSize": True,
     "canInterpolateInputs": True,
     "canBeInstantiatedOnlyOncePerProcess": False,

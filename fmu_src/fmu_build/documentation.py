@@ -107,7 +107,7 @@ def render(files: Path, description: Element) -> str:
             (
                 "statistics",
                 "Statistics",
-                "local; counts of the integrator",
+                "local; counts of the integrator, and whether the core is compiled",
                 rows(STATISTIC_QUANTITIES),
             ),
             (

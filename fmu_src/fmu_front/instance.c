@@ -1,224 +1,180 @@
-/* Instances: instantiate, set up, initialise, terminate, reset, free; debug logging. */
-#include "front.h"
+/* Instances: create, set up, initialise, step, terminate, reset, free. */
+#include "instance.h"
 #include "python.h"
+#include "resources.h"
 #include "variables.h"
 
-#include <errno.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-const char *fmi2GetTypesPlatform(void)
+static bool create_slave(struct instance *c)
 {
-    return fmi2TypesPlatform;
+    const struct listener listener = {log_from_slave, c};
+    c->worst_status = STATUS_OK;
+    c->slave = slave_create(c->resources, c->name, c->visible, &listener);
+    c->phase = c->slave ? INSTANTIATED : SLAVE_LOST;
+    c->last_time = 0.0;
+    c->last_step = STATUS_OK;
+    return c->slave != NULL;
 }
 
-const char *fmi2GetVersion(void)
+static char *copy_of(const char *text)
 {
-    return fmi2Version;
+    char *copy = malloc(strlen(text) + 1);
+    return copy ? strcpy(copy, text) : NULL;
 }
 
-static void release_instance(struct instance *c)
+static bool find_resources(struct instance *c, const char *location)
 {
-    if (c->resource_link[0])
-        unlink_folder(c->resource_link);
-    free(c->location);
+    char folder[PATH_SIZE];
+    if (!resources_of_uri(location, folder)) {
+        const char *given = location ? location : "NULL";
+        if (!resources_of_library(folder)) {
+            log_message(c, STATUS_ERROR,
+                        "the location of the FMU's resources, %s, does not lead to them (no %s.py "
+                        "there), and they are not beside the folder of its binary",
+                        given, SLAVE_MODULE);
+            return false;
+        }
+        log_message(c, STATUS_WARNING,
+                    "the location of the FMU's resources, %s, does not lead to them; %s is taken",
+                    given, folder);
+    }
+    c->resources = copy_of(folder);
+    return c->resources != NULL;
+}
+
+static bool start_python(struct instance *c)
+{
+    static const char in_this_library;
+    struct message reason = {""};
+    if (is_in_own_namespace(&in_this_library)) {
+        log_message(c, STATUS_ERROR,
+                    "this library was loaded to a namespace of its own (dlmopen), in which Python "
+                    "does not work; load it with dlopen");
+        return false;
+    }
+    lock_process();
+    bool ready = python_ready(c->resources, &reason);
+    unlock_process();
+    if (!ready)
+        log_message(c, STATUS_ERROR, "%s", reason.text);
+    return ready;
+}
+
+struct instance *instance_create(const struct host *host, const char *name, const char *location,
+                                 bool visible)
+{
+    struct instance *c = calloc(1, sizeof *c);
+    if (!c)
+        return NULL;
+    c->host = *host;
+    c->visible = visible;
+    c->name = copy_of(name);
+    c->outputs = calloc(VARIABLE_COUNT, sizeof *c->outputs);
+    if (c->name && c->outputs && find_resources(c, location) && start_python(c) && create_slave(c))
+        return c;
+    instance_free(c);
+    return NULL;
+}
+
+void instance_free(struct instance *c)
+{
+    free_states_of(c);
+    if (c->slave)
+        slave_free(c->slave);
+    free(c->numbers);
+    free(c->outputs);
+    free(c->resources);
     free(c->name);
     free(c);
 }
 
-/* Find the resources and set `location`, under a path that pythonfmu's binary can take. */
-static bool set_location(struct instance *c, const char *uri, char folder[PATH_SIZE])
+enum status instance_set_logging(struct instance *c, const struct function *f, bool logging,
+                                 size_t n, const char *const categories[])
 {
-    if (!resource_folder_of_uri(uri, folder)) {
-        log_message(
-            c, fmi2Error,
-            "fmuResourceLocation does not name the FMU's resources (no slavemodule.txt there): %s",
-            uri);
-        return false;
-    }
-    const char *path = folder;
-    if (!is_plain(folder))
-        shorten_path(folder);
-    if (!is_plain(folder)) {
-        if (!link_folder(folder, c->resource_link)) {
-            c->resource_link[0] = '\0';
-            log_message(c, fmi2Error, "cannot make a link to %s in the temporary folder: %s",
-                        folder, strerror(errno));
-            return false;
-        }
-        path = c->resource_link;
-    }
-    c->location = malloc(strlen(path) + 9);
-    if (c->location)
-        sprintf(c->location, "file://%s%s", path[0] == '/' ? "" : "/",
-                path); /* C:/... on Windows */
-    return c->location != NULL;
-}
-
-static bool create_slave(struct instance *c)
-{
-    c->worst_status = fmi2OK;
-    c->slave = pythonfmu.Instantiate(c->name, fmi2CoSimulation, GUID, c->location,
-                                     &c->own_callbacks, fmi2False, fmi2True);
-    c->phase = c->slave ? INSTANTIATED : SLAVE_LOST;
-    c->last_time = 0.0;
-    c->last_step = fmi2OK;
-    return c->slave != NULL;
-}
-
-static bool check_arguments(const struct instance *c, const char *name, fmi2Type type,
-                            const char *guid, const char *uri)
-{
-    static const char function[] = "fmi2Instantiate";
-    if (!require(c, function, "instanceName", name) || !require(c, function, "fmuGUID", guid) ||
-        !require(c, function, "fmuResourceLocation", uri))
-        return false;
-    if (!decode_utf8(name, NULL, 0))
-        log_message(c, fmi2Error, "%s: instanceName is not UTF-8", function);
-    else if (type != fmi2CoSimulation)
-        log_message(c, fmi2Error, "%s: this FMU is for co-simulation only", function);
-    else if (strcmp(guid, GUID) != 0)
-        log_message(c, fmi2Error,
-                    "%s: fmuGUID = %s, but this FMU's is %s; description and binary are of "
-                    "different builds",
-                    function, guid, GUID);
-    else
-        return true;
-    return false;
-}
-
-fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2String fmuGUID,
-                              fmi2String fmuResourceLocation,
-                              const fmi2CallbackFunctions *functions, fmi2Boolean visible,
-                              fmi2Boolean loggingOn)
-{
-    (void)visible;
-    struct instance *c = calloc(1, sizeof *c + VARIABLE_COUNT * sizeof *c->output_values);
-    if (!c)
-        return NULL;
-    if (functions)
-        c->host_callbacks = *functions;
-    c->own_callbacks = (fmi2CallbackFunctions){.logger = log_from_slave,
-                                               .allocateMemory = calloc,
-                                               .freeMemory = free,
-                                               .componentEnvironment = c};
-    c->logging = loggingOn;
-    const char *name = instanceName ? instanceName : "";
-    c->name = malloc(strlen(name) + 1);
-    char folder[PATH_SIZE];
-    if (c->name && strcpy(c->name, name) &&
-        check_arguments(c, instanceName, fmuType, fmuGUID, fmuResourceLocation) &&
-        set_location(c, fmuResourceLocation, folder)) {
-        struct message reason = {""};
-        lock_process();
-        bool ready = python_ready(folder, &reason) && load_pythonfmu(&reason);
-        unlock_process();
-        if (!ready)
-            log_message(c, fmi2Error, "%s", reason.text);
-        else if (create_slave(c))
-            return c;
-    }
-    release_instance(c);
-    return NULL;
-}
-
-void fmi2FreeInstance(fmi2Component component)
-{
-    struct instance *c = component;
-    if (!c)
-        return;
-    free_states_of(c);
-    if (c->slave)
-        pythonfmu.FreeInstance(c->slave);
-    release_instance(c);
-}
-
-fmi2Status fmi2SetDebugLogging(fmi2Component component, fmi2Boolean loggingOn, size_t nCategories,
-                               const fmi2String categories[])
-{
-    struct instance *c = component;
-    if (!enter_call(c, "fmi2SetDebugLogging", ANY) ||
-        (nCategories && !require(c, "fmi2SetDebugLogging", "categories", categories)))
-        return fmi2Error;
+    if (!enter_call(c, f) || (n && !require(c, f, "categories", categories)))
+        return STATUS_ERROR;
     unsigned chosen = 0;
-    for (size_t i = 0; i < nCategories; i++) {
+    for (size_t i = 0; i < n; i++) {
         int index = categories[i] ? category_index(categories[i]) : -1;
-        if (index < 0) {
-            log_message(c, fmi2Error, "fmi2SetDebugLogging: %s is no log category of this FMU",
-                        categories[i] ? categories[i] : "NULL");
-            return fmi2Error;
+        if (index >= 0) {
+            chosen |= 1u << index;
+            continue;
         }
-        chosen |= 1u << index;
+        c->worst_status = STATUS_WARNING;
+        log_message(c, STATUS_WARNING, "%s: %s is no log category of this FMU", f->name,
+                    categories[i] ? categories[i] : "NULL");
     }
-    c->logging = loggingOn;
-    c->categories = chosen;
-    return fmi2OK;
+    /* if none of them exists, none is logged */
+    const unsigned none = ~0u << sizeof CATEGORIES / sizeof *CATEGORIES;
+    c->host.logging = logging;
+    c->host.categories = n && !chosen ? none : chosen;
+    return c->worst_status;
 }
 
-fmi2Status fmi2SetupExperiment(fmi2Component component, fmi2Boolean toleranceDefined,
-                               fmi2Real tolerance, fmi2Real startTime, fmi2Boolean stopTimeDefined,
-                               fmi2Real stopTime)
+enum status instance_setup(struct instance *c, const struct function *f, double start,
+                           const double *stop, const double *tolerance)
 {
-    struct instance *c = component;
-    if (!enter_call(c, "fmi2SetupExperiment", INSTANTIATED))
-        return fmi2Error;
-    if (!isfinite(startTime)) {
-        log_message(c, fmi2Error, "fmi2SetupExperiment: startTime = %g s must be finite",
-                    startTime);
-        return fmi2Error;
+    if (!enter_call(c, f))
+        return STATUS_ERROR;
+    if (!isfinite(start)) {
+        log_message(c, STATUS_ERROR, "%s: startTime = %g s must be finite", f->name, start);
+        return STATUS_ERROR;
     }
-    c->last_time = startTime;
-    return leave_call(c, pythonfmu.SetupExperiment(c->slave, toleranceDefined, tolerance, startTime,
-                                                   stopTimeDefined, stopTime));
+    c->last_time = start;
+    return leave_call(c, slave_setup(c->slave, start, stop, tolerance));
 }
 
-fmi2Status fmi2EnterInitializationMode(fmi2Component component)
+enum status instance_enter_initialization(struct instance *c, const struct function *f)
 {
-    struct instance *c = component;
-    if (!enter_call(c, "fmi2EnterInitializationMode", INSTANTIATED))
-        return fmi2Error;
-    fmi2Status status = leave_call(c, pythonfmu.EnterInitializationMode(c->slave));
-    if (status < fmi2Error)
+    if (!enter_call(c, f))
+        return STATUS_ERROR;
+    enum status status = leave_call(c, slave_enter_initialization(c->slave));
+    if (status < STATUS_ERROR)
         c->phase = INITIALIZING;
     return status;
 }
 
-fmi2Status fmi2ExitInitializationMode(fmi2Component component)
+enum status instance_exit_initialization(struct instance *c, const struct function *f)
 {
-    struct instance *c = component;
-    if (!enter_call(c, "fmi2ExitInitializationMode", INITIALIZING))
-        return fmi2Error;
-    fmi2Status status = leave_call(c, pythonfmu.ExitInitializationMode(c->slave));
-    if (status < fmi2Error) /* else the importer may set other values and try again */
+    if (!enter_call(c, f))
+        return STATUS_ERROR;
+    enum status status = leave_call(c, slave_exit_initialization(c->slave));
+    if (status < STATUS_ERROR) /* else the host may set other values and try again */
         c->phase = STEPPING;
     return status;
 }
 
-fmi2Status fmi2Terminate(fmi2Component component)
+enum status instance_step(struct instance *c, const struct function *f, double time, double step)
 {
-    struct instance *c = component;
-    if (!enter_call(c, "fmi2Terminate", INITIALIZING | STEPPING))
-        return fmi2Error;
-    fmi2Status status = leave_call(c, pythonfmu.Terminate(c->slave));
+    if (!enter_call(c, f))
+        return STATUS_ERROR;
+    enum status status = leave_call(c, slave_step(c->slave, time, step));
+    if (status < STATUS_DISCARD)
+        c->last_time = time + step;
+    c->last_step = status;
+    return status;
+}
+
+enum status instance_terminate(struct instance *c, const struct function *f)
+{
+    if (!enter_call(c, f))
+        return STATUS_ERROR;
+    enum status status = leave_call(c, slave_terminate(c->slave));
     if (c->phase != SLAVE_LOST)
         c->phase = TERMINATED;
     return status;
 }
 
-fmi2Status fmi2Reset(fmi2Component component)
+enum status instance_reset(struct instance *c, const struct function *f)
 {
-    struct instance *c = component;
-    if (!enter_call(c, "fmi2Reset", ANY | SLAVE_LOST))
-        return fmi2Error;
-    if (c->phase == SLAVE_LOST)
-        return create_slave(c) ? fmi2OK : fmi2Error;
-    fmi2Status status = leave_call(c, pythonfmu.Reset(c->slave));
-    if (status < fmi2Error) {
-        c->phase = INSTANTIATED;
-        c->last_time = 0.0;
-        c->last_step = fmi2OK;
-    }
-    return status;
+    if (!enter_call(c, f))
+        return STATUS_ERROR;
+    if (c->slave)
+        slave_free(c->slave);
+    c->slave = NULL;
+    c->phase = SLAVE_LOST;
+    return start_python(c) && create_slave(c) ? STATUS_OK : STATUS_ERROR;
 }

@@ -1,6 +1,5 @@
-/* Messages to the importer; what every call does when it enters and leaves. */
-#include "front.h"
-#include "python.h"
+/* Messages to the host; what every call does when it enters and leaves. */
+#include "instance.h"
 #include "variables.h"
 
 #include <stdarg.h>
@@ -8,7 +7,7 @@
 #include <string.h>
 
 static const char *const STATUS_CATEGORIES[] = {"logAll", "logStatusWarning", "logStatusDiscard",
-                                                "logStatusError", "logStatusFatal"};
+                                                "logStatusError"};
 
 int category_index(const char *name)
 {
@@ -18,37 +17,26 @@ int category_index(const char *name)
     return -1;
 }
 
-static bool is_logged(const struct instance *c, const char *category)
+static bool is_logged(const struct host *host, const char *category)
 {
     int all = category_index("logAll"), own = category_index(category);
-    return c->logging && c->host_callbacks.logger &&
-           (c->categories == 0 || (all >= 0 && c->categories >> all & 1) ||
-            (own >= 0 && c->categories >> own & 1));
+    return host->logging && host->send &&
+           (host->categories == 0 || (all >= 0 && host->categories >> all & 1) ||
+            (own >= 0 && host->categories >> own & 1));
 }
 
-static void send_message(const struct instance *c, fmi2Status status, const char *category,
+static void send_message(const struct instance *c, enum status status, const char *category,
                          const char *text)
 {
     if (!category || !*category)
-        category = STATUS_CATEGORIES[status <= fmi2Fatal ? status : fmi2Error];
-    if (!is_logged(c, category)) {
-        if (status >= fmi2Error)
-            fprintf(stderr, "RlvLanding (%s): %s\n", c->name, text);
-        return;
-    }
-    /* the importer takes the message as a format, and a path or a value in it may hold a % */
-    char escaped[2 * sizeof(struct message)], *to = escaped;
-    for (; *text && to < escaped + sizeof escaped - 2; text++) {
-        if (*text == '%')
-            *to++ = '%';
-        *to++ = *text;
-    }
-    *to = '\0';
-    c->host_callbacks.logger(c->host_callbacks.componentEnvironment, c->name, status, category,
-                             escaped);
+        category = STATUS_CATEGORIES[status];
+    if (is_logged(&c->host, category))
+        c->host.send(&c->host, c->name, status, category, text);
+    else if (status >= STATUS_ERROR)
+        fprintf(stderr, "RlvLanding (%s): %s\n", c->name, text);
 }
 
-void log_message(const struct instance *c, fmi2Status status, const char *format, ...)
+void log_message(const struct instance *c, enum status status, const char *format, ...)
 {
     struct message message;
     va_list arguments;
@@ -58,60 +46,58 @@ void log_message(const struct instance *c, fmi2Status status, const char *format
     send_message(c, status, NULL, message.text);
 }
 
-void log_from_slave(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status,
-                    fmi2String category, fmi2String message, ...)
+void log_from_slave(void *instance, enum status status, const char *category, const char *text)
 {
-    (void)name;
-    struct instance *c = environment;
-    if (status >= fmi2Fatal) {
-        /* An exception that the slave did not catch: an error of this instance, not of the process.
-         * The slave catches all but interrupts, which Python 3.10 and 3.11 report without a value.
-         */
-        c->interrupted |= strstr(message, "KeyboardInterrupt") || strstr(message, "unknown error");
-        status = fmi2Error;
-        category = NULL;
-    }
+    struct instance *c = instance;
     if (status > c->worst_status)
         c->worst_status = status;
-    send_message(c, status, category, message);
+    send_message(c, status, category, text);
 }
 
-bool enter_call(struct instance *c, const char *function, unsigned phases)
+static const char *description_of(enum phase phase)
+{
+    switch (phase) {
+    case INSTANTIATED:
+        return "before the initialization mode";
+    case INITIALIZING:
+        return "in initialization mode";
+    case STEPPING:
+        return "after the initialization mode";
+    case TERMINATED:
+        return "after the termination";
+    default:
+        return "of an instance that an internal error has ended; reset or free it";
+    }
+}
+
+bool enter_call(struct instance *c, const struct function *f)
 {
     if (!c)
         return false;
-    c->worst_status = fmi2OK;
+    c->worst_status = STATUS_OK;
     c->outputs_valid = false;
-    if (c->phase & phases)
+    if (c->phase & f->phases)
         return true;
-    const char *now = c->phase == INSTANTIATED   ? "before fmi2EnterInitializationMode"
-                      : c->phase == INITIALIZING ? "in initialization mode"
-                      : c->phase == STEPPING     ? "after fmi2ExitInitializationMode"
-                      : c->phase == TERMINATED
-                          ? "after fmi2Terminate"
-                          : "of an instance that an internal error has ended; reset or free it";
-    log_message(c, fmi2Error, "%s must not be called %s", function, now);
+    log_message(c, STATUS_ERROR, "%s must not be called %s", f->name, description_of(c->phase));
     return false;
 }
 
-bool require(const struct instance *c, const char *function, const char *argument,
+bool require(const struct instance *c, const struct function *f, const char *argument,
              const void *pointer)
 {
     if (!pointer)
-        log_message(c, fmi2Error, "%s: %s is NULL", function, argument);
+        log_message(c, STATUS_ERROR, "%s: %s is NULL", f->name, argument);
     return pointer != NULL;
 }
 
-fmi2Status leave_call(struct instance *c, fmi2Status status)
+enum status leave_call(struct instance *c, enum answer answer)
 {
-    if (status >= fmi2Fatal) {
+    if (answer == LOST) {
         c->phase = SLAVE_LOST;
+        slave_free(c->slave);
         c->slave = NULL;
-        status = fmi2Error;
+        return STATUS_ERROR;
     }
-    if (c->interrupted) {
-        c->interrupted = false;
-        interrupt_python();
-    }
-    return status > c->worst_status ? status : c->worst_status;
+    return answer == REFUSED && c->worst_status < STATUS_DISCARD ? STATUS_DISCARD
+                                                                  : c->worst_status;
 }

@@ -15,14 +15,22 @@
 void *library_open(const char *path, bool global);
 void library_close(void *library);
 void *library_symbol(void *library, const char *name);
-/* The reason why the last library_open failed. */
-const char *library_error(void);
 /* A symbol of the program or of any global library; NULL if there is none. */
 void *process_symbol(const char *name);
 /* Make a libpython global that the program has loaded without global symbols, if there is one. */
 void make_loaded_python_global(void);
 /* Write the real path of the library that holds `address`. Returns false if it has none. */
 bool library_path(const void *address, char path[PATH_SIZE]);
+
+/*
+ * True if the library that holds `address` was loaded to a namespace of its own (dlmopen).
+ *
+ * Python cannot be shared with such a library, nor started a second time in it.
+ */
+bool is_in_own_namespace(const void *address);
+
+/* True if the process has loaded a library from below the folder. */
+bool library_is_loaded_below(const char *folder);
 
 bool file_exists(const char *path);
 /* Write the path in an environment variable. Returns false if it is not set or empty. */
@@ -34,24 +42,6 @@ bool environment_path(const char *name, char value[PATH_SIZE]);
  * Returns false if there is none.
  */
 bool installed_python(int oldest, int newest, char path[PATH_SIZE]);
-/* Replace a path by its short (8.3) name, where the system has one. */
-void shorten_path(char path[PATH_SIZE]);
-/*
- * Make a link to the folder `target`, or a copy, under a plain path in the temporary folder.
- *
- * Writes its path. Returns false with errno set if it fails.
- */
-bool link_folder(const char *target, char link[PATH_SIZE]);
-/* Remove what link_folder made. */
-void unlink_folder(const char *link);
-
-/*
- * Called when this library is unloaded.
- *
- * On Windows not at the end of the process, when other libraries may be unloaded already.
- */
-void on_unload(void);
-
 /*
  * One recursive lock for the whole process, other copies of this library included.
  *

@@ -36,12 +36,6 @@ void *library_symbol(void *library, const char *name)
     return dlsym(library, name);
 }
 
-const char *library_error(void)
-{
-    const char *text = dlerror();
-    return text ? text : "no reason given";
-}
-
 void *process_symbol(const char *name)
 {
     return dlsym(RTLD_DEFAULT, name);
@@ -79,6 +73,37 @@ bool library_path(const void *address, char path[PATH_SIZE])
     return fits;
 }
 
+bool is_in_own_namespace(const void *address)
+{
+    Dl_info info;
+    Lmid_t namespace = LM_ID_BASE;
+    void *library =
+        dladdr(address, &info) ? dlopen(info.dli_fname, RTLD_LAZY | RTLD_NOLOAD) : NULL;
+    if (library) {
+        dlinfo(library, RTLD_DI_LMID, &namespace);
+        dlclose(library);
+    }
+    return namespace != LM_ID_BASE;
+}
+
+static int is_below(struct dl_phdr_info *info, size_t size, void *folder)
+{
+    (void)size;
+    char *real = realpath(info->dlpi_name, NULL);
+    const size_t length = strlen(folder);
+    bool below = real && strncmp(real, folder, length) == 0 && real[length] == '/';
+    free(real);
+    return below;
+}
+
+bool library_is_loaded_below(const char *folder)
+{
+    char *real = realpath(folder, NULL);
+    bool loaded = real && dl_iterate_phdr(is_below, real);
+    free(real);
+    return loaded;
+}
+
 bool file_exists(const char *path)
 {
     return access(path, R_OK) == 0;
@@ -101,35 +126,6 @@ bool installed_python(int oldest, int newest, char line[PATH_SIZE])
     if (found)
         line[strcspn(line, "\r\n")] = '\0';
     return found && line[0] != '\0';
-}
-
-void shorten_path(char path[PATH_SIZE])
-{
-    (void)path;
-}
-
-bool link_folder(const char *target, char link[PATH_SIZE])
-{
-    char folder[] = "/tmp/rlv_landing_XXXXXX";
-    if (!mkdtemp(folder))
-        return false;
-    snprintf(link, PATH_SIZE, "%s/resources", folder);
-    if (symlink(target, link) == 0)
-        return true;
-    rmdir(folder);
-    return false;
-}
-
-void unlink_folder(const char *link)
-{
-    char folder[PATH_SIZE];
-    snprintf(folder, sizeof folder, "%s", link);
-    unlink(folder);
-    char *end = strrchr(folder, '/');
-    if (end) {
-        *end = '\0';
-        rmdir(folder);
-    }
 }
 
 /*

@@ -1,9 +1,9 @@
 /*
- * FMU states: get, set, free, serialise, deserialise.
+ * States: get, set, free, serialise, deserialise.
  *
  * Bytes that are not a complete state of this build of the FMU are refused.
  */
-#include "front.h"
+#include "instance.h"
 #include "variables.h"
 
 #include <stdint.h>
@@ -13,7 +13,7 @@
 struct state {
     struct state *next;
     struct instance *owner;
-    fmi2FMUstate slave; /* pythonfmu's */
+    struct slave_state *slave;
     uint32_t phase;
     double last_time;
 };
@@ -33,12 +33,16 @@ struct header {
 static const char MAGIC[] = "RlvState";
 static struct state *states;
 
-static struct state *add_state(struct instance *owner, fmi2FMUstate slave, uint32_t phase,
+/* Add a state of `owner` to the list; it takes `slave`, which may be NULL, and is NULL then. */
+static struct state *add_state(struct instance *owner, struct slave_state *slave, uint32_t phase,
                                double last_time)
 {
-    struct state *state = malloc(sizeof *state);
-    if (!state)
+    struct state *state = slave ? malloc(sizeof *state) : NULL;
+    if (!state) {
+        if (slave)
+            slave_free_state(slave);
         return NULL;
+    }
     *state = (struct state){.owner = owner, .slave = slave, .phase = phase, .last_time = last_time};
     lock_process();
     state->next = states;
@@ -58,13 +62,14 @@ static bool exists(const void *pointer)
     return state != NULL;
 }
 
-static bool is_state(const struct instance *c, const char *function, const void *pointer)
+static bool is_state(const struct instance *c, const struct function *f, const void *pointer)
 {
-    if (!require(c, function, "FMUstate", pointer))
+    if (!require(c, f, "FMUstate", pointer))
         return false;
-    if (!exists(pointer))
-        log_message(c, fmi2Error, "%s: FMUstate is no state of this FMU, or was freed", function);
-    return exists(pointer);
+    bool found = exists(pointer);
+    if (!found)
+        log_message(c, STATUS_ERROR, "%s: FMUstate is no state of this FMU, or was freed", f->name);
+    return found;
 }
 
 /* Remove the first state from the list that is `pointer` or belongs to `owner`. */
@@ -81,77 +86,81 @@ static struct state *remove_state(const void *pointer, const struct instance *ow
     return state;
 }
 
-static void free_state(struct instance *c, struct state *state)
+static void free_state(struct state *state)
 {
-    if (c->slave)
-        pythonfmu.FreeFMUstate(c->slave, &state->slave);
+    slave_free_state(state->slave);
     free(state);
 }
 
 void free_states_of(struct instance *c)
 {
     for (struct state *state; (state = remove_state(NULL, c));)
-        free_state(c, state);
+        free_state(state);
 }
 
-fmi2Status fmi2GetFMUstate(fmi2Component component, fmi2FMUstate *FMUstate)
+enum status instance_get_state(struct instance *c, const struct function *f, void **state)
 {
-    static const char function[] = "fmi2GetFMUstate";
-    struct instance *c = component;
-    if (!enter_call(c, function, ANY) || !require(c, function, "FMUstate", FMUstate))
-        return fmi2Error;
-    fmi2FMUstate slave = NULL;
-    fmi2Status status = leave_call(c, pythonfmu.GetFMUstate(c->slave, &slave));
-    if (status >= fmi2Error || !slave)
-        return fmi2Error;
+    struct slave_state *slave;
+    if (!enter_call(c, f) || !require(c, f, "FMUstate", state))
+        return STATUS_ERROR;
+    enum status status = leave_call(c, slave_get_state(c->slave, &slave));
+    struct state *made = add_state(c, slave, c->phase, c->last_time);
+    if (!made || status >= STATUS_ERROR)
+        return STATUS_ERROR;
     /* a state that is passed in is replaced */
-    struct state *old = exists(*FMUstate) ? remove_state(*FMUstate, NULL) : NULL;
+    struct state *old = exists(*state) ? remove_state(*state, NULL) : NULL;
     if (old)
-        free_state(c, old);
-    *FMUstate = add_state(c, slave, c->phase, c->last_time);
-    return *FMUstate ? status : fmi2Error;
+        free_state(old);
+    *state = made;
+    return status;
 }
 
-fmi2Status fmi2SetFMUstate(fmi2Component component, fmi2FMUstate FMUstate)
+enum status instance_set_state(struct instance *c, const struct function *f, void *state)
 {
-    struct instance *c = component;
-    if (!enter_call(c, "fmi2SetFMUstate", ANY) || !is_state(c, "fmi2SetFMUstate", FMUstate))
-        return fmi2Error;
-    const struct state *state = FMUstate;
-    fmi2Status status = leave_call(c, pythonfmu.SetFMUstate(c->slave, state->slave));
-    if (status < fmi2Error) {
-        c->phase = state->phase;
-        c->last_time = state->last_time;
-        c->last_step = fmi2OK;
+    if (!enter_call(c, f) || !is_state(c, f, state))
+        return STATUS_ERROR;
+    const struct state *from = state;
+    enum status status = leave_call(c, slave_set_state(c->slave, from->slave));
+    if (status < STATUS_ERROR) {
+        c->phase = from->phase;
+        c->last_time = from->last_time;
+        c->last_step = STATUS_OK;
     }
     return status;
 }
 
-fmi2Status fmi2FreeFMUstate(fmi2Component component, fmi2FMUstate *FMUstate)
+enum status instance_free_state(struct instance *c, const struct function *f, void **state)
 {
-    struct instance *c = component;
-    if (!enter_call(c, "fmi2FreeFMUstate", ANY | SLAVE_LOST) ||
-        !require(c, "fmi2FreeFMUstate", "FMUstate", FMUstate))
-        return fmi2Error;
-    if (*FMUstate == NULL)
-        return fmi2OK;
-    if (!is_state(c, "fmi2FreeFMUstate", *FMUstate))
-        return fmi2Error;
-    free_state(c, remove_state(*FMUstate, NULL));
-    *FMUstate = NULL;
-    return fmi2OK;
+    if (!enter_call(c, f) || !require(c, f, "FMUstate", state))
+        return STATUS_ERROR;
+    if (*state == NULL)
+        return STATUS_OK;
+    if (!is_state(c, f, *state))
+        return STATUS_ERROR;
+    free_state(remove_state(*state, NULL));
+    *state = NULL;
+    return STATUS_OK;
 }
 
-fmi2Status fmi2SerializedFMUstateSize(fmi2Component component, fmi2FMUstate FMUstate, size_t *size)
+/* The bytes of a state, as the slave writes them. */
+static enum status state_bytes(struct instance *c, const struct function *f, struct state *state,
+                               const char **bytes, size_t *size)
 {
-    static const char function[] = "fmi2SerializedFMUstateSize";
-    struct instance *c = component;
-    if (!enter_call(c, function, ANY) || !is_state(c, function, FMUstate) ||
-        !require(c, function, "size", size))
-        return fmi2Error;
-    fmi2Status status = leave_call(
-        c, pythonfmu.SerializedFMUstateSize(c->slave, ((struct state *)FMUstate)->slave, size));
-    *size += sizeof(struct header);
+    if (!enter_call(c, f) || !is_state(c, f, state))
+        return STATUS_ERROR;
+    enum status status = leave_call(c, slave_state_bytes(c->slave, state->slave, bytes, size));
+    return *bytes ? status : STATUS_ERROR;
+}
+
+enum status instance_state_size(struct instance *c, const struct function *f, void *state,
+                                size_t *size)
+{
+    const char *bytes = NULL;
+    size_t length = 0;
+    enum status status = state_bytes(c, f, state, &bytes, &length);
+    if (status >= STATUS_ERROR || !require(c, f, "size", size))
+        return STATUS_ERROR;
+    *size = sizeof(struct header) + length;
     return status;
 }
 
@@ -167,36 +176,29 @@ static uint64_t checksum(const char *bytes, size_t size)
 /* The checksum starts behind `magic` and `check`. */
 enum { CHECK_START = MAGIC_SIZE + sizeof(uint64_t) };
 
-fmi2Status fmi2SerializeFMUstate(fmi2Component component, fmi2FMUstate FMUstate,
-                                 fmi2Byte serializedState[], size_t size)
+enum status instance_serialize(struct instance *c, const struct function *f, void *state,
+                               char bytes[], size_t size)
 {
-    static const char function[] = "fmi2SerializeFMUstate";
-    struct instance *c = component;
-    size_t needed;
-    if (!enter_call(c, function, ANY) || !is_state(c, function, FMUstate) ||
-        !require(c, function, "serializedState", serializedState))
-        return fmi2Error;
-    fmi2Status status = fmi2SerializedFMUstateSize(c, FMUstate, &needed);
-    if (status >= fmi2Error)
-        return status;
+    const char *content = NULL;
+    size_t length = 0;
+    enum status status = state_bytes(c, f, state, &content, &length);
+    if (status >= STATUS_ERROR || !require(c, f, "serializedState", bytes))
+        return STATUS_ERROR;
+    const struct state *from = state;
+    struct header header = {
+        .guid = GUID, .size = length, .last_time = from->last_time, .phase = from->phase};
+    const size_t needed = sizeof header + length;
     if (size < needed) {
-        log_message(c, fmi2Error, "%s: size = %zu bytes is too small, %zu are needed", function,
+        log_message(c, STATUS_ERROR, "%s: size = %zu bytes is too small, %zu are needed", f->name,
                     size, needed);
-        return fmi2Error;
+        return STATUS_ERROR;
     }
-    const struct state *state = FMUstate;
-    struct header header = {.guid = GUID,
-                            .size = needed - sizeof header,
-                            .last_time = state->last_time,
-                            .phase = state->phase};
     memcpy(header.magic, MAGIC, MAGIC_SIZE);
-    status =
-        leave_call(c, pythonfmu.SerializeFMUstate(c->slave, state->slave,
-                                                  serializedState + sizeof header, header.size));
-    memcpy(serializedState, &header, sizeof header);
-    header.check = checksum(serializedState + CHECK_START, needed - CHECK_START);
-    memcpy(serializedState, &header, sizeof header);
-    memset(serializedState + needed, 0, size - needed);
+    memcpy(bytes, &header, sizeof header);
+    memcpy(bytes + sizeof header, content, length);
+    header.check = checksum(bytes + CHECK_START, needed - CHECK_START);
+    memcpy(bytes, &header, sizeof header);
+    memset(bytes + needed, 0, size - needed);
     return status;
 }
 
@@ -216,29 +218,26 @@ static const char *state_fault(const struct header *header, const char *bytes, s
     return NULL;
 }
 
-fmi2Status fmi2DeSerializeFMUstate(fmi2Component component, const fmi2Byte serializedState[],
-                                   size_t size, fmi2FMUstate *FMUstate)
+enum status instance_deserialize(struct instance *c, const struct function *f, const char bytes[],
+                                 size_t size, void **state)
 {
-    static const char function[] = "fmi2DeSerializeFMUstate";
-    struct instance *c = component;
-    if (!enter_call(c, function, ANY) ||
-        !require(c, function, "serializedState", serializedState) ||
-        !require(c, function, "FMUstate", FMUstate))
-        return fmi2Error;
+    if (!enter_call(c, f) || !require(c, f, "serializedState", bytes) ||
+        !require(c, f, "FMUstate", state))
+        return STATUS_ERROR;
     struct header header = {.size = 0};
     if (size >= sizeof header)
-        memcpy(&header, serializedState, sizeof header);
-    const char *fault = state_fault(&header, serializedState, size);
+        memcpy(&header, bytes, sizeof header);
+    const char *fault = state_fault(&header, bytes, size);
     if (fault) {
-        log_message(c, fmi2Error, "%s: the %zu bytes %s", function, size, fault);
-        return fmi2Error;
+        log_message(c, STATUS_ERROR, "%s: the %zu bytes %s", f->name, size, fault);
+        return STATUS_ERROR;
     }
-    fmi2FMUstate slave = NULL;
-    fmi2Status status =
-        leave_call(c, pythonfmu.DeSerializeFMUstate(c->slave, serializedState + sizeof header,
-                                                    header.size, &slave));
-    if (status >= fmi2Error || !slave)
-        return fmi2Error;
-    *FMUstate = add_state(c, slave, (uint32_t)header.phase, header.last_time);
-    return *FMUstate ? status : fmi2Error;
+    struct slave_state *slave;
+    enum status status = leave_call(
+        c, slave_state_from_bytes(c->slave, bytes + sizeof header, header.size, &slave));
+    struct state *made = add_state(c, slave, (uint32_t)header.phase, header.last_time);
+    if (!made || status >= STATUS_ERROR)
+        return STATUS_ERROR;
+    *state = made;
+    return status;
 }

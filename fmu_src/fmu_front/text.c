@@ -1,10 +1,8 @@
 #include "text.h"
 
-#include <ctype.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 void append_text(struct message *message, const char *format, ...)
@@ -52,63 +50,5 @@ bool decode_utf8(const char *text, wchar_t *wide, size_t size)
     }
     if (wide)
         wide[n] = L'\0';
-    return true;
-}
-
-static void decode_percent(const char *from, char *to)
-{
-    while (*from) {
-        if (from[0] == '%' && isxdigit((unsigned char)from[1]) &&
-            isxdigit((unsigned char)from[2])) {
-            char digits[] = {from[1], from[2], '\0'};
-            *to++ = (char)strtol(digits, NULL, 16);
-            from += 3;
-        } else {
-            *to++ = *from++;
-        }
-    }
-    *to = '\0';
-}
-
-static bool has_slave_module(const char *folder)
-{
-    char file[PATH_SIZE + 20];
-    snprintf(file, sizeof file, "%s/slavemodule.txt", folder);
-    return file_exists(file);
-}
-
-bool resource_folder_of_uri(const char *uri, char folder[PATH_SIZE])
-{
-    if (strlen(uri) >= PATH_SIZE)
-        return false;
-    const char *path = uri;
-    if (strncmp(path, "file:", 5) == 0) {
-        path += 5;
-        if (strncmp(path, "//localhost/", 12) == 0)
-            path += 11;
-#ifdef _WIN32
-        else if (strncmp(path, "///", 3) == 0) /* //server/... is a path there */
-            path += 2;
-        if (path[0] == '/' && isalpha((unsigned char)path[1]) && path[2] == ':')
-            path++;
-#else
-        else if (strncmp(path, "//", 2) == 0)
-            path += 2;
-#endif
-        decode_percent(path, folder);
-        if (has_slave_module(folder))
-            return true;
-    }
-    /* a plain path, or a URI that its host has not escaped */
-    memmove(folder, path, strlen(path) + 1);
-    return has_slave_module(folder);
-}
-
-bool is_plain(const char *path)
-{
-    for (; *path; path++)
-        if (!((*path >= 'a' && *path <= 'z') || (*path >= 'A' && *path <= 'Z') ||
-              (*path >= '0' && *path <= '9') || strchr("/._-+~:", *path)))
-            return false;
     return true;
 }

@@ -2,14 +2,12 @@
 #define PSAPI_VERSION 2
 #include "platform.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <windows.h>
 
 #include <psapi.h>
-#include <shellapi.h>
 
 const char *const PYTHON_LIBRARY = "python3%d.dll";
 const char *const STANDARD_LIBRARIES[] = {"%s/Lib/os.py", "%s/python3%d.zip", NULL};
@@ -45,8 +43,8 @@ static bool module_path(HMODULE module, char path[PATH_SIZE])
 }
 
 /*
- * pythonfmu's binary needs python3.dll, which forwards to python3<minor>.dll. It lies beside the
- * latter, where the loader does not look.
+ * Libraries of the limited API need python3.dll, which forwards to python3<minor>.dll. It lies
+ * beside the latter, where the loader does not look.
  */
 static void make_python_global(HMODULE module)
 {
@@ -84,27 +82,28 @@ void *library_symbol(void *library, const char *name)
     return (void *)(INT_PTR)GetProcAddress(library, name);
 }
 
-const char *library_error(void)
-{
-    static char text[40];
-    snprintf(text, sizeof text, "Windows error %lu", GetLastError());
-    return text;
-}
-
 void *process_symbol(const char *name)
 {
     return python ? library_symbol(python, name) : NULL;
 }
 
+/* The modules of this process that fit in `modules`; returns their number. */
+static DWORD loaded_modules(HMODULE modules[], DWORD room)
+{
+    DWORD size = 0;
+    if (!EnumProcessModules(GetCurrentProcess(), modules, room * sizeof *modules, &size))
+        return 0;
+    DWORD count = size / sizeof *modules;
+    return count < room ? count : room;
+}
+
+enum { MOST_MODULES = 1024 };
+
 void make_loaded_python_global(void)
 {
-    HMODULE modules[1024];
-    DWORD size = 0;
-    if (!EnumProcessModules(GetCurrentProcess(), modules, sizeof modules, &size))
-        return;
-    if (size > sizeof modules)
-        size = sizeof modules;
-    for (DWORD i = 0; i < size / sizeof *modules; i++) {
+    HMODULE modules[MOST_MODULES];
+    DWORD count = loaded_modules(modules, MOST_MODULES);
+    for (DWORD i = 0; i < count; i++) {
         char path[PATH_SIZE];
         int minor, length = 0;
         if (!module_path(modules[i], path) || !strrchr(path, '/'))
@@ -115,6 +114,20 @@ void make_loaded_python_global(void)
             return;
         }
     }
+}
+
+bool library_is_loaded_below(const char *folder)
+{
+    HMODULE modules[MOST_MODULES];
+    DWORD count = loaded_modules(modules, MOST_MODULES);
+    const size_t length = strlen(folder);
+    for (DWORD i = 0; i < count; i++) {
+        char path[PATH_SIZE];
+        if (module_path(modules[i], path) && _strnicmp(path, folder, length) == 0 &&
+            path[length] == '/')
+            return true;
+    }
+    return false;
 }
 
 bool library_path(const void *address, char path[PATH_SIZE])
@@ -161,45 +174,10 @@ bool installed_python(int oldest, int newest, char path[PATH_SIZE])
     return false;
 }
 
-void shorten_path(char path[PATH_SIZE])
+bool is_in_own_namespace(const void *address)
 {
-    wchar_t wide[PATH_SIZE], other[PATH_SIZE];
-    DWORD length = to_wide(path, wide) ? GetShortPathNameW(wide, other, PATH_SIZE) : 0;
-    if (length && length < PATH_SIZE)
-        to_utf8(other, path);
-}
-
-/* FO_COPY or FO_DELETE a folder; the names must end with two zeros. */
-static bool copy_or_delete_folder(UINT what, const wchar_t *from, const wchar_t *to)
-{
-    SHFILEOPSTRUCTW change = {.wFunc = what, .pFrom = from, .pTo = to, .fFlags = FOF_NO_UI};
-    return SHFileOperationW(&change) == 0 && !change.fAnyOperationsAborted;
-}
-
-/* A copy: links need rights that few users have. */
-bool link_folder(const char *target, char link[PATH_SIZE])
-{
-    static volatile LONG count;
-    wchar_t from[PATH_SIZE + 1] = {0}, to[PATH_SIZE + 1] = {0};
-    DWORD length = GetTempPathW(PATH_SIZE, to);
-    errno = ENAMETOOLONG;
-    if (!length || length >= PATH_SIZE || !to_utf8(to, link) || !to_wide(target, from))
-        return false;
-    shorten_path(link);
-    length = (DWORD)strlen(link);
-    snprintf(link + length, PATH_SIZE - length, "rlv_landing_%lu_%ld", GetCurrentProcessId(),
-             InterlockedIncrement(&count));
-    if (!to_wide(link, to))
-        return false;
-    errno = EACCES;
-    return copy_or_delete_folder(FO_COPY, from, to);
-}
-
-void unlink_folder(const char *link)
-{
-    wchar_t folder[PATH_SIZE + 1] = {0};
-    if (to_wide(link, folder))
-        copy_or_delete_folder(FO_DELETE, folder, NULL);
+    (void)address; /* Windows has none */
+    return false;
 }
 
 static HANDLE process_mutex(void)
@@ -248,12 +226,4 @@ void restore_locale(void)
         ucrt_locale(locale_name);
     free(locale_name);
     locale_name = NULL;
-}
-
-BOOL WINAPI DllMain(HINSTANCE library, DWORD why, LPVOID ending)
-{
-    (void)library;
-    if (why == DLL_PROCESS_DETACH && !ending)
-        on_unload();
-    return TRUE;
 }

@@ -24,6 +24,7 @@ from .commands.sensitivity import sensitivity
 from .commands.simulate import simulate
 from .commands.sweep import sweep
 from .commands.validate import validate
+from .core import COMPILED, WHY_NOT_COMPILED
 from .errors import LandingError, nearest, one_line
 from .text.terminal import make_legible
 
@@ -83,7 +84,11 @@ class Commands(click.Group):
 
 
 @click.group(cls=Commands, context_settings=HELP_NAMES)
-@click.version_option(__version__, prog_name="rlv-landing")
+@click.version_option(
+    __version__,
+    prog_name="rlv-landing",
+    message=f"%(prog)s, version %(version)s, {'compiled' if COMPILED else 'uncompiled'} core",
+)
 def cli() -> None:
     """Touchdown of a vertical-landing rocket stage on four legs.
 
@@ -112,7 +117,18 @@ for command in (simulate, parameters, validate, audit, identify, sweep, sensitiv
 
 
 def main() -> None:
-    """Run the command line; an error of the user is one line on standard error."""
+    """Run the command line; an error of the user is one line on standard error.
+
+    So is the absence of the compiled core, unless RLV_LANDING_PURE asks for it.
+    """
+    if WHY_NOT_COMPILED:
+        click.echo(
+            one_line(
+                f"the core is not compiled ({WHY_NOT_COMPILED}): the same digits, ten times as "
+                "slow; python setup.py build_ext --inplace compiles it"
+            ),
+            err=True,
+        )
     sys.exit(run(cli))
 
 

@@ -342,7 +342,7 @@ OUTPUT_QUANTITIES: tuple[Quantity, ...] = SHARED_QUANTITIES + tuple(
     _leg_quantity(leg, q) for leg in LEGS for q in LEG_QUANTITIES
 )
 OUTPUT_NAMES: tuple[str, ...] = tuple(q.name for q in OUTPUT_QUANTITIES)
-# counts of the integrator's work, and whether it sleeps: `Landing.statistics`
+# the integrator's work, and whether it sleeps: `Landing.statistics`; and what does the work
 STATISTIC_QUANTITIES: tuple[Quantity, ...] = (
     Quantity(
         "", "steps of the integrator since the start", 0.0, name="solver.steps", kind="integer"
@@ -369,6 +369,13 @@ STATISTIC_QUANTITIES: tuple[Quantity, ...] = (
         1.0,
         name="solver.asleep",
         kind="integer",
+    ),
+    Quantity(
+        "",
+        "whether the core is compiled; uncompiled, it gives the same digits slowly",
+        0.0,
+        name="solver.compiled",
+        kind="boolean",
     ),
 )
 INPUT_NAMES: tuple[str, ...] = tuple(q.name for q in INPUT_QUANTITIES)

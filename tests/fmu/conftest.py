@@ -5,11 +5,13 @@ from __future__ import annotations
 import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from xml.etree import ElementTree
 
 import fmpy
 import pytest
 from fmu_instance import Instance
 
+ROOT = Path(__file__).resolve().parent.parent.parent
 HOSTS = Path(__file__).parent / "host"
 HEADERS = Path(fmpy.__file__).parent / "c-code"
 
@@ -67,3 +69,21 @@ def host(tmp_path_factory) -> Callable[[str], Path]:
         return program
 
     return compiled
+
+
+@pytest.fixture
+def binary(monkeypatch):
+    """The module that compiles the front."""
+    monkeypatch.syspath_prepend(ROOT / "fmu_src")
+    from fmu_build import binary
+
+    return binary
+
+
+@pytest.fixture
+def header(binary, unpacked, tmp_path) -> Path:
+    """A folder with the header that the front of the FMU includes."""
+    root = ElementTree.parse(unpacked / "modelDescription.xml").getroot()
+    module = (unpacked / "resources" / "slavemodule.txt").read_text()
+    (tmp_path / "variables.h").write_text(binary.variables_header(root, module))
+    return tmp_path

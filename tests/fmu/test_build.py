@@ -1,17 +1,17 @@
 """The build of the FMU: `build_fmu.sh` as a user calls it, and the front in C."""
 
 import re
+import shutil
 import subprocess
 import sys
+import sysconfig
+import zipfile
 from pathlib import Path
-from xml.etree import ElementTree
 
 import fmpy
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-
-OF_MODEL_EXCHANGE = re.compile("Event|Continuous|Integrator|NewDiscrete|SetTime|GetDerivatives")
 
 
 def test_build_script_writes_the_named_file_and_prints_what_it_checked(tmp_path):
@@ -30,18 +30,59 @@ def test_build_script_writes_the_named_file_and_prints_what_it_checked(tmp_path)
     assert fmpy.read_model_description(str(target)).modelName == "RlvLanding"
 
 
-def test_the_front_compiles_without_a_warning_and_exports_fmi_functions_only(
-    unpacked, tmp_path, monkeypatch
-):
-    monkeypatch.syspath_prepend(ROOT / "fmu_src")
-    from fmu_build import binary
+def test_build_script_prints_help_and_builds_nothing(tmp_path):
+    environment = {"PYTHON": sys.executable, "PATH": "/usr/bin:/bin"}
+    for option in ("--help", "-h"):
+        done = subprocess.run(
+            ["./build_fmu.sh", option], cwd=ROOT, capture_output=True, text=True, env=environment
+        )
+        assert done.returncode == 0, done.stderr
+        assert done.stdout.startswith("usage: build_fmu.sh [-h] [--pure] [file]")
 
-    root = ElementTree.parse(unpacked / "modelDescription.xml").getroot()
-    (tmp_path / "variables.h").write_text(binary.variables_header(root, "pythonfmu.so"))
+
+@pytest.fixture(scope="module")
+def sources(tmp_path_factory) -> Path:
+    """A copy of the sources without a compiled core."""
+    root = tmp_path_factory.mktemp("sources")
+    for name in ("LICENSE", "CHANGELOG.md", "build_fmu.sh", "setup.py"):
+        shutil.copy(ROOT / name, root)
+    ignored = shutil.ignore_patterns("__pycache__", "*.so")
+    shutil.copytree(ROOT / "fmu_src", root / "fmu_src", ignore=ignored)
+    return root
+
+
+def build(root: Path, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        ["./build_fmu.sh", *arguments],
+        cwd=root,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        env={"PYTHON": sys.executable, "PATH": "/usr/bin:/bin", **environment},
+    )
+
+
+def test_build_without_a_compiled_core_is_an_error_unless_pure_asks_for_it(sources, tmp_path):
+    """The compiler fails here."""
+    target = tmp_path / "mine.fmu"
+    done = build(sources, str(target), CC="/bin/false")
+    assert done.returncode == 1
+    assert "error: there is no compiled core of the present kernels" in done.stderr
+    assert not target.exists()
+    done = build(sources, "--pure", str(target))
+    assert done.returncode == 0, done.stderr
+    assert "core: not compiled, as --pure asks for" in done.stdout
+    with zipfile.ZipFile(target) as archive:
+        assert not [name for name in archive.namelist() if "core/compiled" in name]
+
+
+def test_the_front_compiles_without_a_warning_and_exports_fmi_functions_only(
+    binary, header, monkeypatch
+):
     monkeypatch.setattr(binary, "FLAGS", [*binary.FLAGS, "-Werror", "-Wpedantic"])
-    binary.compile_front(tmp_path / "front.so", tmp_path)
+    binary.compile_front(header / "front.so", header, binary.for_linux())
     listed = subprocess.run(
-        ["nm", "-D", "--defined-only", tmp_path / "front.so"],
+        ["nm", "-D", "--defined-only", header / "front.so"],
         capture_output=True,
         text=True,
         check=True,
@@ -50,16 +91,22 @@ def test_the_front_compiles_without_a_warning_and_exports_fmi_functions_only(
     declared = re.findall(
         r"#define (fmi2\w+) +fmi2FullName", (binary.HEADERS / "fmi2Functions.h").read_text()
     )
-    assert names == {name for name in declared if not OF_MODEL_EXCHANGE.search(name)}
+    assert names == set(declared)
 
 
-def test_an_unknown_binary_of_pythonfmus_stops_the_build(monkeypatch, unpacked):
-    """A binary with other finalisers than the known two needs a person to look at it."""
-    monkeypatch.syspath_prepend(ROOT / "fmu_src")
-    from fmu_build import binary
-
-    edited = next((unpacked / "binaries" / "linux64").glob("pythonfmu-export-*.so")).read_bytes()
-    with pytest.raises(SystemExit, match="has 1 finalisers, not 2"):
-        binary.without_last_finaliser(edited)
-    with pytest.raises(SystemExit, match="no 64-bit little-endian ELF file"):
-        binary.without_last_finaliser(b"MZ" + edited)
+def test_the_fronts_declarations_of_python_are_those_of_its_limited_api(binary, tmp_path):
+    """A compiler compares each with the header of this Python, as that of 3.10."""
+    source = tmp_path / "compare.c"
+    source.write_text(
+        "#define Py_LIMITED_API 0x030A0000\n"
+        "#include <Python.h>\n"
+        '#include "python.h"\n'
+        "#define COMPARE(result, name, arguments) \\\n"
+        "    _Static_assert( \\\n"
+        "        __builtin_types_compatible_p(__typeof__(py.name), __typeof__(&name)), #name);\n"
+        "PYTHON_FUNCTIONS(COMPARE)\n"
+    )
+    command = ["gcc", "-std=c11", "-fsyntax-only", "-Werror", f"-I{binary.FRONT}"]
+    includes = [f"-I{sysconfig.get_path('include')}", str(source)]
+    done = subprocess.run([*command, *includes], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import struct
 import subprocess
@@ -37,17 +38,22 @@ def page(archive: ZipFile):
 def test_every_file_serves_the_run_the_reader_or_the_licence(archive):
     tag = __version__.replace(".", "_")
     names = archive.namelist()
-    of_pythonfmu = {n.rsplit("/", 1)[1] for n in names if n.startswith("resources/pythonfmu/")}
+    of_pythonfmu = {n.rsplit("/", 1)[1] for n in names if "/pythonfmu/" in n}
     needed = {"default_experiment", "enums", "fmi2slave", "logmsg", "variables"}
     assert of_pythonfmu == {"__init__.py", "_version.py", *(f"{module}.py" for module in needed)}
     assert not [n for n in names if "__pycache__" in n or n.endswith((".pyc", ".pxd", ".j2", ".c"))]
-    assert {n.split("/")[1] for n in names if n.startswith("resources/")} == {
-        "pythonfmu",
+    resources = {
+        re.sub(r"_[0-9a-f]{12}\b", "", n.split("/")[1]) for n in names if "resources/" in n
+    }
+    assert resources == {
         f"rlv_landing_{tag}",
         f"landing_fmu_{tag}.py",
         "slavemodule.txt",
         "libpython.txt",
     }
+    binaries = {n for n in names if n.startswith("binaries/")}
+    assert {"binaries/linux64/RlvLanding.so"} <= binaries
+    assert binaries <= {"binaries/linux64/RlvLanding.so", "binaries/win64/RlvLanding.dll"}
     assert {n.split("/")[0] for n in names} == {
         "binaries",
         "documentation",

@@ -50,7 +50,7 @@ def test_model_is_described(description):
 @pytest.mark.parametrize(
     ("capability", "has"),
     [
-        ("needsExecutionTool", True),
+        ("needsExecutionTool", False),
         ("canHandleVariableCommunicationStepSize", True),
         ("canInterpolateInputs", True),
         ("canBeInstantiatedOnlyOncePerProcess", False),

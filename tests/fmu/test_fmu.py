@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import zipfile
@@ -69,12 +70,21 @@ def test_every_quantity_is_a_variable_with_its_unit_causality_and_start(descript
     assert all(variables[q.name].start == "0.0" for q in INPUT_QUANTITIES)
 
 
-def test_names_in_the_fmu_carry_the_version(fmu):
-    tag = "rlv_landing_" + __version__.replace(".", "_")
-    names = zipfile.ZipFile(fmu).namelist()
-    assert f"resources/{tag}/landing.py" in names
-    assert not any(n.startswith("resources/rlv_landing/") for n in names)
-    assert any(n.startswith(f"resources/{tag}/core/compiled.") for n in names)
+def test_names_in_the_fmu_carry_the_version_and_the_build(fmu):
+    """So that no other FMU, package or pythonfmu in the process has them."""
+    names = [n.split("/", 1)[1] for n in zipfile.ZipFile(fmu).namelist() if "resources/" in n]
+    version = __version__.replace(".", "_")
+    tops = {n.split("/")[0] for n in names} - {"slavemodule.txt", "libpython.txt"}
+    tags = {
+        re.fullmatch(rf"(rlv_landing|landing_fmu)_{version}_([0-9a-f]{{12}})(\.py)?", n)[2]
+        for n in tops
+    }
+    assert len(tops) == 2
+    assert len(tags) == 1
+    package = f"rlv_landing_{version}_{tags.pop()}"
+    assert f"{package}/landing.py" in names
+    assert f"{package}/pythonfmu/fmi2slave.py" in names
+    assert any(n.startswith(f"{package}/core/compiled.") for n in names)
 
 
 @pytest.mark.parametrize("step", [1e-4, 3.7e-4, 1e-3, 7e-3, 1e-2])
@@ -191,9 +201,9 @@ slave.setup_experiment(0.0, None, None)
 slave.exit_initialization_mode()
 for k in range(130):
     assert slave.do_step(k * 1e-3, 1e-3)
-packages = ("numpy", "scipy", "click", "pint", "rlv_landing")
+packages = ("numpy", "scipy", "click", "pint", "rlv_landing", "pythonfmu")
 third_party = sorted(m for m in sys.modules if m.split(".")[0] in packages)
-print(third_party, " ".join(v.hex() for v in slave.get_real(slave._output_references)))
+print(third_party, " ".join(v.hex() for v in slave.get_outputs()))
 """
 
 

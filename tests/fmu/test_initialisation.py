@@ -31,10 +31,6 @@ BAD_PARAMETERS = [
         ({"name": None}, "instanceName is NULL"),
         ({"name": b"\xff"}, "instanceName is not UTF-8"),
         ({"kind": fmi2.fmi2ModelExchange}, "for co-simulation only"),
-        ({"resources": None}, "fmuResourceLocation is NULL"),
-        ({"resources": b"file:///nowhere"}, "no slavemodule.txt there"),
-        ({"resources": b"http://example.org/"}, "no slavemodule.txt there"),
-        ({"resources": b"file:///" + b"x" * 10_000}, "no slavemodule.txt there"),
     ],
 )
 def test_an_instance_that_cannot_be_is_null_with_the_reason_logged(

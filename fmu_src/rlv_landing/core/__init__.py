@@ -3,7 +3,8 @@ either way.
 
 The classes come from the compiled module if there is one for this Python, else from the plain
 files. RLV_LANDING_PURE=1 in the environment asks for the plain files. Records and laws' names are
-those of the plain files always.
+those of the plain files always. WHY_NOT_COMPILED is empty where the core is compiled, or where the
+plain files were asked for; else it is the reason.
 """
 
 from __future__ import annotations
@@ -26,13 +27,17 @@ from .records import (
 from .struts.kinds import AUXILIARY_STRUTS, MAIN_STRUTS
 
 COMPILED = False
+WHY_NOT_COMPILED = ""
 if not TYPE_CHECKING and os.environ.get("RLV_LANDING_PURE") != "1":
+    # the compiled module imports it unchecked: without it, or interrupted there, the process crashes
+    import inspect  # noqa: F401
+
     try:
         from .compiled import DormandPrince, Exponential, Planar, Solver, System
 
         COMPILED = True
-    except ImportError:
-        pass
+    except ImportError as e:
+        WHY_NOT_COMPILED = str(e)
 if not COMPILED:
     from .bodies.planar import Planar
     from .bodies.system import System
@@ -45,6 +50,7 @@ __all__ = [
     "COMPILED",
     "FRICTION_LAWS",
     "MAIN_STRUTS",
+    "WHY_NOT_COMPILED",
     "Accounts",
     "BodyModel",
     "BodyState",

@@ -225,7 +225,7 @@ class FmuRunner:
 
     def statistics(self) -> dict[str, int]:
         """The integrator's counters since time 0, by the FMU's variable names."""
-        names = [q.name for q in STATISTIC_QUANTITIES]
+        names = [q.name for q in STATISTIC_QUANTITIES if q.kind == "integer"]
         return dict(zip(names, self._slave.getInteger([self._references[name] for name in names])))
 
     def peaks(self) -> dict[str, tuple[float, float]]:
@@ -240,6 +240,10 @@ class FmuRunner:
         numbers = self._call("getReal", [self._references[name] for name in names])
         values = dict(zip(names, numbers))
         return {p.value.name: (values[p.value.name], values[p.time.name]) for p in PEAKS}
+
+    def is_compiled(self) -> bool:
+        """Whether the FMU computes with its compiled core."""
+        return bool(self._slave.getBoolean([self._references["solver.compiled"]])[0])
 
     def set_inputs(self, inputs: Mapping[str, float]) -> None:
         """Sets inputs by name, SI, from the current time on; others keep their values.

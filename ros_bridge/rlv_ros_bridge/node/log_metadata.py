@@ -32,6 +32,7 @@ def log_metadata(settings: Settings, namespace: str, fmu: FmuRunner) -> dict[str
         "fmu_guid": fmu.guid,
         "fmu_version": fmu.version,
         "fmu_made_by": fmu.made_by,
+        "fmu_core": "compiled" if fmu.is_compiled() else "not compiled",
         "version_rlv_landing": __version__,
         "version_python": platform.python_version(),
         **build_metadata(settings.fmu),

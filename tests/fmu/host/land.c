@@ -1,5 +1,6 @@
 /* land BINARY RESOURCES GUID STEPS EVERY FIRST COUNT: lands in steps of 1 ms and prints the reals
- * FIRST .. FIRST + COUNT - 1 every EVERY steps, and at last which core it has used. */
+ * FIRST .. FIRST + COUNT - 1 every EVERY steps, and at last which core it has used. RESOURCES may
+ * be NULL. */
 #include "host.h"
 
 /* True if the process has loaded the compiled core. */
@@ -20,7 +21,7 @@ int main(int argc, char **argv)
     if (argc != 8)
         return 2;
     void *library = load(argv[1]);
-    fmi2Component c = instantiate("land", argv[2], argv[3]);
+    fmi2Component c = instantiate("land", strcmp(argv[2], "NULL") ? argv[2] : NULL, argv[3]);
     if (!c)
         return 1;
     initialise(c);

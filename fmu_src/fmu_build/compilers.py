@@ -1,0 +1,94 @@
+"""Chooses the C compilers of front and compiled core.
+
+The release build uses Zig's, from the PyPI package `ziglang`: its libraries need glibc 2.17 or
+newer, whatever this machine has, and it compiles for Windows too. Where it is not installed, gcc
+compiles for Linux and mingw-w64, if it is there, for Windows. CC in the environment names another
+compiler for Linux.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import shlex
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+
+GLIBC = "2.17"
+ZIG = (sys.executable, "-m", "ziglang")
+MINGW = "x86_64-w64-mingw32-gcc"
+# undefined behaviour is tested for, and not checked in what users run
+ZIG_FLAGS = ("-fno-sanitize=undefined",)
+# no DLL of mingw needed, C11's printf
+WINDOWS_FLAGS = ("-D__USE_MINGW_ANSI_STDIO=1",)
+# the same bytes at any time and in any folder
+MINGW_FLAGS = ("-static", "-Wl,--no-insert-timestamp,--disable-auto-image-base")
+
+
+@dataclass(frozen=True)
+class Compiler:
+    """A C compiler with the options that every library needs."""
+
+    command: tuple[str, ...]
+    flags: tuple[str, ...] = ()
+
+    @property
+    def is_zig(self) -> bool:
+        """Whether it is Zig's."""
+        return "ziglang" in self.command
+
+    @property
+    def name(self) -> str:
+        """What the build says of it: program and version in one line."""
+        if self.is_zig:
+            return f"zig {_first_line((*ZIG, 'version'))}"
+        return _first_line((*self.command, "--version"))
+
+
+@cache
+def _first_line(command: tuple[str, ...]) -> str:
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment())
+    return (done.stdout.splitlines() or [f"{command[0]} of unknown version"])[0]
+
+
+def has_zig() -> bool:
+    """Whether Zig's compiler is installed in this Python."""
+    return find_spec("ziglang") is not None
+
+
+def _zig(target: str) -> tuple[str, ...]:
+    return (*ZIG, "cc", "-target", target)
+
+
+def for_linux() -> Compiler:
+    """The compiler for this machine's Linux."""
+    if os.environ.get("CC"):
+        return Compiler(tuple(shlex.split(os.environ["CC"])))
+    if has_zig() and platform.machine() == "x86_64":
+        return Compiler(_zig(f"x86_64-linux-gnu.{GLIBC}"), ZIG_FLAGS)
+    return Compiler(("gcc",))
+
+
+def for_windows() -> Compiler | None:
+    """The compiler for Windows; None if there is none."""
+    if has_zig():
+        return Compiler(_zig("x86_64-windows-gnu"), (*ZIG_FLAGS, *WINDOWS_FLAGS))
+    if shutil.which(MINGW):
+        return Compiler((MINGW,), (*WINDOWS_FLAGS, *MINGW_FLAGS))
+    return None
+
+
+def environment() -> dict[str, str]:
+    """The environment for a compiler.
+
+    Zig keeps what it has compiled of the C library in the user's cache, which it cannot find where
+    HOME is not set.
+    """
+    if {"HOME", "ZIG_GLOBAL_CACHE_DIR"} & os.environ.keys():
+        return dict(os.environ)
+    return {**os.environ, "ZIG_GLOBAL_CACHE_DIR": str(Path.home() / ".cache" / "zig")}

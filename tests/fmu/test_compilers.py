@@ -1,0 +1,121 @@
+"""Front and compiled core by Zig's compiler and by gcc: what they need, and their digits."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from rlv_landing import Landing
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+
+LAND = """
+from rlv_landing import Landing
+from rlv_landing.core import compiled
+landing = Landing()
+landing.advance_to(0.4)
+print(compiled.__file__, *(value.hex() for value in map(float, landing.values())))
+"""
+
+
+@pytest.fixture(params=["zig", "gcc"])
+def compiler(request, binary, monkeypatch):
+    """A compiler for Linux, as the build chooses it: Zig's unless CC names another."""
+    from fmu_build import compilers
+
+    if request.param == "gcc":
+        monkeypatch.setenv("CC", "gcc")
+    elif not compilers.has_zig():
+        pytest.skip("ziglang is not installed")
+    else:
+        monkeypatch.delenv("CC", raising=False)
+    chosen = binary.for_linux()
+    assert chosen.is_zig == (request.param == "zig")
+    return chosen
+
+
+def needs(library: Path) -> tuple[set[str], tuple[int, int]]:
+    """The libraries that it is linked with, and the newest glibc that it needs."""
+    listed = [
+        subprocess.run(["objdump", option, library], capture_output=True, text=True, check=True)
+        for option in ("-p", "-T")
+    ]
+    versions = re.findall(r"GLIBC_(\d+)\.(\d+)", listed[1].stdout)
+    return set(re.findall(r"NEEDED +(\S+)", listed[0].stdout)), max(
+        (int(major), int(minor)) for major, minor in versions
+    )
+
+
+def assert_old_systems_have_what_it_needs(library: Path, compiler) -> None:
+    """Zig's need glibc 2.17 or older; gcc's what this machine has."""
+    libraries, glibc = needs(library)
+    assert libraries <= {"libc.so.6", "libdl.so.2", "libm.so.6", "libpthread.so.0"}
+    if compiler.is_zig:
+        assert glibc <= (2, 17)
+
+
+def test_the_front_is_linked_with_the_c_library_only_and_lands(
+    compiler, binary, header, unpacked, host, description, tmp_path
+):
+    fmu = tmp_path / "fmu"
+    shutil.copytree(unpacked, fmu)
+    front = fmu / "binaries" / "linux64" / "RlvLanding.so"
+    binary.compile_front(front, header, compiler)
+    assert_old_systems_have_what_it_needs(front, compiler)
+    first = {v.name: v.valueReference for v in description.modelVariables}["body.x"]
+    numbers = [description.guid, "100", "100", str(first), "1"]
+    done = subprocess.run(
+        [host("land"), front, (fmu / "resources").as_uri(), *numbers],
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    landing = Landing()
+    landing.advance_to(99e-3 + 1e-3)
+    assert float.fromhex(done.stdout.split()[2]) == pytest.approx(landing.get("body.x"), rel=1e-9)
+
+
+def test_the_compiled_core_needs_nothing_new_and_gives_the_same_digits(compiler, tmp_path):
+    package = tmp_path / "rlv_landing"
+    ignored = shutil.ignore_patterns("__pycache__", "*.so")
+    shutil.copytree(ROOT / "fmu_src" / "rlv_landing", package, ignore=ignored)
+    build = ["setup.py", "-q", "build_ext", "--build-lib", str(tmp_path), "--build-temp"]
+    subprocess.run(
+        [sys.executable, *build, str(tmp_path / "objects")],
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+        timeout=600,
+    )
+    (core,) = (package / "core").glob("*.so")
+    assert_old_systems_have_what_it_needs(core, compiler)
+    done = subprocess.run(
+        [sys.executable, "-c", LAND],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        env={**os.environ, "PYTHONPATH": str(tmp_path)},
+    )
+    assert done.returncode == 0, done.stderr
+    file, *values = done.stdout.split()
+    assert Path(file) == core
+    landing = Landing()
+    landing.advance_to(0.4)
+    assert values == [float(value).hex() for value in landing.values()]
+
+
+def test_the_built_fmu_needs_no_libstdcpp_and_with_zig_no_new_glibc(unpacked, binary):
+    from fmu_build import compilers
+
+    for library in unpacked.rglob("*.so"):
+        libraries, glibc = needs(library)
+        assert not {name for name in libraries if "stdc++" in name or "gcc" in name}
+        if compilers.has_zig():
+            assert glibc <= (2, 17), library
