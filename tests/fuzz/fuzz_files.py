@@ -24,7 +24,7 @@ from pyarrow import parquet
 
 from rlv_landing.cli import cli
 from rlv_landing.errors import LONGEST_LINE, LandingError
-from rlv_landing.identification.targets import read_targets
+from rlv_landing.identification.measured.target_file import read_targets
 from rlv_landing.presets import load_preset, parse_toml, read_toml, to_toml
 from rlv_landing.studies import toml_keys
 from rlv_landing.studies.envelope.study import study_from
