@@ -31,12 +31,6 @@ CHARGE = frozenset(
     f"main_strut.{what}"
     for what in ("charge_pressure", "ambient_pressure", "area_upper", "area_lower")
 )
-# a play that is not the same on both sides bears a little on one of them
-PRELOAD = frozenset(
-    f"auxiliary_strut.{what}"
-    for what in ("play_tension", "play_compression", "stiffness", "exponent")
-)
-PUSH = CHARGE | PRELOAD
 VOLUMES = frozenset(
     f"main_strut.{what}"
     for what in ("volume_upper", "volume_lower", "charge_pressure", "ambient_pressure")
@@ -79,20 +73,18 @@ PARAMETERS: dict[str, frozenset[str]] = {
     "body.vx": VX,
     "body.vy": VY,
     "body.pitch_rate": frozenset({"drop.pitch_rate"}),
-    "body.ax": TURN | PUSH,
-    "body.ay": TURN | PUSH | {"ground.gravity"},
+    "body.ax": TURN | CHARGE,
+    "body.ay": TURN | CHARGE | {"ground.gravity"},
     "body.pitch_acceleration": TURN,
     "body.top_axial_acceleration": PITCH
     | LEG
-    | PUSH
+    | CHARGE
     | {"vehicle.mass", "vehicle.top_height", "ground.gravity"},
     "energy.kinetic": VX | VY | {"vehicle.inertia"},
     "energy.potential": HEIGHT,
     "energy.liquid": LIQUID,
-    "energy.auxiliary": PRELOAD,
     "status.phase": MARGIN,
     "status.stability_margin": MARGIN,
-    "auxiliary_strut.force": PRELOAD,
     "main_strut.force": CHARGE,
     "main_strut.pressure_upper": frozenset({"main_strut.charge_pressure"}),
     "main_strut.pressure_lower": frozenset({"main_strut.charge_pressure"}),

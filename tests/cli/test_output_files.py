@@ -122,7 +122,7 @@ def test_a_disk_that_fills_leaves_no_new_file(folder):
 
 
 def test_a_disk_that_fills_ends_an_identification_with_a_code_of_its_own(folder):
-    done = run(folder, "identify", *ONE, "--work", "i", largest=4096)
+    done = run(folder, "identify", *ONE, "--work", "i", largest=8192)
     assert done.returncode == 1
     assert "i cannot be written: File too large; make room; --resume goes on" in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1

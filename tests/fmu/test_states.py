@@ -218,7 +218,7 @@ def test_a_landing_that_has_broken_off_says_so_until_a_state_is_restored(instanc
         failed = instance.step(time, 1e-3)
         time += 1e-3
     assert failed == ERROR
-    assert "step size has collapsed" in instance.reason()
+    assert instance.reason().startswith("the integrator")
     assert "the landing has ended there: restore a state, or reset" in instance.reason()
     assert instance.step(time - 1e-3, 1e-3) == ERROR
     assert (

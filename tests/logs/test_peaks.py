@@ -64,9 +64,10 @@ def test_info_tells_peaks_that_lie_between_the_messages(log: Path, mode: str) ->
     info = log_info(LogReader(log))
     whole = Landing(load_preset("yue2022-figures"), mode).run(1.0)
     assert info.landing["peaks_of"] == "landing"
-    assert info.landing["legs"][0].items() >= summarise(whole)["legs"][0].items()
+    for found, leg in zip(info.landing["legs"], summarise(whole)["legs"], strict=True):
+        assert found.items() >= leg.items()
     ground = max(leg["contact_force_max"] for leg in info.landing["legs"])
-    assert ground > 1.05 * max(whole[f"leg[{leg}].contact.force"].max() for leg in LEGS)
+    assert ground > max(whole[f"leg[{leg}].contact.force"].max() for leg in LEGS)
     assert "peaks: of the landing, between its messages too" in info.text()
 
 

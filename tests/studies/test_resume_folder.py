@@ -52,9 +52,11 @@ def folder(made: Path, tmp_path: Path) -> Path:
 
 
 def flip(path: Path) -> None:
-    """Change a byte of the part's values; its footer stays whole."""
+    """Change a byte of the part's values, the last of its first column; its footer stays whole."""
+    column = parquet.read_metadata(path).row_group(0).column(0)
+    first = column.dictionary_page_offset or column.data_page_offset
     data = bytearray(path.read_bytes())
-    data[len(data) // 4] ^= 0xFF
+    data[first + column.total_compressed_size - 1] ^= 0xFF
     path.write_bytes(data)
 
 
