@@ -103,13 +103,13 @@ def liquid_fill(parameters: Parameters) -> float:
 
 def touchdown_energy(parameters: Parameters) -> float:
     """Energy [J] that a landing has to get rid of: the kinetic energy at first contact, and the
-    weight times a leg's stroke.
+    weight times a tenth of the main strut's length.
     """
     vehicle, drop = parameters.vehicle, parameters.drop
     mass = vehicle.mass + vehicle.footpad_mass * len(LEGS)
     moving = 0.5 * mass * (drop.horizontal_velocity**2 + drop.vertical_velocity**2)
     turning = 0.5 * vehicle.inertia * drop.pitch_rate**2
-    fall = mass * parameters.ground.gravity * parameters.main_strut.stroke_max
+    fall = mass * parameters.ground.gravity * 0.1 * parameters.main_strut.length
     return max(moving + turning + fall, LEAST_ENERGY)
 
 

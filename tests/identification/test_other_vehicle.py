@@ -32,7 +32,9 @@ SEARCH = ("--population", "8", "--evaluations", "100", "--polish", "50", "--sigm
 
 
 def vehicle(mass: float) -> Parameters:
-    return scaled(load_preset("yue2022-figures"), mass)
+    """The prototype without play, scaled."""
+    none = {name: 0.0 for name, _ in Parameters().items() if "strut.play_" in name}
+    return scaled(load_preset("yue2022-figures").with_values(none), mass)
 
 
 def truth(mass: float) -> dict[str, float]:
@@ -40,7 +42,7 @@ def truth(mass: float) -> dict[str, float]:
     return {ORIFICE: 1.5 * vehicle(mass).main_strut.orifice_area_compression, FRICTION: 0.22}
 
 
-@pytest.mark.parametrize("mass", [5.0, HOPPER, STAGE, 1e5])
+@pytest.mark.parametrize("mass", [5.0, HOPPER, STAGE, 8e4])
 def test_priors_of_another_vehicle_hold_its_own_start(mass):
     """No number is moved to a bound, and each can move both ways."""
     base = vehicle(mass)
@@ -48,7 +50,7 @@ def test_priors_of_another_vehicle_hold_its_own_start(mass):
     assert numbers.outside == []
     assert numbers.numbers(numbers.start()) == approx(numbers.starts(), rel=1e-9)
     assert all(0.0 < z < 1.0 for z in numbers.start())
-    # the prototype has no play, and play of 0 has no size to follow
+    # play of 0 has no size to follow
     left_out = {p.name for p in PRIORS} - {p.name for p, _ in numbers.columns}
     assert left_out == {n for n, _ in base.items() if "strut.play_" in n}
     for prior, _ in numbers.columns:

@@ -110,7 +110,7 @@ def expected_weight(x: Motion, late: float, steps: int = 5000) -> np.ndarray:
         (5, False, 0.01),
         (10, False, 0.02),
         (20, False, 0.03),
-        (50, False, 0.1),
+        (50, False, 0.12),
         (10, True, 0.02),
         (20, True, 0.03),
     ],
@@ -136,7 +136,7 @@ def test_forces_on_heaving_ground_do_not_depend_on_the_interval_of_its_positions
     assert changes["energy.work_ground"] - changes["energy.dissipated"] == approx(
         MASS * (GRAVITY * rise + 0.5 * speed**2), abs=1.0
     )
-    assert changes["energy.dissipated"] < 0.6
+    assert changes["energy.dissipated"] < 0.65
     assert abs(changes["energy.balance"]) < 1e-3
 
 

@@ -24,19 +24,25 @@ SECONDS_PER_EVALUATION = 6e-3
 
 
 class Interrupts:
-    """Ctrl-C and SIGTERM, each a KeyboardInterrupt.
+    """Ctrl-C and SIGTERM, each a KeyboardInterrupt, from `open` on: at once, or there if it came.
 
     Python may lose one that comes inside a callback; `check` raises it then.
     """
 
     def __init__(self) -> None:
-        self._came = False
+        self._came = self._open = False
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._interrupt)
 
-    def _interrupt(self, number: int, frame: FrameType | None) -> NoReturn:
+    def _interrupt(self, number: int, frame: FrameType | None) -> None:
         self._came = True
-        raise KeyboardInterrupt
+        if self._open:
+            raise KeyboardInterrupt
+
+    def open(self) -> None:
+        """From here on an interrupt is answered."""
+        self._open = True
+        self.check()
 
     def check(self) -> None:
         """Raise KeyboardInterrupt where one has come."""
@@ -86,6 +92,7 @@ def run(
     try:
         with search:
             try:
+                interrupts.open()
                 _search(search, options, interrupts)
                 _write_best(search, work)
                 return _report(search, work)
