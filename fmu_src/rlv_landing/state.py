@@ -43,6 +43,7 @@ class StateHeader(NamedTuple):
     seen: float  # see `rlv_landing.core.solvers.watch`
     noted: float
     asleep: float  # see `rlv_landing.core.solvers.rest`
+    nearest: float  # [m]
     still: float
     waited: float
 
@@ -132,6 +133,8 @@ def _faults(h: StateHeader, dense: int) -> Iterator[str]:
             yield f"{name} = {value:g}, which is not a count"
     if max(h.still, h.waited) >= MOST_STILL:
         yield f"still = {h.still:g}, waited = {h.waited:g}, which none has"
+    if h.nearest < 0.0:
+        yield f"a rest {h.nearest:g} m away"
     if not 0.0 <= h.spent < LARGEST_COUNT:
         yield f"{h.spent:g} steps spent"
     for name, allowed in (

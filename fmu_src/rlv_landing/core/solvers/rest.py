@@ -23,10 +23,15 @@ FAR = 1000.0
 # repeats itself is met in all its states
 STEPS_BETWEEN = 197
 # a rest is that of the state where it is no further away than this [m] times rtol, a fifth of what the
-# tolerance allows a position: the methods' tremble at rest is less, but for loose tolerances; where
-# so many steps at rest came no nearer, the rest is as far away as the tolerance allows, at most
-TREMBLE, MOST_TREMBLE = 0.02, 0.1
-LONG_STILL = 4000
+# tolerance allows a position: the methods' tremble at rest is less, but for loose tolerances and for
+# seals, on which an explicit method's tremble may hold the strokes; where so many probes found it no
+# nearer, by a part of the least distance, the rest is five times as far as the tolerance allows, at
+# most
+TREMBLE, MOST_TREMBLE = 0.02, 0.5
+NO_NEARER = 20
+NEARER = 0.99
+# [m]: no probe has found a rest yet
+UNKNOWN = 1e9
 # [m]: and where from there nothing is left that moves further, after so many probes at most
 LEFT = 1e-9
 PROBES = 6
@@ -37,12 +42,14 @@ NUDGE = 1e-7
 class Rest(Watch):
     """A path that may come to rest.
 
-    `asleep` tells that the state is one of rest and stays, `still` for how many steps the system may
-    have been at rest, LONG_STILL at most, `waited` how many of them came after the last probe.
+    `asleep` tells that the state is one of rest and stays, `nearest` how near the rest has been by
+    the probes [m], `still` how many probes in a row found it no nearer, NO_NEARER at most, `waited`
+    how many steps at rest came after the last probe.
     """
 
     rtol: float
     asleep: bool
+    nearest: float
     still: int
     waited: int
     _matrix: Buffer
@@ -57,6 +64,7 @@ class Rest(Watch):
         n = system.n
         self.rtol = rtol
         self.asleep = False
+        self.nearest = UNKNOWN
         self.still = 0
         self.waited = 0
         self._matrix = array("d", bytes(8 * n * n))
@@ -74,7 +82,6 @@ class Rest(Watch):
         if not self.system.may_rest(data(self.u), data(self.u_rate), data(self.last)):
             self._awake()
             return False
-        self.still = min(self.still + 1, LONG_STILL)
         self.waited += 1
         if self.waited < STEPS_BETWEEN:
             return False
@@ -93,16 +100,22 @@ class Rest(Watch):
         too far away.
         """
         self._inputs_at(self.t)
-        near = self.rtol * (TREMBLE if self.still < LONG_STILL else MOST_TREMBLE)
-        way = 0.0
-        for _ in range(PROBES):
-            step = self._go_far(y)
-            way += step
+        step = self._go_far(y)
+        if step < NEARER * self.nearest:
+            self.nearest = step
+            self.still = 0
+        else:
+            self.still = min(self.still + 1, NO_NEARER)
+        near = self.rtol * (TREMBLE if self.still < NO_NEARER else MOST_TREMBLE)
+        way = step
+        for _ in range(PROBES - 1):
             if not way <= near:
                 return False
             if step <= LEFT:
                 return True
-        return False
+            step = self._go_far(y)
+            way += step
+        return way <= near and step <= LEFT
 
     def _go_far(self, y: Doubles) -> float:
         """Take a probe's step from the state `y`; return how far [m] it leads."""
@@ -141,6 +154,7 @@ class Rest(Watch):
     def _awake(self) -> None:
         """Be in motion."""
         self.asleep = False
+        self.nearest = UNKNOWN
         self.still = 0
         self.waited = 0
 
