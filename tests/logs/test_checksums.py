@@ -17,7 +17,7 @@ from mcap.records import Chunk, ChunkIndex, Message
 from mcap.writer import CompressionType, IndexType, Writer
 
 from rlv_landing.errors import LandingError
-from rlv_ros_bridge.logs.mcap_stream import RecordStream
+from rlv_ros_bridge.logs.mcap_files.stream import RecordStream
 from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.logs.recover import recover
 

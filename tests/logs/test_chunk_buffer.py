@@ -9,7 +9,7 @@ import pytest
 from log_tools import CDR, CLOCK_TYPE, messages_of
 from mcap.reader import make_reader
 
-from rlv_ros_bridge.logs.chunk_buffer import MESSAGE_TIMES
+from rlv_ros_bridge.logs.mcap_files.chunk_buffer import MESSAGE_TIMES
 from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
 from rlv_ros_bridge.messages.qos import TELEMETRY
 

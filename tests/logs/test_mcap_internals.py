@@ -7,7 +7,7 @@ import io
 import pytest
 from mcap.writer import Writer
 
-from rlv_ros_bridge.logs.mcap_internals import chunk_builder, statistics
+from rlv_ros_bridge.logs.mcap_files.internals import chunk_builder, statistics
 
 
 @pytest.fixture

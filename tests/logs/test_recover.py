@@ -25,8 +25,8 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.rosbag2 import Reader
 
 from rlv_landing.errors import LandingError
-from rlv_ros_bridge.logs.mcap_records import LARGEST_CHUNK
-from rlv_ros_bridge.logs.mcap_stream import RecordStream
+from rlv_ros_bridge.logs.mcap_files.records import LARGEST_CHUNK
+from rlv_ros_bridge.logs.mcap_files.stream import RecordStream
 from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.logs.recover import recover
 
@@ -280,7 +280,7 @@ def test_a_chunk_that_claims_gigabytes_does_not_fill_the_memory(tmp_path: Path) 
     # VmHWM is this process's own; getrusage would also hold its parent's.
     code = (
         "import re, sys; from pathlib import Path\n"
-        "from rlv_ros_bridge.logs.mcap_stream import RecordStream\n"
+        "from rlv_ros_bridge.logs.mcap_files.stream import RecordStream\n"
         "for name in sys.argv[1:]:\n"
         "    stream = RecordStream(Path(name)); assert len(list(stream)) == 1\n"
         "    assert len(stream.damage) == 1, stream.damage\n"

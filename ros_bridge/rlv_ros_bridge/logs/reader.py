@@ -11,8 +11,8 @@ from rlv_landing.errors import LandingError, unknown
 from rlv_landing.parameters import Parameters
 
 from ..messages.topics import STRUTS
-from .mcap_records import HEADER, MAGIC, RECORD_HEAD
-from .mcap_stream import RecordStream
+from .mcap_files.records import HEADER, MAGIC, RECORD_HEAD
+from .mcap_files.stream import RecordStream
 from .peaks import RECORD as PEAKS_RECORD
 
 FINISHED = ".mcap"

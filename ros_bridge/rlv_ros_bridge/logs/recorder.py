@@ -12,7 +12,7 @@ from rlv_landing.errors import LandingError
 from ..messages.definitions import Definition, definition
 from ..messages.qos import Qos
 from .bag_writer import CHUNK_BYTES, BagTopic, BagWriter, media_type
-from .chunk_buffer import RECORD_SIZE, ChunkBuffer, message_prefix
+from .mcap_files.chunk_buffer import RECORD_SIZE, ChunkBuffer, message_prefix
 from .peaks import RECORD as PEAKS_RECORD
 
 __all__ = ["CHUNK_BYTES", "FLUSH_SECONDS", "RecordedTopic", "Recorder"]

@@ -11,7 +11,7 @@ from rlv_landing.errors import LandingError
 from rlv_landing.text.files import shown_name
 
 from .bag_writer import BagTopic, BagWriter
-from .mcap_stream import RecordStream
+from .mcap_files.stream import RecordStream
 from .reader import Definitions, check_file, find_files, log_name
 
 # Metadata that the new log's writer makes itself.

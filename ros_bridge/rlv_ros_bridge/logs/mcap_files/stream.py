@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, Any
 
-from .mcap_records import (
+from .records import (
     ATTACHMENT,
     CHANNEL,
     CHUNK,

@@ -1,6 +1,6 @@
 """The messages of a log's open chunk, gathered as the bytes of their records.
 
-They are handed to MCAP's own writer a chunk at a time: see `mcap_internals` for the reason.
+They are handed to MCAP's own writer a chunk at a time: see `internals` for the reason.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from mcap.opcode import Opcode
 from mcap.records import MessageIndex
 from numpy.typing import NDArray
 
-from .mcap_internals import chunk_builder, statistics
-from .mcap_records import MESSAGE_HEAD_BYTES, RECORD_HEAD, decode_record, split_records
+from .internals import chunk_builder, statistics
+from .records import MESSAGE_HEAD_BYTES, RECORD_HEAD, decode_record, split_records
 
 # Before a message's data: opcode, length, channel (MESSAGE_PREFIX), then sequence number, log time
 # and publish time (MESSAGE_TIMES).
