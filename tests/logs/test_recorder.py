@@ -123,7 +123,7 @@ def test_a_full_disk_does_not_stop_the_landing_and_what_was_written_is_readable(
     with zipfile.ZipFile(fmu) as archive:
         limit = max(info.file_size for info in archive.infolist()) + 100_000
     line = command(
-        "node", "--fmu", fmu, "--record", folder, "--realtime-factor", 0, "--stop-time", 3
+        "node", "--fmu", fmu, "--record", folder, "--realtime-factor", 0, "--stop-time", 10
     )
     done = subprocess.run(
         line,
@@ -135,7 +135,7 @@ def test_a_full_disk_does_not_stop_the_landing_and_what_was_written_is_readable(
         check=False,
     )
     assert done.returncode == 1, done.stderr
-    assert "finished: 3001 samples" in done.stdout
+    assert "finished: 10001 samples" in done.stdout
     lines = [line for line in done.stderr.splitlines() if "stopped after" in line]
     assert len(lines) == 2, done.stderr
     assert "the landing continues without recording" in lines[0]
