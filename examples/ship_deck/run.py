@@ -5,6 +5,8 @@ FMPy and Ecos run the same system of three FMUs. Their results are compared and 
 
 from __future__ import annotations
 
+import os
+import sys
 from pathlib import Path
 
 import click
@@ -132,4 +134,11 @@ def summary(name: str, result: dict[str, np.ndarray], again: dict[str, np.ndarra
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except SystemExit as end:
+        # Ecos' task library (TBB) races with the end of the process: a thread of it unloads
+        # libraries that the main thread's finalisers still call. All files are closed here.
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(end.code if isinstance(end.code, int) else 1)
