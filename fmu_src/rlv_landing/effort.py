@@ -1,7 +1,7 @@
 """The memory and time that a command would take, and their limits.
 
-Costs are measured on one core (CPython 3.11, 2 GHz class) and rounded down, so that an estimate is
-the least: what is refused would take longer still.
+Costs were measured on one core of a shared machine (CPython 3.11) and rounded down, so that an
+estimate is the least: what is refused would take longer still.
 """
 
 from __future__ import annotations

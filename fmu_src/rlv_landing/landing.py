@@ -283,7 +283,7 @@ class Landing:
         check_memory(span, 16.0 * self._system.row * count, remedy)
         seconds = SECONDS_PER_SECOND * (until - start) + SECONDS_PER_SAMPLE * count
         check_duration(span, seconds, remedy)
-        samples = int((until - start) / every * (1.0 + 1e-12) + 1e-9) + 1
+        samples = int(count * (1.0 + 1e-12) + 1e-9) + 1
         rows = np.empty((samples, self._system.row))
         self._solver.open_span(start)
         try:

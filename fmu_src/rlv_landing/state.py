@@ -16,7 +16,7 @@ from .inputs.ground_way import POSITIONS, Way, way_faults
 
 # a count that doubles tell from the next one
 LARGEST_COUNT = 2.0**53
-# steps: no landing counts so many at rest
+# steps or probes: no landing counts so many at rest
 MOST_STILL = 1e6
 # [s]: not long after it, a landing's first step would be nothing beside its time
 LATEST = 1e9

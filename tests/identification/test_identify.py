@@ -11,6 +11,8 @@ import re
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -105,28 +107,34 @@ def test_the_same_seed_gives_the_same_search_and_resuming_goes_on_with_it(measur
     assert best[0] == best[1] == best[2]
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupted_identification_keeps_its_best_and_can_go_on(tmp_path, number):
+@contextmanager
+def searching(folder: Path, *arguments: object) -> Iterator[subprocess.Popen[str]]:
+    """A long search in `folder` that has found a best point; it is killed at the end."""
     process = subprocess.Popen(
-        command("--evaluations", 100000),
-        cwd=tmp_path,
+        command("--evaluations", 100000, *arguments),
+        cwd=folder,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
     )
-    best = tmp_path / "identification" / "best.json"
     try:
-        while not best.exists():
+        while not (folder / "identification" / "best.json").exists():
             assert process.poll() is None, process.communicate()[1]
             os.sched_yield()
-        process.send_signal(number)
-        _, err = process.communicate(timeout=120)
+        yield process
     finally:
         process.kill()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_identification_keeps_its_best_and_can_go_on(tmp_path, number):
+    with searching(tmp_path) as process:
+        process.send_signal(number)
+        _, err = process.communicate(timeout=120)
     assert process.returncode == 130, err
     assert "interrupted; --resume goes on" in err
     assert "Traceback" not in err
-    kept = json.loads(best.read_text())
+    kept = json.loads((tmp_path / "identification" / "best.json").read_text())
     parameters = read_toml(tmp_path / "identification" / "identified.toml")
     numbers = FreeNumbers(load_preset(FIGURES))
     assert Objective(numbers, paper_targets()).loss(kept["z"]) == pytest.approx(kept["loss"])
@@ -136,20 +144,8 @@ def test_an_interrupted_identification_keeps_its_best_and_can_go_on(tmp_path, nu
 
 
 def test_a_killed_identification_leaves_no_process_and_no_lock(tmp_path):
-    process = subprocess.Popen(
-        command("--evaluations", 100000, "--workers", 2),
-        cwd=tmp_path,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    best = tmp_path / "identification" / "best.json"
-    try:
-        while not best.exists():
-            assert process.poll() is None, process.communicate()[1]
-            os.sched_yield()
-    finally:
-        process.kill()
+    with searching(tmp_path, "--workers", 2) as process:
+        pass
     # the ends of both pipes are the processes' ends
     process.communicate(timeout=120)
     done = run("--resume", "--evaluations", 1, "--polish", 0, cwd=tmp_path)

@@ -12,7 +12,7 @@ import click
 
 from ..choices import parse_pairs, split_pair
 from ..errors import LandingError, one_line
-from ..text.durable import writing
+from ..text.durable import unwritable, writing
 from .number_types import Number, WholeNumber
 from .options import HELP_NAMES, check_writable, parameter_options
 from .printing import print_json, print_warning
@@ -144,8 +144,7 @@ def envelope(
     except KeyboardInterrupt:
         _end("interrupted", INTERRUPTED, store, work)
     except OSError as e:
-        reason = f"error: {work} cannot be written: {e.strerror or e}; make room"
-        _end(reason, FAILED, store, work)
+        _end(f"error: {unwritable(work, e, 'make room')}", FAILED, store, work)
     finally:
         store.close()
     if plot is not None:

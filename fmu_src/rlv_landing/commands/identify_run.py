@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from ..errors import one_line
+from ..text.durable import unwritable, write_durably
 
 if TYPE_CHECKING:
     from ..identification.free_numbers import FreeNumbers
@@ -74,7 +75,7 @@ def check_effort(options: dict[str, Any]) -> None:
 def _fail(error: Exception, work: Path) -> NoReturn:
     """End a search that the disk or the machine does not let go on."""
     reason = (
-        f"{work} cannot be written: {error.strerror or error}; make room"
+        unwritable(work, error, "make room")
         if isinstance(error, OSError)
         else "a process of the search was killed; take fewer --workers, or free memory"
     )
@@ -110,7 +111,6 @@ def run(
 def _write_best(search: Search, work: Path) -> None:
     """Write the best point so far: the search's files, and `identified.toml`."""
     from ..identification.origins import identified_toml
-    from ..text.durable import write_durably
 
     search.save()
     best = search.objective.free.parameters(search.best.z)
@@ -121,7 +121,6 @@ def _write_best(search: Search, work: Path) -> None:
 def _report(search: Search, work: Path) -> list[str]:
     """Write the report; the fit in short lines."""
     from ..identification.identify_report import short_report, write_report
-    from ..text.durable import write_durably
 
     best = search.objective.free.parameters(search.best.z)
     write_durably(work / "report.md", write_report(search, best).encode())

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from ..errors import LandingError, one_line
+from ..text.durable import unwritable
 from .number_types import NumberRange, WholeNumber
 from .options import add_options
 from .printing import print_warning
@@ -197,8 +198,7 @@ def _run_or_exit(task: Task, results: Results, engine: Engine, *, strict: bool) 
         except KeyboardInterrupt:
             reason, status = "interrupted", INTERRUPTED
         except OSError as e:
-            reason = f"error: {results.folder} cannot be written: {e.strerror or e}; make room"
-            status = FAILED
+            reason, status = f"error: {unwritable(results.folder, e, 'make room')}", FAILED
         except (LostError, LandingError) as e:
             reason, status = f"error: {e}", FAILED
     click.echo(

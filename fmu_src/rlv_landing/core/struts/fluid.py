@@ -13,6 +13,13 @@ CAVITY_PRESSURE = 10.0
 LEAST_EXPONENT = -150.0
 
 
+def pressure_slope(z: float) -> float:
+    """dP/dz at the state `z` [Pa] of a chamber, as in `fluid`."""
+    if z < CAVITY_PRESSURE:
+        return exp(max((z - CAVITY_PRESSURE) / CAVITY_PRESSURE, LEAST_EXPONENT))
+    return 1.0
+
+
 def fluid(z: float, x: float, n: float, B0: float, kB: float, Pa: float) -> FluidState:
     """The mixture at the state `z` [Pa] of a chamber, with v the specific volume relative to that
     at `Pa`.
@@ -26,11 +33,8 @@ def fluid(z: float, x: float, n: float, B0: float, kB: float, Pa: float) -> Flui
     all of its volume's change, P = Pc exp((z - Pc)/Pc). So any z is a state of the mixture, with P
     above 0.
     """
-    base = z
-    slope = 1.0
-    if z < CAVITY_PRESSURE:
-        base = CAVITY_PRESSURE
-        slope = exp(max((z - CAVITY_PRESSURE) / CAVITY_PRESSURE, LEAST_EXPONENT))
+    base = max(z, CAVITY_PRESSURE)
+    slope = pressure_slope(z)
     P = base * slope
     a = 1.0 + kB * (P - Pa) / B0
     liquid = (1.0 - x) * exp(-log(a) / kB)
@@ -43,9 +47,7 @@ def fluid(z: float, x: float, n: float, B0: float, kB: float, Pa: float) -> Flui
 
 def pressure(z: float) -> float:
     """Absolute pressure [Pa] at the state `z` [Pa] of a chamber, as in `fluid`."""
-    if z < CAVITY_PRESSURE:
-        return CAVITY_PRESSURE * exp(max((z - CAVITY_PRESSURE) / CAVITY_PRESSURE, LEAST_EXPONENT))
-    return z
+    return max(z, CAVITY_PRESSURE) * pressure_slope(z)
 
 
 def strain_energy(f: FluidState, density: float, V: float, Pa: float) -> float:

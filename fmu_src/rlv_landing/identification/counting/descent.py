@@ -9,16 +9,12 @@ set. A step costs one landing for each free number and a few for the dampings, t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .differences import Evaluate, Vector, differences
 from .soft_count import SoftCount
-
-Vector = NDArray[np.float64]
-# the misfits at points of the unit cube, tried side by side
-Evaluate = Callable[[Sequence[Sequence[float]]], list[Vector]]
 
 SOFTNESSES = (0.6, 0.4, 0.25, 0.15, 0.1, 0.05)
 # standard deviations of the rounds' first steps, on the unit cube
@@ -78,12 +74,8 @@ def _descend(
     tried as steps too. While steps help, Broyden's rank-one update changes it.
     """
     z, misfits = start
-    moves = np.where(z > 0.5, -difference, difference)
-    aside = [z + move * unit for move, unit in zip(moves, np.eye(len(z)))]
-    found = evaluate([p.tolist() for p in aside])
-    slopes = [(m - misfits) / move for m, move in zip(found, moves)]
-    jacobian = np.clip(slopes, -STEEPEST, STEEPEST).T
-    others = list(zip(aside, found))
+    others, slopes = differences(evaluate, z, misfits, difference)
+    jacobian = np.clip(slopes, -STEEPEST, STEEPEST)
     while True:
         steps = damped_points(z, misfits, jacobian, soft_count.weights(misfits, softness))
         tried = [*others, *zip(steps, evaluate([p.tolist() for p in steps]))]

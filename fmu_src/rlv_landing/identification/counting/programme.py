@@ -9,15 +9,12 @@ alone. [derived]
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .differences import Evaluate, Vector, differences
 from .soft_count import BOUNDS, CONDITION_PRICE, TOLERANCE, WORTH, SoftCount
-
-Vector = NDArray[np.float64]
-Evaluate = Callable[[Sequence[Sequence[float]]], list[Vector]]
 
 # excesses [part of the bound] at which the cost bends: first those far out count, then near ones
 BENDS = (0.3, 0.1, 0.04)
@@ -74,15 +71,12 @@ def _step(
 ) -> tuple[Vector, Vector]:
     """The best point of one programme's steps, or of the differences; `start` if none is better."""
     z, misfits = start
-    moves = np.where(z > 0.5, -difference, difference)
-    aside = [z + move * unit for move, unit in zip(moves, np.eye(len(z)))]
-    found = evaluate([p.tolist() for p in aside])
-    slopes = np.array([(m - misfits) / move for m, move in zip(found, moves)]).T
+    aside, slopes = differences(evaluate, z, misfits, difference)
     steps = [
         np.clip(z + _solution(soft_count, z, misfits, slopes, bend, region), 0.0, 1.0)
         for region in REGIONS
     ]
-    tried = [start, *zip(aside, found), *zip(steps, evaluate([p.tolist() for p in steps]))]
+    tried = [start, *aside, *zip(steps, evaluate([p.tolist() for p in steps]))]
     return min(tried, key=lambda point: _cost(soft_count, point[1], bend))
 
 
