@@ -32,21 +32,19 @@ from .identity import NO_GUID, identify
 HERE = Path(__file__).parent.parent
 ROOT = HERE.parent
 PACKAGE = HERE / "rlv_landing"
+# what the slave needs of the package: files, and folders with all their files
 MODULES = (
     "__init__.py",
     "errors.py",
-    "quantities.py",
-    "parameters.py",
     "touchdown.py",
-    "inputs/__init__.py",
-    "inputs/ground_way.py",
-    "inputs/driven.py",
     "assembly.py",
     "extremes.py",
+    "outputs.py",
     "state.py",
     "stints.py",
     "landing.py",
 )
+FOLDERS = ("quantities", "parameters", "inputs", "core")
 # pythonfmu's command line, CSV tool and builder, which no slave needs
 NOT_NEEDED = ("__main__.py", "csvbuilder.py", "deploy.py", "builder.py", "osutil.py")
 # the line of pythonfmu's `__init__.py` that imports the builder, and with it argparse, logging and
@@ -121,10 +119,6 @@ def copy_sources(folder: Path, *, pure: bool) -> tuple[Path, Path]:
     name = "rlv_landing_" + re.sub(r"\W", "_", version())
     package = folder / name
     package.mkdir()
-    for module in MODULES:
-        target = package / module
-        target.parent.mkdir(exist_ok=True)
-        shutil.copy(PACKAGE / module, target)
     cores = [] if pure else compiled_cores()
     if not cores and not pure:
         raise SystemExit(
@@ -132,7 +126,9 @@ def copy_sources(folder: Path, *, pure: bool) -> tuple[Path, Path]:
             "or run ./build_fmu.sh; --pure builds an FMU without it, which lands to the same "
             "digits and takes ten times as long"
         )
-    for file in [*sorted((PACKAGE / "core").rglob("*.py")), *cores]:
+    modules = [PACKAGE / name for name in MODULES]
+    in_folders = [file for name in FOLDERS for file in sorted((PACKAGE / name).rglob("*.py"))]
+    for file in [*modules, *in_folders, *cores]:
         target = package / file.relative_to(PACKAGE)
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(file, target)

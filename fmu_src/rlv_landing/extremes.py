@@ -1,31 +1,11 @@
-"""The kernel's outputs by name, and their extremes."""
+"""The extremes of outputs, by name."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from .quantities import LEG_QUANTITIES, MIRRORED, MODES, OUTPUT_NAMES, SHARED_QUANTITIES
-
-
-def output_order(mode: str) -> list[tuple[int, float]]:
-    """For each of OUTPUT_NAMES: where the kernel's outputs hold it, and its factor.
-
-    The factor -1 turns Z of a mirror image.
-    """
-    shared = len(SHARED_QUANTITIES)
-    order = [(i, 1.0) for i in range(shared)]
-    where = {leg: (group, side) for group, g in enumerate(MODES[mode]) for leg, side in g.legs}
-    for leg in sorted(where):
-        group, side = where[leg]
-        for i, q in enumerate(LEG_QUANTITIES):
-            order.append(
-                (
-                    shared + len(LEG_QUANTITIES) * group + i,
-                    float(side) if q.name in MIRRORED else 1.0,
-                )
-            )
-    return order
+from .quantities import OUTPUT_NAMES
 
 
 class Extreme(NamedTuple):

@@ -21,8 +21,9 @@ FIRST_REACH, FARTHEST = 1e3, 1e15
 
 
 def strut_motion(leg: LegState, joint_r: float, joint_h: float, length: float) -> StrutMotion:
-    """A strut of `length` [m], unloaded, from its joint on the body to the footpad, seen in the
-    body's frame. Eqs. (19), (25).
+    """A strut from its joint on the body to the footpad, in the body's frame. Eqs. (19), (25).
+
+    Its unloaded `length` is in m.
     """
     dr = leg.r - joint_r
     dh = leg.h - joint_h
@@ -33,8 +34,9 @@ def strut_motion(leg: LegState, joint_r: float, joint_h: float, length: float) -
 
 
 def leg_forces(leg: LegState, foot: FootMotion, p: LegModel) -> LegForces:
-    """All forces and powers of one leg, and the rates of its laws' states, where the footpad moves
-    as `foot` says.
+    """All forces and powers of one leg, and the rates of its laws' states.
+
+    `foot` is the footpad's motion against the ground.
     """
     main = strut_motion(leg, p.La, p.Lb, p.Lm0)
     aux = strut_motion(leg, p.Lc, p.Ld, p.Ls0)
@@ -80,8 +82,9 @@ def leg_forces(leg: LegState, foot: FootMotion, p: LegModel) -> LegForces:
 
 
 def leg_status(leg: LegState, forces: LegForces, depth: float, p: LegModel) -> LegStatus:
-    """What one leg holds, and its main strut's chambers, with its footpad at penetration `depth`
-    [m].
+    """What one leg holds, and its main strut's chambers.
+
+    `depth` is the footpad's penetration [m].
     """
     strut = main_strut_status(forces.stroke, leg.z1, leg.z2, p)
     return LegStatus(
@@ -95,8 +98,9 @@ def leg_status(leg: LegState, forces: LegForces, depth: float, p: LegModel) -> L
 
 
 def liquid_excess(forces: LegForces, p: LegModel) -> float:
-    """How much more liquid the main strut has than it was filled with, in parts of it; 0 for a law
-    without a liquid.
+    """How much more liquid the main strut has than it was filled with, in parts of it.
+
+    It is 0 for a law without a liquid.
     """
     if forces.liquid_mass > 0.0:
         return forces.liquid_mass / p.fill - 1.0
@@ -104,8 +108,7 @@ def liquid_excess(forces: LegForces, p: LegModel) -> float:
 
 
 def without_excess(leg: LegState, forces: LegForces, p: LegModel) -> LegState:
-    """The leg with both states of its main strut law moved alike until its liquid is that of the
-    fill.
+    """The leg with both states of its main strut law moved alike to the mass of the fill.
 
     Newton's steps, held between states known to have too little and too much, and no longer than a
     reach that doubles: the mass grows with either state, but by many orders more in a cavity than

@@ -14,8 +14,7 @@ from ..core import Phase
 from ..errors import LandingError
 from ..history import History
 from ..landing import Landing
-from ..parameters import azimuth
-from ..quantities import MODES, Quantity
+from ..quantities import MODES, Quantity, azimuth
 from ..touchdown import AT_REST
 from .limits import PassedLimit, first_limit_passed, time_passed
 from .replay import ReplayedHistory

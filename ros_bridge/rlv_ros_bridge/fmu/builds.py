@@ -13,8 +13,8 @@ import rlv_landing
 
 # The source files that decide the computed bits. The FMU carries the same files.
 MODEL_FILE = re.compile(
-    r"(?:^|/)rlv_landing[^/]*/((?:(?:core|inputs)/(?:\w+/)*\w+|assembly|extremes|state|landing"
-    r"|parameters|quantities|touchdown)\.py)$"
+    r"(?:^|/)rlv_landing[^/]*/((?:(?:core|inputs|parameters|quantities)/(?:\w+/)*\w+"
+    r"|assembly|extremes|outputs|state|landing|touchdown)\.py)$"
 )
 
 

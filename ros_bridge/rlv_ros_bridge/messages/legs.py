@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rlv_landing.parameters import azimuth
-from rlv_landing.quantities import LEGS, MODES
+from rlv_landing.quantities import LEGS, MODES, azimuth
 
 from .axes import to_ros
 

@@ -50,8 +50,8 @@ from .planar_legs import footpad_kinetic_energy, footpad_moment
 from .planar_motion import PlanarMotion
 from .planar_status import is_phase, phase_of
 
-# The energy balance may come to this part of what was dissipated, of which a step may use up a share
-# of what is left; whatever is left, it may grow by so much more a second [1/s]
+# The energy balance may come to this part of what was dissipated, of which a step may use up a
+# share of what is left; whatever is left, it may grow by so much more a second [1/s]
 MOST_LOST, STEP_SHARE, LOST_RATE = 4e-5, 0.25, 2e-5
 # of the energy at touchdown, so much counts as dissipated from the start on
 LEAST_TURNED = 0.1
@@ -60,12 +60,15 @@ ROUNDING = 4e-15
 
 
 class Planar(PlanarMotion):
-    """The planar body with its outputs: body, energies, status, then each leg group, in the order
-    of `rlv_landing.quantities`.
+    """The planar body with its outputs: body, energies, status, then each leg group.
 
-    Strut forces change sign here: the user's are negative in compression. Mirror images are made
-    where the names are made. `energy_start` [J] is the mechanical energy at the start, which the
-    energy balance is drawn up against; `rounding` [J] is how far rounding may put that off.
+    The order is that of `rlv_landing.quantities`. Strut forces change sign here: the user's are
+    negative in compression. Mirror images are made where the names are made.
+
+    Attributes:
+        energy_start: The mechanical energy at the start [J], against which the energy balance is
+            drawn up.
+        rounding: How far rounding may put the balance off [J].
     """
 
     energy_start: float
@@ -232,8 +235,10 @@ class Planar(PlanarMotion):
     def _put_status(
         self, y: Doubles, rates: Doubles, kinetic: float, out: Doubles, at: int
     ) -> None:
-        """The stability margin is the distance [m] from the whole vehicle's CG to the nearer of the
-        outermost footpads, negative beyond.
+        """Write the phase and the stability margin to `out[at:]`.
+
+        The margin is the distance [m] from the whole vehicle's CG to the nearer of the outermost
+        footpads, negative beyond.
         """
         body = body_state(y, 0)
         mass = body_model(self._body, 0).m_u

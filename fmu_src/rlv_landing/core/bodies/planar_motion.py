@@ -121,8 +121,9 @@ class PlanarMotion(System):
         )
 
     def rhs(self, y: Doubles, u: Doubles, dy: Doubles) -> None:
-        """Write dy/dt at the state `y` and the inputs `u` to `dy`; keep the legs' forces and loads
-        and the body's attitude on the way.
+        """Write dy/dt at the state `y` and the inputs `u` to `dy`.
+
+        It keeps the legs' forces and loads and the body's attitude on the way.
         """
         p = body_model(self._body, 0)
         body = body_state(y, 0)
@@ -134,9 +135,16 @@ class PlanarMotion(System):
         keep(Attitude(turn.sin_p, turn.cos_p, a.y), self._attitude, 0)
         put(
             BodyState(
-                body.vx, body.vy, body.pitch_rate, a.x * turn.cos_p + a.y * turn.sin_p, a.y * turn.cos_p - a.x * turn.sin_p, a.pitch
-            ), dy, 0
-        )  # fmt: skip
+                x=body.vx,
+                y=body.vy,
+                pitch=body.pitch_rate,
+                vx=a.x * turn.cos_p + a.y * turn.sin_p,
+                vy=a.y * turn.cos_p - a.x * turn.sin_p,
+                pitch_rate=a.pitch,
+            ),
+            dy,
+            0,
+        )
         transverse = 0.0
         for i in range(self.groups):
             transverse += self._move(i, y, body.pitch_rate, a, dy)
@@ -207,8 +215,10 @@ class PlanarMotion(System):
         )
 
     def _move(self, i: int, y: Doubles, rate: float, a: BodyAcceleration, dy: Doubles) -> float:
-        """Write the rates of leg group `i` to `dy`; return the power [W] that its transverse forces
-        create.
+        """Write the rates of leg group `i` to `dy`.
+
+        Returns:
+            The power that its transverse forces create [W].
         """
         leg = leg_state(y, BODY + LEG * i)
         place = leg_place(self._places, i)
@@ -225,8 +235,11 @@ class PlanarMotion(System):
         return place.legs * (-force * place.sin_g * rate * arm)
 
     def _powers(self, external: float, transverse: float) -> Accounts:
-        """The powers [W] that the accounts gather; those from outside and of the transverse forces
-        are given.
+        """The powers that the accounts gather [W].
+
+        Args:
+            external: Power of the external loads [W].
+            transverse: Power that the transverse forces create [W].
         """
         orifice = seal = stop = auxiliary = contact = friction = ground = 0.0
         for i in range(self.groups):
@@ -261,8 +274,10 @@ class PlanarMotion(System):
             )
 
     def weigh(self, ceiling: Doubles) -> None:
-        """An error of a main strut law's state counts by what it changes of the liquid's mass,
-        where that is more than by its size.
+        """Write the ceiling of the error of each main strut law's state to `ceiling`.
+
+        The error counts by what it changes of the liquid's mass, where that is more than by its
+        size.
         """
         for i in range(self.groups):
             forces = leg_forces_of(self._forces, i)
