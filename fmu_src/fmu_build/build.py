@@ -38,11 +38,11 @@ MODULES = (
     "errors.py",
     "touchdown.py",
     "assembly.py",
-    "extremes.py",
     "outputs.py",
     "state.py",
     "stints.py",
     "landing.py",
+    "hosted.py",
 )
 FOLDERS = ("quantities", "parameters", "inputs", "core")
 # pythonfmu's command line, CSV tool and builder, which no slave needs

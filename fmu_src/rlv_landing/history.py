@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import LandingError, unknown
-from .extremes import Extreme
+from .outputs import Extreme
 from .parameters import Parameters
 from .text.durable import text_of, whole_file
 from .touchdown import AT_REST, GroundMotion

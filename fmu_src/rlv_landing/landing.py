@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any
 from .assembly import NO_INPUTS, begin, build_system
 from .core import DormandPrince, Exponential, Inputs, Solver
 from .errors import LandingError, unknown
-from .extremes import Extreme
 from .inputs.driven import RATE_INPUTS, DrivenInputs, Setting, changed_setting
-from .outputs import OutputReader
+from .outputs import Extreme, OutputReader
 from .parameters import Parameters
 from .quantities import INPUT_NAMES, OUTPUT_NAMES
 from .state import LATEST, state_of, take_up
@@ -154,6 +153,15 @@ class Landing:
                 self._begin(*new)
         elif self._inputs.set(self._time, values, rates or {}):
             self._reader.forget()
+
+    def inputs(self) -> dict[str, float]:
+        """The inputs that act at the present time, by name.
+
+        Heave and tilt are the ground's present position, which is on its way to a new one that was
+        set; their rates are those of its motion.
+        """
+        self._solver.inputs_at(self._time)
+        return dict(zip(INPUT_NAMES, self._solver.u_now))
 
     def step(self, dt: float) -> None:
         """Go on by `dt` [s].

@@ -9,9 +9,9 @@ from math import inf
 import numpy as np
 
 from ..errors import unknown
-from ..extremes import Extreme
 from ..history import History
 from ..landing import Landing
+from ..outputs import Extreme
 from ..parameters import check_value
 from ..quantities import Quantity
 from .replay import ReplayedHistory

@@ -14,7 +14,7 @@ import rlv_landing
 # The source files that decide the computed bits. The FMU carries the same files.
 MODEL_FILE = re.compile(
     r"(?:^|/)rlv_landing[^/]*/((?:(?:core|inputs|parameters|quantities)/(?:\w+/)*\w+"
-    r"|assembly|extremes|outputs|state|landing|touchdown)\.py)$"
+    r"|assembly|outputs|state|landing|touchdown)\.py)$"
 )
 
 

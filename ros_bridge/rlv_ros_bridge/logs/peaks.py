@@ -13,8 +13,8 @@ from math import isfinite, nan
 
 from rlv_landing import Landing
 from rlv_landing.errors import LandingError
-from rlv_landing.extremes import Extreme
 from rlv_landing.history import History
+from rlv_landing.outputs import Extreme
 from rlv_landing.quantities import PEAKS
 
 RECORD = "rlv_landing_peaks"
