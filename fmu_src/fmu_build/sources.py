@@ -1,0 +1,113 @@
+"""The sources of the FMU: the slave, the parts of the package that it needs, and their date."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from datetime import datetime, timezone
+from pathlib import Path
+
+from .core_source import package_name
+
+HERE = Path(__file__).parent.parent
+ROOT = HERE.parent
+PACKAGE = HERE / "rlv_landing"
+# what the slave needs of the package: files, and folders with all their files
+MODULES = (
+    "__init__.py",
+    "errors.py",
+    "touchdown.py",
+    "assembly.py",
+    "outputs.py",
+    "state.py",
+    "stints.py",
+    "landing.py",
+    "hosted.py",
+)
+FOLDERS = ("quantities", "parameters", "inputs", "core")
+# dates that a zip file can hold, 1980 to 2107 [s since 1970]; 1980 also for sources without a date
+OLDEST, NEWEST = 315532800, 4354819199
+
+SCRIPT = """\
+from {package}.slave import RlvLanding
+
+__all__ = ["RlvLanding"]
+"""
+
+
+def version() -> str:
+    """The package's version, from its `__init__.py`."""
+    found = re.search(r'^__version__ = "(.+)"$', (PACKAGE / "__init__.py").read_text(), re.M)
+    if found is None:
+        raise SystemExit("error: rlv_landing/__init__.py states no __version__")
+    return found[1]
+
+
+def source_date() -> datetime:
+    """The date of the sources [UTC].
+
+    SOURCE_DATE_EPOCH of the environment, else the date of the last git commit, else 1980-01-01.
+
+    Raises:
+        SystemExit: SOURCE_DATE_EPOCH is no number of seconds that a zip file can hold.
+    """
+    text = os.environ.get("SOURCE_DATE_EPOCH", "")
+    if not text and (ROOT / ".git").exists():
+        try:
+            text = subprocess.run(
+                ["git", "log", "-1", "--format=%ct"],
+                cwd=ROOT,
+                capture_output=True,
+                text=True,
+                check=True,
+            ).stdout
+        except (OSError, subprocess.CalledProcessError):
+            text = ""
+    if text and not (re.fullmatch(r"\d+\s*", text) and int(text) <= NEWEST):
+        raise SystemExit(
+            f"error: SOURCE_DATE_EPOCH = {text!r} is not a number of seconds from 1970-01-01 "
+            "to 2107; leave it out or correct it"
+        )
+    return datetime.fromtimestamp(max(int(text or OLDEST), OLDEST), timezone.utc)
+
+
+def compiled_cores() -> list[Path]:
+    """The compiled cores for all Python versions, but none that older kernels were compiled to."""
+    return [
+        file
+        for file in sorted((PACKAGE / "core").iterdir())
+        if file.suffix in (".so", ".pyd") and package_name().encode() in file.read_bytes()
+    ]
+
+
+def copy_sources(folder: Path, *, pure: bool) -> tuple[Path, Path]:
+    """Copy slave and package to `folder`; return pythonfmu's script and the package.
+
+    Their names carry the version; `identify` adds the build. `pure` leaves the compiled core out.
+
+    Raises:
+        SystemExit: There is no compiled core of the present kernels, and `pure` is not set.
+    """
+    name = "rlv_landing_" + re.sub(r"\W", "_", version())
+    package = folder / name
+    package.mkdir()
+    cores = [] if pure else compiled_cores()
+    if not cores and not pure:
+        raise SystemExit(
+            "error: there is no compiled core of the present kernels: see why the compiler failed, "
+            "or run ./build_fmu.sh; --pure builds an FMU without it, which lands to the same "
+            "digits and takes ten times as long"
+        )
+    modules = [PACKAGE / name for name in MODULES]
+    in_folders = [file for name in FOLDERS for file in sorted((PACKAGE / name).rglob("*.py"))]
+    for file in [*modules, *in_folders, *cores]:
+        target = package / file.relative_to(PACKAGE)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(file, target)
+    text = (HERE / "landing_fmu.py").read_text()
+    (package / "slave.py").write_text(re.sub(r"^from rlv_landing\.?", "from .", text, flags=re.M))
+    script = folder / f"{name.replace('rlv_landing', 'landing_fmu')}.py"
+    script.write_text(SCRIPT.format(package=name))
+    return script, package
