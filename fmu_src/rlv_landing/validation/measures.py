@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import trapezoid
 
 from ..core import Phase
 from ..errors import LandingError
@@ -82,7 +81,7 @@ def work_of(force: Array, stroke: Array) -> float:
         force: Axial force, negative in compression [N], (n,).
         stroke: Stroke, positive in compression [m], (n,).
     """
-    return float(-trapezoid(force, stroke))
+    return float(-np.trapezoid(force, stroke))
 
 
 def buffering_efficiency(absorbed: float, force_max: float, stroke_max: float) -> float:

@@ -18,9 +18,8 @@ from math import inf
 from typing import Literal
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import signal
-from scipy.interpolate import PchipInterpolator
 
 from ..errors import LandingError, unknown
 from ..history import History
@@ -75,7 +74,9 @@ def smooth_stroke(stroke: NDArray[np.float64]) -> NDArray[np.float64]:
 
     The ends follow the last window's parabola. [paper]
     """
-    return np.asarray(signal.savgol_filter(stroke, STROKE_WINDOW, STROKE_ORDER, mode="interp"))
+    return np.asarray(
+        scipy.signal.savgol_filter(stroke, STROKE_WINDOW, STROKE_ORDER, mode="interp")
+    )
 
 
 def low_pass(acceleration: NDArray[np.float64], phase: Phase = "zero") -> NDArray[np.float64]:
@@ -83,13 +84,13 @@ def low_pass(acceleration: NDArray[np.float64], phase: Phase = "zero") -> NDArra
 
     It starts from rest at the first sample. [paper: cut-off; closure: filter]
     """
-    sections = signal.butter(FILTER_ORDER, CUTOFF, fs=SAMPLING, output="sos")
+    sections = scipy.signal.butter(FILTER_ORDER, CUTOFF, fs=SAMPLING, output="sos")
     if phase == "zero":
         return np.asarray(
-            signal.sosfiltfilt(sections, acceleration, padlen=min(len(acceleration) - 1, 250))
+            scipy.signal.sosfiltfilt(sections, acceleration, padlen=min(len(acceleration) - 1, 250))
         )
-    start = signal.sosfilt_zi(sections) * acceleration[0]
-    return np.asarray(signal.sosfilt(sections, acceleration, zi=start)[0])
+    start = scipy.signal.sosfilt_zi(sections) * acceleration[0]
+    return np.asarray(scipy.signal.sosfilt(sections, acceleration, zi=start)[0])
 
 
 def resample(history: History, rate: float = SAMPLING) -> History:
@@ -113,7 +114,9 @@ def resample(history: History, rate: float = SAMPLING) -> History:
         return History(history.time, history.names, history.data, history.parameters)
     counted = np.array([name in COUNTED for name in history.names], dtype=bool)
     if ratio > 1.0:
-        data = PchipInterpolator(history.time, history.data, axis=0, extrapolate=True)(time)
+        data = scipy.interpolate.PchipInterpolator(
+            history.time, history.data, axis=0, extrapolate=True
+        )(time)
     else:
         share = Fraction(ratio).limit_denominator(1000)
         if abs(float(share) / ratio - 1.0) > STEP_TOLERANCE:
@@ -121,7 +124,7 @@ def resample(history: History, rate: float = SAMPLING) -> History:
                 f"the history's samples are {step:.9g} s apart, which no ratio of small numbers "
                 f"brings to {rate:g} Hz; run it with --every 2e-5"
             )
-        data = signal.resample_poly(
+        data = scipy.signal.resample_poly(
             history.data, share.numerator, share.denominator, axis=0, padtype="line"
         )[: len(time)]
     nearest = np.clip(np.rint((time - start) / step).astype(int), 0, len(history) - 1)
