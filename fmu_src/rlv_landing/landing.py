@@ -279,8 +279,8 @@ class Landing:
         span = f"a landing until {until:g} s in samples of {every:g} s"
         remedy = "land shorter, or sample more seldom"
         count = (until - start) / every
-        # rows and columns are there at once
-        check_memory(span, 16.0 * self._system.row * count, remedy)
+        # rows, the same turned, and columns are there at once
+        check_memory(span, 8.0 * (2 * self._system.row + len(self._order)) * count, remedy)
         seconds = SECONDS_PER_SECOND * (until - start) + SECONDS_PER_SAMPLE * count
         check_duration(span, seconds, remedy)
         samples = int(count * (1.0 + 1e-12) + 1e-9) + 1
