@@ -281,7 +281,8 @@ class Landing:
         from .sampling import sample_count
 
         start, row = self._time, self._system.row
-        samples = sample_count(start, until, every, row)
+        # rows, the same turned, and columns are there at once
+        samples = sample_count(start, until, every, 2 * row + len(OUTPUT_NAMES))
         check_going(self._solver)
         ground = self._inputs.ground(start)
         rows = np.empty((samples, row))

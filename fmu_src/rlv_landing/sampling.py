@@ -9,14 +9,14 @@ from .errors import LandingError
 from .state import LATEST
 
 
-def sample_count(start: float, until: float, every: float, row: int) -> int:
+def sample_count(start: float, until: float, every: float, numbers: int) -> int:
     """The number of samples from `start` until `until` [s], one every `every` [s].
 
     Args:
         start: Time of the first sample [s].
         until: Time that no sample is behind [s].
         every: Time between two samples [s].
-        row: Outputs in a sample.
+        numbers: Numbers that are held for each sample at once.
 
     Raises:
         LandingError: `every` is not above 0, `until` is not ahead, the samples need more memory
@@ -32,8 +32,7 @@ def sample_count(start: float, until: float, every: float, row: int) -> int:
     span = f"a landing until {until:g} s in samples of {every:g} s"
     remedy = "land shorter, or sample more seldom"
     count = (until - start) / every
-    # rows and columns are there at once
-    check_memory(span, 16.0 * row * count, remedy)
+    check_memory(span, 8.0 * numbers * count, remedy)
     seconds = SECONDS_PER_SECOND * (until - start) + SECONDS_PER_SAMPLE * count
     check_duration(span, seconds, remedy)
     # a rounding of the quotient takes no sample away

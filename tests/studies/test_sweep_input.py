@@ -113,7 +113,7 @@ ROW = "1,0,0,-1\n"
         ('[study]\nmethod = "gird"\n' + RANGE, "unknown method 'gird'; did you mean grid?"),
         (
             "[study]\nsamples = 8\n" + RANGE,
-            "unknown method 'none'; known are grid, lhs, sobol, table",
+            "[study] has no method; write one of grid, lhs, sobol, table",
         ),
         ("[study\n", "TOML syntax"),
         (TABLE, "there is no table"),

@@ -50,7 +50,10 @@ class NumberRange(click.FloatRange):
 
 
 class WholeNumber(click.IntRange):
-    """A whole number of at most 18 digits, within a range."""
+    """A whole number of at most 18 digits, within a range where one is given."""
+
+    def _describe_range(self) -> str:
+        return "" if self.min is None and self.max is None else super()._describe_range()
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> int:
         """The number, within the range."""

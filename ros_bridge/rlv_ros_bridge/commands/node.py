@@ -15,6 +15,7 @@ from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.text.durable import writing
 from rlv_landing.text.files import is_utf8
 
+from ..messages.topics import check_namespace
 from ..node.run_summary import RunSummary
 from ..ros.arguments import ROS_COMMAND_SETTINGS, split_ros_args
 
@@ -123,6 +124,7 @@ def node(
         changes = parse_pairs(options.pop("changes"), PARAMETER_QUANTITIES, "parameter")
         settings = {name: value for name, value in options.items() if value is not None}
         _refuse_other_encodings({**settings, **recording, "namespace": namespace})
+        check_namespace(namespace)
         if managed:
             settings["autostart"] = False
         require_ros()

@@ -6,7 +6,9 @@ import hashlib
 import platform
 import re
 import zipfile
+import zlib
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 
 import rlv_landing
@@ -23,15 +25,17 @@ def build_metadata(fmu: Path) -> dict[str, str]:
 
     The digest is empty where `fmu` cannot be read.
     """
-    try:
-        with zipfile.ZipFile(fmu) as archive:
-            sources = {
-                m[1]: archive.read(name)
-                for name in archive.namelist()
-                if (m := MODEL_FILE.search(name))
-            }
-    except (OSError, zipfile.BadZipFile):
-        sources = {}
+    sources = {}
+    # a device has no end, and no archive's directory there; a damaged archive has errors of many
+    # kinds
+    with suppress(OSError, ValueError, RuntimeError, zipfile.BadZipFile, zlib.error):
+        if fmu.is_file():
+            with zipfile.ZipFile(fmu) as archive:
+                sources = {
+                    m[1]: archive.read(name)
+                    for name in archive.namelist()
+                    if (m := MODEL_FILE.search(name))
+                }
     return {"model": _digest(sources), "machine": machine_name()}
 
 
