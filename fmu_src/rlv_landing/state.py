@@ -76,8 +76,11 @@ def state_of(
     return array("d", itertools.chain(header, ways, *_arrays(solver)))
 
 
-def take_up(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequence[float]]:
-    """Give the `solver` the state; return its header, and the ways for `DrivenInputs.restore`.
+def load_state(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequence[float]]:
+    """Load a state into the `solver`.
+
+    Returns:
+        The state's header, and the ways for `DrivenInputs.restore`.
 
     Raises:
         LandingError: The length is not that of this solver's state, a number is not finite, or the
@@ -96,10 +99,10 @@ def take_up(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequence[
         raise LandingError("state holds numbers that are not finite; take one that state() gave")
     header, ways = StateHeader(*state[:head]), state[head:at]
     rates = state[at + len(solver.u) :]
-    for told in itertools.chain(
+    for fault in itertools.chain(
         _faults(header, len(solver.dense) // 2), way_faults(ways, rates, header.time)
     ):
-        raise LandingError(f"state holds {told}; take one that state() gave")
+        raise LandingError(f"state holds {fault}; take one that state() gave")
     for target in targets:
         for i in range(len(target)):
             target[i] = state[at + i]
