@@ -23,7 +23,7 @@ LATEST = 1e9
 
 
 class StateHeader(NamedTuple):
-    """What a state begins with: the landing's time, and what the solver keeps beside its arrays."""
+    """The head of a state: the landing's time, and the solver's numbers beside its arrays."""
 
     time: float  # [s]
     t: float  # end of the last internal step [s]
@@ -55,7 +55,7 @@ WHOLE = ("fault", "dense_at", "seen", "still", "waited")
 
 
 def _arrays(solver: Solver) -> tuple[Buffer, ...]:
-    """What a state holds after its header."""
+    """The arrays that a state holds after its header."""
     s = solver
     return (s.u, s.u_rate, s.y, s.dense, s.kept, s.before, s.middle, s.last)
 
@@ -118,7 +118,7 @@ def load_state(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequen
 
 
 def _faults(h: StateHeader, dense: int) -> Iterator[str]:
-    """What is wrong with a header; `dense` is the length of one interpolant."""
+    """The faults of a header; `dense` is the length of one interpolant."""
     if not 0.0 <= h.t_start <= h.t_before <= h.t_old <= h.time <= h.t <= LATEST:
         yield (
             f"times that are not in order: start {h.t_start:g}, steps {h.t_before:g}, "

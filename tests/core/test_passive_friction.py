@@ -122,7 +122,7 @@ def test_without_friction_nothing_happens_from_rest(v1, v2):
 
 
 def test_the_papers_law_supplies_energy_where_the_load_on_a_stuck_foot_grows():
-    """What the passive law is for: K grows with the normal force, and nothing pays for it."""
+    """K grows with the normal force, at no cost of energy; the passive law does not so."""
     paper = P._replace(friction_kind=PAPER, Cr=0.0)
     there = ground_force(FootMotion(1e-3, 0.0, 1e-3, 0.0), 5e-4, 0.0, paper)
     back = ground_force(FootMotion(2e-3, 0.0, -1e-3, 0.0), 5e-4, 0.0, paper)

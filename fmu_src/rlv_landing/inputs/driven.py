@@ -49,7 +49,7 @@ class DrivenInputs:
         self._adopt([Way(at, at, 0.0, 0.0, 0.0) for at in places])
 
     def state(self) -> list[float]:
-        """What `restore` needs besides the solver's inputs."""
+        """The numbers that `restore` needs besides the solver's inputs."""
         return [number for way in self._ways for number in way]
 
     def restore(self, numbers: Sequence[float]) -> None:
@@ -120,7 +120,7 @@ class DrivenInputs:
             self._restart(t, setting, position, rates)
 
     def next_end(self, until: float) -> float | None:
-        """When the first motion to a new position ends [s], if it ends before `until` [s]."""
+        """End of the first motion to a new position [s], if it is before `until` [s]."""
         rate = self._solver.u_rate
         ends = (way.end for i, way in zip(POSITIONS, self._ways) if rate[i] != 0.0)
         return min((end for end in ends if not reached(until, end)), default=None)

@@ -1,4 +1,4 @@
-"""Where the legs' joints sit, in ROS axes."""
+"""Positions of the legs' joints, in ROS axes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where quantities turn, and where between three times a quantity is highest."""
+"""Turning points of quantities, and the highest point between three times."""
 
 from __future__ import annotations
 

@@ -87,7 +87,7 @@ class Path:
             )
 
     def _other_dense(self) -> int:
-        """Where the interpolant of the step before the last begins."""
+        """The place in `dense` of the interpolant of the step before the last."""
         return PARTS * self.n - self.dense_at
 
     def _stand_still(self, y: Doubles) -> None:

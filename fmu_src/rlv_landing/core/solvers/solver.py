@@ -161,7 +161,7 @@ class Solver(Trial):
         return True
 
     def _fall_asleep(self) -> None:
-        """Where the system has come to rest, be there, and sleep."""
+        """Go to the rest of a system that has come to rest, and sleep."""
         y, place = data(self.y), data(self._place)
         if self._found_rest(y):
             self._cut(self.t)

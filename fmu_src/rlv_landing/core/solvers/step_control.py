@@ -1,4 +1,4 @@
-"""How long the next step is.
+"""The length of the next step.
 
 Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, II.4.
 """
