@@ -11,7 +11,7 @@ SLAVE := fmu_src/landing_fmu.py \
   $(wildcard $(addprefix fmu_src/,fmu_build/*.py fmu_build/*.j2 fmu_front/*)) \
   $(wildcard $(addprefix fmu_src/rlv_landing/,quantities/*.py parameters/*.py inputs/*.py)) \
   $(addprefix fmu_src/rlv_landing/,__init__.py errors.py touchdown.py assembly.py outputs.py) \
-  $(addprefix fmu_src/rlv_landing/,state.py stints.py landing.py hosted.py figures/plots.py) \
+  $(addprefix fmu_src/rlv_landing/,state.py interruptible.py landing.py hosted.py figures/plots.py) \
   CHANGELOG.md LICENSE
 
 .PHONY: help run test lint torture bench annotate coverage docs clean

@@ -22,7 +22,7 @@ MODULES = (
     "assembly.py",
     "outputs.py",
     "state.py",
-    "stints.py",
+    "interruptible.py",
     "landing.py",
     "hosted.py",
 )

@@ -12,11 +12,11 @@ from .assembly import NO_INPUTS, begin, build_system
 from .core import DormandPrince, Exponential, Inputs, Solver
 from .errors import LandingError, unknown
 from .inputs.driven import RATE_INPUTS, DrivenInputs, Setting, changed_setting
+from .interruptible import advance, check_going, record
 from .outputs import Extreme, OutputReader
 from .parameters import Parameters
 from .quantities import INPUT_NAMES, OUTPUT_NAMES
-from .state import LATEST, state_of, take_up
-from .stints import advance, check_going, record
+from .state import LATEST, load_state, state_of
 
 if TYPE_CHECKING:
     from numpy import float64
@@ -246,7 +246,7 @@ class Landing:
             LandingError: Its length is not that of this landing's state, a number in it is not
                 finite, or no landing has such numbers; nothing is changed then.
         """
-        header, ways = take_up(self._solver, state)
+        header, ways = load_state(self._solver, state)
         self._time = header.time
         self._system.energy_start = header.energy_start
         self._inputs.restore(ways)

@@ -23,7 +23,7 @@ LATEST = 1e9
 
 
 class StateHeader(NamedTuple):
-    """What a state begins with: the landing's time, and what the solver keeps beside its arrays."""
+    """The head of a state: the landing's time, and the solver's numbers beside its arrays."""
 
     time: float  # [s]
     t: float  # end of the last internal step [s]
@@ -55,7 +55,7 @@ WHOLE = ("fault", "dense_at", "seen", "still", "waited")
 
 
 def _arrays(solver: Solver) -> tuple[Buffer, ...]:
-    """What a state holds after its header."""
+    """The arrays that a state holds after its header."""
     s = solver
     return (s.u, s.u_rate, s.y, s.dense, s.kept, s.before, s.middle, s.last)
 
@@ -76,8 +76,11 @@ def state_of(
     return array("d", itertools.chain(header, ways, *_arrays(solver)))
 
 
-def take_up(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequence[float]]:
-    """Give the `solver` the state; return its header, and the ways for `DrivenInputs.restore`.
+def load_state(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequence[float]]:
+    """Load a state into the `solver`.
+
+    Returns:
+        The state's header, and the ways for `DrivenInputs.restore`.
 
     Raises:
         LandingError: The length is not that of this solver's state, a number is not finite, or the
@@ -96,10 +99,10 @@ def take_up(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequence[
         raise LandingError("state holds numbers that are not finite; take one that state() gave")
     header, ways = StateHeader(*state[:head]), state[head:at]
     rates = state[at + len(solver.u) :]
-    for told in itertools.chain(
+    for fault in itertools.chain(
         _faults(header, len(solver.dense) // 2), way_faults(ways, rates, header.time)
     ):
-        raise LandingError(f"state holds {told}; take one that state() gave")
+        raise LandingError(f"state holds {fault}; take one that state() gave")
     for target in targets:
         for i in range(len(target)):
             target[i] = state[at + i]
@@ -115,7 +118,7 @@ def take_up(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequence[
 
 
 def _faults(h: StateHeader, dense: int) -> Iterator[str]:
-    """What is wrong with a header; `dense` is the length of one interpolant."""
+    """The faults of a header; `dense` is the length of one interpolant."""
     if not 0.0 <= h.t_start <= h.t_before <= h.t_old <= h.time <= h.t <= LATEST:
         yield (
             f"times that are not in order: start {h.t_start:g}, steps {h.t_before:g}, "

@@ -104,7 +104,7 @@ def test_a_contact_force_that_is_1_per_cent_wrong_does_not_pass_the_momentum_aud
     assert left(wrong) > 10.0 * BOUNDS["momentum_x"].limit
 
 
-def test_the_joint_is_told_to_drop_angular_momentum_and_not_held_to_it(command):
+def test_the_joint_is_reported_to_drop_angular_momentum_and_not_held_to_it(command):
     done = command(
         "audit", FIGURES, "--mode", "2-2", "--set", "vehicle.transverse_load_at=joint", "--json"
     )
@@ -140,7 +140,7 @@ def test_any_parameter_file_can_be_audited(command, tmp_path):
     assert [a["mode"] for a in record["audits"]] == ["1-2-1"] * 3
 
 
-def test_the_papers_friction_is_told_to_supply_energy_and_to_creep(command):
+def test_the_papers_friction_is_reported_to_supply_energy_and_to_creep(command):
     done = command("audit", "--mode", "2-2", "--set", "ground.friction_law=paper", "--set", FOOTPAD)
     assert done.code == 1
     missed = [line for line in done.err.splitlines() if line.startswith("missed: ")]

@@ -151,7 +151,7 @@ def test_options_take_units(tmp_path):
     assert data[:, 0].tolist() == [k * 0.01 for k in range(11)]
 
 
-def test_files_are_not_overwritten_unless_told(tmp_path):
+def test_files_are_not_overwritten_unless_asked(tmp_path):
     (tmp_path / "l.csv").write_text("precious")
     done = run("simulate", "--until", "0.1", "--output", "l.csv", cwd=tmp_path)
     assert done.returncode == 2

@@ -15,8 +15,8 @@ from pytest import approx
 from rlv_landing import Landing, load_preset
 from rlv_landing.assembly import new_solver
 from rlv_landing.inputs.driven import DrivenInputs
+from rlv_landing.interruptible import advance
 from rlv_landing.quantities import INPUT_NAMES
-from rlv_landing.stints import advance
 
 FIGURES = "yue2022-figures"
 LEGS = (1, 2, 3, 4)

@@ -1,4 +1,4 @@
-"""What would take too much memory or time is refused at the door, with the estimate."""
+"""Work that would take too much memory or time is refused at once, with the estimate."""
 
 from __future__ import annotations
 

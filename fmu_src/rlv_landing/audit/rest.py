@@ -1,4 +1,4 @@
-"""How a landing comes to rest.
+"""The rest of a landing: its drift, forces and energy.
 
 The checks: what is lost on the way, what the ground carries, what still moves, and whether the
 footpads creep.

@@ -82,7 +82,7 @@ def leg_forces(leg: LegState, foot: FootMotion, p: LegModel) -> LegForces:
 
 
 def leg_status(leg: LegState, forces: LegForces, depth: float, p: LegModel) -> LegStatus:
-    """What one leg holds, and its main strut's chambers.
+    """The energies that one leg holds, and its main strut's chambers.
 
     `depth` is the footpad's penetration [m].
     """
@@ -98,7 +98,7 @@ def leg_status(leg: LegState, forces: LegForces, depth: float, p: LegModel) -> L
 
 
 def liquid_excess(forces: LegForces, p: LegModel) -> float:
-    """How much more liquid the main strut has than it was filled with, in parts of it.
+    """The main strut's liquid beyond that of its fill, in parts of the fill.
 
     It is 0 for a law without a liquid.
     """

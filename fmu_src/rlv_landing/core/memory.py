@@ -1,4 +1,4 @@
-"""How kernels hand arrays and records to each other.
+"""Arrays and records as kernels pass them to each other.
 
 Compiled, all of this is addresses and structs (see `core_source`).
 """

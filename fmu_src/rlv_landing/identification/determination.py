@@ -1,4 +1,4 @@
-"""How well the misfits determine each of the free numbers."""
+"""The determination of each free number by the misfits."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ WELL, POORLY = 0.05, 0.15
 
 @dataclass(frozen=True)
 class Determination:
-    """How well the misfits determine one number.
+    """The determination of one number by the misfits.
 
     Attributes:
         label: The number.

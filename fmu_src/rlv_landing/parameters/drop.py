@@ -45,7 +45,7 @@ class Drop:
 
 @dataclass(frozen=True)
 class Integration:
-    """What the integrator may spend."""
+    """Limits of the integrator."""
 
     max_steps_per_second: Annotated[
         float,

@@ -165,7 +165,7 @@ def _time_beyond(history: History, name: str, leg: int | None, limit: float) -> 
 
 
 def time_passed(history: History, output: str, limit: float, *, magnitude: bool = False) -> float:
-    """When an output first passed a `limit` that it has passed [s].
+    """Time at which an output first passed a `limit` that it has passed [s].
 
     Exact for a `ReplayedHistory`, else the time of the first sample beyond, or of the extreme where
     that is earlier.

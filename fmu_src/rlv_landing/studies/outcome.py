@@ -144,7 +144,7 @@ def _stroke(leg: int) -> str:
 
 
 def _until_toppled(history: History) -> tuple[float, History]:
-    """When a landing that has toppled did so [s], and the landing until the sample at that time."""
+    """Time at which a landing toppled [s], and the landing until the sample at that time."""
     first = _first_of_last_period(history["status.phase"], TOPPLED)
     time = float(history.time[first])
     if not isinstance(history, ReplayedHistory) or first == 0:

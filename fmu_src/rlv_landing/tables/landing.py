@@ -90,7 +90,7 @@ def comparison_table(history: History, mode: str) -> str:
 
 
 def sampling_note(history: History) -> str:
-    """How far apart the samples are that numbers are read from; empty for a single one."""
+    """Note on the interval of the samples that numbers are read from; empty for a single one."""
     if len(history) < 2:
         return ""
     step = 1e3 * float(history.time[-1] - history.time[0]) / (len(history) - 1)
@@ -98,14 +98,14 @@ def sampling_note(history: History) -> str:
 
 
 def peaks_note(history: History) -> str:
-    """What the peaks of a summary are of."""
+    """Note on the source of a summary's peaks."""
     if history.extremes is None:
         return sampling_note(history).strip()
     return "peaks are those of the landing at the integrator's steps, between samples too"
 
 
 def other_vehicle_note(parameters: Parameters | None) -> str:
-    """What the comparison is worth for a vehicle that is not the paper's; empty for the paper's."""
+    """Note on comparing a vehicle other than the paper's; empty for the paper's."""
     differences = [] if parameters is None else other_vehicle(parameters)
     if not differences:
         return ""

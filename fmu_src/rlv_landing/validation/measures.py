@@ -62,7 +62,7 @@ class DamperWork:
 
     @property
     def note(self) -> str:
-        """Why measures are missing; empty where none is."""
+        """Reason why measures are missing; empty where none is."""
         return {
             "not compressed": "its damper was not compressed",
             "in compression": "ends in the first compression: no measures; run it longer",

@@ -58,7 +58,7 @@ def machine_name() -> str:
 
 
 def inexact_reason(metadata: Mapping[str, str], fmu: Path | None = None) -> str:
-    """Why a rerun here need not give the bits of the log; empty where it must.
+    """Reason why a rerun here need not give the bits of the log; empty where it must.
 
     Args:
         metadata: the log's metadata by name.

@@ -115,7 +115,7 @@ class Planar(PlanarMotion):
             self._put_leg(i, out, at + LEG_OUTPUTS * i)
 
     def may_rest(self, u: Doubles, rates: Doubles, outputs: Doubles) -> bool:
-        """Where it has settled, with loads and ground that do not change."""
+        """Whether it has settled, with loads and ground that do not change."""
         status = status_outputs(outputs, BODY_OUTPUTS + ENERGY_OUTPUTS)
         if not is_phase(status.phase, Phase.SETTLED):
             return False

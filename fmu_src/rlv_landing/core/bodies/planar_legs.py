@@ -1,4 +1,4 @@
-"""How a leg of the planar body moves with it, and what it does to it, without small angles.
+"""Motion of a leg with the planar body, and its loads on it, without small angles.
 
 Eqs. (2)-(11), (29)-(37), as derived.
 """
@@ -59,7 +59,7 @@ def foot_motion(foot: FootPoint, u: Inputs, turn: Turn) -> FootMotion:
 def planar_loads(
     forces: LegForces, foot: FootPoint, depth: float, place: LegPlace, turn: Turn, weight: float
 ) -> PlanarLoads:
-    """What the leg's `forces` do to the footpad, in the leg's axes, and to the body, in its own.
+    """Loads by the leg's `forces`: on the footpad in the leg's axes, on the body in its own.
 
     `weight` is that of the footpad [N].
     """

@@ -1,4 +1,4 @@
-"""How the planar body moves on its leg groups: the vehicle of a symmetric landing."""
+"""Motion of the planar body on its leg groups: the vehicle of a symmetric landing."""
 
 from __future__ import annotations
 

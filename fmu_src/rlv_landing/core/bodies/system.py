@@ -1,4 +1,4 @@
-"""What a solver integrates."""
+"""The system that a solver integrates."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class System:
         return 0.0
 
     def lost(self, before: Doubles, after: Doubles, h: float) -> float:
-        """How much a step of `h` [s] has lost of what the system conserves.
+        """The loss, in a step of `h` [s], of what the system conserves.
 
         It is found from the outputs `before` and `after` the step, in units of what it may lose.
         """

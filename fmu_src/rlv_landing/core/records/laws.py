@@ -1,4 +1,4 @@
-"""What the laws of the struts and of the ground take and give."""
+"""Arguments and results of the laws of the struts and of the ground."""
 
 from typing import NamedTuple
 
@@ -21,7 +21,7 @@ class Chamber(NamedTuple):
 
 
 class StrutForce(NamedTuple):
-    """What a main strut law gives.
+    """The result of a main strut law.
 
     A law without a passage, a seal or a stop gives 0 W for it, one without a liquid 0 kg.
     """
@@ -43,7 +43,7 @@ class StrutForce(NamedTuple):
 
 
 class StrutStatus(NamedTuple):
-    """What is read of a main strut beside its force.
+    """Outputs of a main strut beside its force.
 
     A law without chambers gives 0 for what they would have.
     """
@@ -54,14 +54,14 @@ class StrutStatus(NamedTuple):
 
 
 class AxialForce(NamedTuple):
-    """What an auxiliary strut law gives, and the end stops of a main strut."""
+    """The result of an auxiliary strut law, and of the end stops of a main strut."""
 
     force: float  # [N] compression positive
     dissipated: float  # [W]
 
 
 class Bearing(NamedTuple):
-    """How far the faces of a joint with play have come to bear on one side."""
+    """Elongation by the faces of a joint with play that bear on one side."""
 
     u: float  # elongation of what they press on [m]
     slope: float  # its derivative by the joint's motion
@@ -86,7 +86,7 @@ class FootMotion(NamedTuple):
 
 
 class NormalForce(NamedTuple):
-    """What the ground's normal law gives."""
+    """The result of the ground's normal law."""
 
     force: float  # on the footpad along n [N]
     dissipated: float  # [W]
@@ -107,7 +107,7 @@ class FrictionBound(NamedTuple):
 
 
 class FrictionForce(NamedTuple):
-    """What a friction law gives."""
+    """The result of a friction law."""
 
     f1: float  # on the footpad along 1 [N]
     f2: float  # on the footpad along 2 [N]

@@ -1,4 +1,4 @@
-"""What one leg does, and what is read of it."""
+"""Forces and outputs of one leg."""
 
 from typing import NamedTuple
 
@@ -43,7 +43,7 @@ class LegForces(NamedTuple):
 
 
 class LegStatus(NamedTuple):
-    """What is read of a leg beside its forces: energies held [J], and the main strut's chambers."""
+    """Outputs of a leg beside its forces: energies held [J], and the main strut's chambers."""
 
     stop: float
     auxiliary: float

@@ -1,4 +1,4 @@
-"""What a user sees, in the order of `rlv_landing.quantities`.
+"""The outputs that a user sees, in the order of `rlv_landing.quantities`.
 
 Strut forces are negative in compression here.
 """

@@ -13,7 +13,7 @@ class Turn(NamedTuple):
 
 
 class Attitude(NamedTuple):
-    """How the planar body stands, and how it is accelerated along its axis."""
+    """Attitude of the planar body, and its acceleration along its axis."""
 
     sin_p: float
     cos_p: float
@@ -34,7 +34,7 @@ class FootPoint(NamedTuple):
 
 
 class PlanarLoads(NamedTuple):
-    """What one leg does in the planar body's motion."""
+    """Loads of one leg in the planar body's motion."""
 
     foot_x: float  # footpad, inertial [m]
     foot_y: float  # [m]
@@ -61,7 +61,7 @@ class BodyAcceleration(NamedTuple):
 
 
 class HeldEnergy(NamedTuple):
-    """Where the mechanical energy [J] of the vehicle is."""
+    """Parts of the vehicle's mechanical energy [J]."""
 
     kinetic: float
     potential: float

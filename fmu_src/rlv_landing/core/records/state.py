@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 
 class Phase(IntEnum):
-    """How far a landing has come.
+    """The phase of a landing.
 
     Toppled: the whole vehicle's CG is beyond the outermost footpad, or the body has turned over.
     """
@@ -17,7 +17,7 @@ class Phase(IntEnum):
 
 
 class Fault(IntEnum):
-    """Why a solver cannot go on."""
+    """The reason why a solver cannot go on."""
 
     NONE = 0
     COLLAPSED = 1

@@ -43,7 +43,7 @@ class Bend(NamedTuple):
 
 
 class Crest(NamedTuple):
-    """Where and how high a quantity is at most."""
+    """Time and value of a quantity's maximum."""
 
     t: float  # [s]
     value: float

@@ -118,7 +118,7 @@ def liquid_spring(s: float, v: float, z1: float, z2: float, p: LegModel) -> Stru
 
 
 def liquid_spring_status(s: float, z1: float, z2: float, p: LegModel) -> StrutStatus:
-    """What the end stops hold at stroke `s` [m], and the pressures."""
+    """The energy that the end stops hold at stroke `s` [m], and the pressures."""
     return StrutStatus(stop_energy(s, p), pressure(z1), pressure(z2))
 
 

@@ -61,7 +61,7 @@ class Indices:
 
     @property
     def reason(self) -> str:
-        """Why there are no indices; empty where there are."""
+        """Reason why there are no indices; empty where there are."""
         if not np.isnan(self.total).any():
             return ""
         if self.used < LEAST_WHOLE * self.samples:
