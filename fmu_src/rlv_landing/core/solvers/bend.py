@@ -77,15 +77,18 @@ def narrowed(b: Bend, t: float, v: float) -> Bend:
 
 def mark_turns(
     first: Doubles, middle: Doubles, following: Doubles, level: float, turns: Doubles, count: int
-) -> None:
+) -> int:
     """Write below 0 to `turns` for each of `count` quantities that turns in the `middle` of three
-    times, or comes to a level there.
+    times, or comes to a level there; return how many do.
 
     Without branches and calls, so that the compiler takes several at once.
     """
+    found = 0
     for i in range(count):
         rise = middle[i] - first[i]
         turns[i] = rise * (following[i] - middle[i] - level * rise)
+        found += 1 if turns[i] < 0.0 else 0
+    return found
 
 
 def copy(source: Doubles, target: Doubles, count: int) -> None:
