@@ -149,7 +149,7 @@ class PlanarMotion(System):
         for i in range(self.groups):
             transverse += self._move(i, y, body.pitch_rate, a, dy)
         external = now.force_x * body.vx + now.force_y * body.vy + now.moment * body.pitch_rate
-        put(self._powers(external, transverse), dy, BODY + LEG * self.groups)
+        self._put_powers(external, transverse, dy)
 
     def _load(self, i: int, y: Doubles, body: BodyState, u: Inputs, turn: Turn) -> None:
         """Keep the forces and loads of leg group `i`."""
@@ -234,12 +234,13 @@ class PlanarMotion(System):
         arm = leg.h - transverse_height(leg.h, body_model(self._body, 0), model)
         return place.legs * (-force * place.sin_g * rate * arm)
 
-    def _powers(self, external: float, transverse: float) -> Accounts:
-        """The powers that the accounts gather [W].
+    def _put_powers(self, external: float, transverse: float, dy: Doubles) -> None:
+        """Write the powers that the accounts gather to `dy` [W].
 
         Args:
             external: Power of the external loads [W].
             transverse: Power that the transverse forces create [W].
+            dy: The state's rate.
         """
         orifice = seal = stop = auxiliary = contact = friction = ground = 0.0
         for i in range(self.groups):
@@ -252,8 +253,12 @@ class PlanarMotion(System):
             contact += n * forces.contact
             friction += n * forces.friction
             ground += n * planar_loads_of(self._loads, i).ground
-        return Accounts(
-            orifice, seal, stop, auxiliary, contact, friction, external, ground, transverse
+        put(
+            Accounts(
+                orifice, seal, stop, auxiliary, contact, friction, external, ground, transverse
+            ),
+            dy,
+            BODY + LEG * self.groups,
         )
 
     def stiff(self, k: int) -> StiffPair:

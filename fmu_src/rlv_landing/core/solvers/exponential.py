@@ -60,8 +60,8 @@ class Exponential(Solver):
     def _freeze_linear_part(self) -> None:
         """Take each pair's a1, a2 and the rate of its difference at the step's start."""
         for k in range(self.system.stiff_pairs):
-            keep(self.system.stiff(k), self._pairs, k)
-            pair = stiff_pair_of(self._pairs, k)
+            pair = self.system.stiff(k)
+            keep(pair, self._pairs, k)
             self.driven[STAGES * k] = self.k1[pair.j] - self.k1[pair.i]
 
     def _weigh_pairs(self, h: float) -> None:
@@ -167,9 +167,10 @@ class Exponential(Solver):
             self._replace_linear_growth(
                 pair, e, h * w.b4 * (d[q + 3] - d[q + 4]), e[pair.j] - e[pair.i]
             )
+        # without branches, so that the compiler takes several states at once
         for i in range(self.n):
-            if relative[i] == 0.0:
-                e[i] = fabs(e[i]) + KINK * h * SIXTH * fabs(k1[i] - k2[i] - k3[i] + k4[i])
+            kink = KINK * h * SIXTH * fabs(k1[i] - k2[i] - k3[i] + k4[i])
+            e[i] = fabs(e[i]) + kink if relative[i] == 0.0 else e[i]
 
 
 def stage_weights(i: int, w: PhiWeights) -> tuple[float, float]:

@@ -201,19 +201,20 @@ class Watch(Path):
             self._note_row(middle, t1, found, since)
             return
         turns = data(self._turns)
-        mark_turns(first, middle, following, LEVEL, turns, self.row)
+        if mark_turns(first, middle, following, LEVEL, turns, self.row) == 0:
+            return
         for i in range(self.row):
-            if turns[i] < 0.0:
-                b = Bend(t0, first[i], t1, middle[i], t2, following[i])
-                self._judge_bend(i, b, found, since)
+            if turns[i] < 0.0 and self._may_raise(i, first[i], middle[i], following[i], found):
+                sign = 1.0 if middle[i] > first[i] else -1.0
+                b = Bend(t0, sign * first[i], t1, sign * middle[i], t2, sign * following[i])
+                self._raise(i, sign, b, found, since)
 
-    def _judge_bend(self, i: int, b: Bend, found: Doubles, since: float) -> None:
-        """Take the output `i`, which turns amid `b`, into the extremes it may be beyond."""
-        reach = REACH * max(fabs(b.v1 - b.v0), fabs(b.v1 - b.v2))
-        if b.v1 > b.v0 and b.v1 + reach > found[2 * self.row + i]:
-            self._raise(i, 1.0, b, found, since)
-        elif b.v1 < b.v0 and b.v1 - reach < found[i]:
-            self._raise(i, -1.0, Bend(b.t0, -b.v0, b.t1, -b.v1, b.t2, -b.v2), found, since)
+    def _may_raise(self, i: int, v0: float, v1: float, v2: float, found: Doubles) -> bool:
+        """Whether the output `i` may be beyond the extremes `found` where it turns at `v1`."""
+        reach = REACH * max(fabs(v1 - v0), fabs(v1 - v2))
+        if v1 > v0:
+            return v1 + reach > found[2 * self.row + i]
+        return v1 - reach < found[i]
 
     def _raise(self, i: int, sign: float, b: Bend, found: Doubles, since: float) -> None:
         """Look for the crest `b` of `sign` times the output `i`, beyond the record."""
