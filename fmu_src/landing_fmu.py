@@ -47,6 +47,8 @@ from rlv_landing.quantities import (
 # the front sets the rate of input i as the real RATES + i, a value reference of no variable
 RATES = 2_000_000
 LARGEST_INTEGER = 2**31 - 1
+# steps refused in a row from which on a refusal is an error
+MOST_REFUSALS = 10
 KINDS = {"real": Real, "integer": Integer, "boolean": Boolean, "string": String}
 
 
@@ -127,6 +129,8 @@ class RlvLanding(Fmi2Slave):
         self._landing: Landing | None = None
         # the reason why the landing has ended; empty while it runs
         self._failure = ""
+        # steps that were refused since the last one that was made
+        self._refusals = 0
         # the outputs at the present time, if they were read; else empty
         self._outputs: list[float] = []
         # the peaks until the present time, if they were read, and the outputs that they belong to
@@ -199,8 +203,10 @@ class RlvLanding(Fmi2Slave):
         """Integrate from `current_time` to `current_time + step_size` [s].
 
         A step that cannot be made is refused: Discard with a logged reason, and nothing changes.
-        An integrator that fails within the step is an error and ends the landing: outputs and
-        steps are errors until the importer restores a state or resets.
+        From the tenth refusal in a row on it is an error, since an importer that repeats a
+        discarded step as it was, as FMPy's `simulate_fmu` does, would never end. An integrator that
+        fails within the step is an error and ends the landing: outputs and steps are errors until
+        the importer restores a state or resets.
         """
         try:
             landing = self._current_landing()
@@ -216,9 +222,9 @@ class RlvLanding(Fmi2Slave):
                 )
             self._apply_inputs()
         except LandingError as e:
-            self.log(str(e), Fmi2Status.error if self._failure else Fmi2Status.discard)
+            self._refuse(str(e))
             return False
-        self._inputs, self._rates = {}, {}
+        self._inputs, self._rates, self._refusals = {}, {}, 0
         try:
             self._outputs = []
             landing.advance_to(max(now + step_size, landing.time))
@@ -227,6 +233,15 @@ class RlvLanding(Fmi2Slave):
             self.log(self._failure, Fmi2Status.error)
             return False
         return True
+
+    def _refuse(self, reason: str) -> None:
+        self._refusals += 1
+        if self._failure:
+            self.log(reason, Fmi2Status.error)
+        elif self._refusals < MOST_REFUSALS:
+            self.log(reason, Fmi2Status.discard)
+        else:
+            self.log(f"{reason} (refusal {self._refusals} in a row)", Fmi2Status.error)
 
     def _current_landing(self) -> Landing:
         if self._failure:
@@ -370,7 +385,7 @@ class RlvLanding(Fmi2Slave):
             landing.restore(array("d", state["landing"]))
         self._landing, self._outputs = landing, []
         self._start_time, self._rtol = start_time, rtol
-        self._values, self._failure = values, failure
+        self._values, self._failure, self._refusals = values, failure, 0
         self._parameters, self._inputs = parameters, inputs
         self._rates, self._refused_rates = rates, refused_rates
         self._first = first_inputs, first_rates
