@@ -13,7 +13,7 @@ import click
 from ..choices import parse_pairs, split_pair
 from ..errors import LandingError, one_line
 from ..text.durable import unwritable, writing
-from .number_types import Number, WholeNumber
+from .number_types import Number, WholeNumber, WholeNumberRange
 from .options import HELP_NAMES, check_writable, parameter_options
 from .printing import print_json, print_warning
 
@@ -93,7 +93,7 @@ STUDY = click.Path(path_type=Path)
     help="Folder for landings and results.",
 )
 @click.option("--resume", is_flag=True, help="Continue with the landings in --work.")
-@click.option("--workers", type=WholeNumber(1, 1024), help="Threads [default: all cores].")
+@click.option("--workers", type=WholeNumberRange(1, 1024), help="Threads [default: all cores].")
 @click.option(
     "--plot",
     metavar="FILE.png|.svg",

@@ -10,7 +10,7 @@ import click
 
 from .identify_data import objective_of
 from .identify_run import Interrupts, check_effort, run, start_note
-from .number_types import NumberRange, WholeNumber
+from .number_types import NumberRange, WholeNumberRange
 from .options import HELP_NAMES, choose, parameter_options
 from .printing import print_warning
 
@@ -69,7 +69,7 @@ NOTHING_BETTER, INTERRUPTED = 1, 130
     "--evaluations",
     default=20000,
     show_default=True,
-    type=WholeNumber(1, 10**9),
+    type=WholeNumberRange(1, 10**9),
     metavar="N",
     help="Landings of both modes to try at most.",
 )
@@ -77,7 +77,7 @@ NOTHING_BETTER, INTERRUPTED = 1, 130
     "--polish",
     default=2000,
     show_default=True,
-    type=WholeNumber(0, 10**9),
+    type=WholeNumberRange(0, 10**9),
     help="Landings for the least squares after the search.",
 )
 @click.option(
@@ -91,14 +91,14 @@ NOTHING_BETTER, INTERRUPTED = 1, 130
     "--population",
     default=32,
     show_default=True,
-    type=WholeNumber(4, 100_000),
+    type=WholeNumberRange(4, 100_000),
     help="Points a generation.",
 )
 @click.option(
     "--count",
     default=0,
     show_default=True,
-    type=WholeNumber(0, 10**9),
+    type=WholeNumberRange(0, 10**9),
     metavar="N",
     help="Landings for a last search that counts the scalars within 5, 10 and 20 %: "
     "no round of it begins after so many.",
@@ -107,10 +107,10 @@ NOTHING_BETTER, INTERRUPTED = 1, 130
     "--seed",
     default=1,
     show_default=True,
-    type=WholeNumber(1, 2**31 - 1),
+    type=WholeNumberRange(1, 2**31 - 1),
     help="Seed of the search.",
 )
-@click.option("--workers", type=WholeNumber(1, 1024), help="Processes [default: all cores].")
+@click.option("--workers", type=WholeNumberRange(1, 1024), help="Processes [default: all cores].")
 @click.option("--resume", is_flag=True, help="Continue with the search in --work.")
 @click.option(
     "--priors",
@@ -191,6 +191,7 @@ def identify(work: Path, *, list_priors: bool, **options: Any) -> None:
 
 
 def _print_priors(options: dict[str, Any]) -> None:
+    from ..identification.priors import quantity
     from ..identification.vehicle_priors import priors_of
 
     parameters, modes, _ = choose(
@@ -198,4 +199,5 @@ def _print_priors(options: dict[str, Any]) -> None:
     )
     for p in priors_of(parameters, modes[0]).values():
         scope = "each mode; " if p.by_mode else ""
-        click.echo(f"{p.name:42s} {p.lo:10.4g} ... {p.hi:<10.4g} {scope}{p.reason}")
+        unit = quantity(p.name).unit
+        click.echo(f"{p.name:38s} {p.lo:10.4g} ... {p.hi:<10.4g} {unit:7s} {scope}{p.reason}")

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from ..text.durable import writing
-from .number_types import NumberRange, WholeNumber
+from .number_types import NumberRange, WholeNumberRange
 from .options import HELP_NAMES, check_writable
 from .printing import print_json
 from .study_run import RunOptions, run_options, run_task, warn_of_joint
@@ -36,7 +36,7 @@ from .sweep import show_plan
     "--resamples",
     default=999,
     show_default=True,
-    type=WholeNumber(99, 100_000),
+    type=WholeNumberRange(99, 100_000),
     help="Bootstrap resamples.",
 )
 def sensitivity(

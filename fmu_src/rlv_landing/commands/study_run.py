@@ -14,7 +14,7 @@ import click
 
 from ..errors import LandingError, one_line
 from ..text.durable import unwritable
-from .number_types import NumberRange, WholeNumber
+from .number_types import NumberRange, WholeNumberRange
 from .options import add_options
 from .printing import print_warning
 
@@ -58,7 +58,9 @@ def run_options(command: F) -> F:
             is_flag=True,
             help="Continue with the study in --results; refused if the study has changed.",
         ),
-        click.option("--workers", type=WholeNumber(1, 1024), help="Threads [default: all cores]."),
+        click.option(
+            "--workers", type=WholeNumberRange(1, 1024), help="Threads [default: all cores]."
+        ),
         click.option(
             "--scheduler",
             metavar="ADDRESS",
