@@ -45,6 +45,8 @@ from rlv_landing.quantities import (
 # the front sets the rate of input i as the real RATES + i, a value reference of no variable
 RATES = 2_000_000
 LARGEST_INTEGER = 2**31 - 1
+# steps refused in a row from which on a refusal is an error
+MOST_REFUSALS = 10
 KINDS = {"real": Real, "integer": Integer, "boolean": Boolean, "string": String}
 
 
@@ -92,6 +94,8 @@ class RlvLanding(Fmi2Slave):
         super().__init__(**kwargs)
         self._hosted = HostedLanding()
         self._values: list[Any] = []
+        # steps that were refused since the last one that was made
+        self._refusals = 0
         for q in PARAMETER_QUANTITIES.values():
             self._register(
                 q, q.default, Fmi2Causality.parameter, Fmi2Variability.fixed, Fmi2Initial.exact
@@ -157,16 +161,28 @@ class RlvLanding(Fmi2Slave):
         """Integrate from `current_time` to `current_time + step_size` [s].
 
         A step that cannot be made is refused: Discard with a logged reason, and nothing changes.
-        An integrator that fails within the step is an error and ends the landing: outputs and
-        steps are errors until the importer restores a state or resets.
+        From the tenth refusal in a row on it is an error, since an importer that repeats a
+        discarded step as it was, as FMPy's `simulate_fmu` does, would never end. An integrator that
+        fails within the step is an error and ends the landing: outputs and steps are errors until
+        the importer restores a state or resets.
         """
         try:
             end = self._hosted.prepare_step(current_time, step_size)
         except LandingError as e:
-            self.log(str(e), Fmi2Status.error if self._hosted.failure else Fmi2Status.discard)
+            self._refuse(str(e))
             return False
+        self._refusals = 0
         self._hosted.advance(end)
         return True
+
+    def _refuse(self, reason: str) -> None:
+        self._refusals += 1
+        if self._hosted.failure:
+            self.log(reason, Fmi2Status.error)
+        elif self._refusals < MOST_REFUSALS:
+            self.log(reason, Fmi2Status.discard)
+        else:
+            self.log(f"{reason} (refusal {self._refusals} in a row)", Fmi2Status.error)
 
     @log_exceptions
     def _read(self, vrs: list[int]) -> list[Any]:
@@ -237,6 +253,7 @@ class RlvLanding(Fmi2Slave):
         values = list(state["values"])
         self._hosted.restore(state)
         self._values = values
+        self._refusals = 0
 
     @staticmethod
     def _fmu_state_to_bytes(state: dict[str, Any]) -> bytes:

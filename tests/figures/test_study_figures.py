@@ -73,7 +73,11 @@ def test_the_legend_of_an_envelope_is_whole_with_one_family_too(saved, tmp_path,
     ((legend,),) = (figure.legends for figure in saved)
     shown = [text.get_text() for text in legend.get_texts()]
     assert any("passes body.top_axial_acceleration first" in text for text in shown)
+    assert {"a landing that is lost", "one that is not"} <= set(shown)
     assert nothing_is_cut_off(tmp_path / "e.png")
+    (figure,) = saved
+    limits = "(auxiliary_strut.force 6 kN, body.top_axial_acceleration 40 m/s2)"
+    assert limits in figure.get_suptitle()
 
 
 def test_one_wide_interval_leaves_all_axes_from_0_to_1(saved, tmp_path):

@@ -255,3 +255,12 @@ def test_energy_is_lost_in_an_oscillator_by_its_damping():
     """The ratio of the swings about the static stroke is exp(-pi a / w)."""
     high, low = HEAVY.stroke(np.array([HEAVY.turn(0), HEAVY.turn(1)]))
     assert (HEAVY.d - low) / (high - HEAVY.d) == approx(exp(-pi * HEAVY.a / HEAVY.w))
+
+
+def test_a_stroke_that_still_grows_after_the_first_is_told():
+    summary = summarise(stage().run(5.0, 1e-2))
+    assert unfinished(summary) == []
+    summary["legs"][2]["main_strut_stroke_max_time"] = summary["end_time"]
+    (note,) = unfinished(summary)
+    assert "leg 3 goes in further than ever before" in note
+    assert "run it longer" in note

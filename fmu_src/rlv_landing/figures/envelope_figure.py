@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..quantities import Quantity, shown
-from ..studies.envelope.results import stretches
+from ..studies.envelope.results import lost_text, stretches
 from ..studies.envelope.search import Envelope, Family
 from ..studies.sweep.factors import value_text
 from .plots import COLOURS, save_whole
@@ -58,6 +58,16 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
         ax.set_ylabel(_label(envelope.study.y.quantity))
     for condition, marker in markers.items():
         named[condition] = Line2D([], [], color="#666666", marker=marker, linestyle="none")
+    for text, face in (("a landing that is lost", "#666666"), ("one that is not", "none")):
+        named[text] = Line2D(
+            [],
+            [],
+            color="#666666",
+            marker="o",
+            markersize=3,
+            markerfacecolor=face,
+            linestyle="none",
+        )
     across = 1 if columns == 1 else 2
     figure.legend(
         named.values(),
@@ -69,7 +79,7 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
     )
     figure.set_figheight(figure.get_figheight() + LEGEND_LINE * -(-len(named) // across))
     title = (
-        f"lost: {envelope.study.criterion}; {envelope.landings} landings "
+        f"lost: {lost_text(envelope.study)}\n{envelope.landings} landings "
         f"(a uniform grid: {envelope.uniform})"
     )
     figure.suptitle(title, fontsize="medium", x=0.01, ha="left")

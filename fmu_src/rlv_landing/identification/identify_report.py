@@ -173,13 +173,13 @@ def _determination_lines(search: Search) -> list[str]:
         "",
         f"{deviation} (0.29: the prior alone).",
         "",
-        "| number | value | bounds | deviation | verdict | moves with | most sensitive |",
-        "|---|---:|---|---:|---|---|---|",
+        "| number | unit | value | bounds | deviation | verdict | moves with | most sensitive |",
+        "|---|---|---:|---|---:|---|---|---|",
     ]
     for d in determinations(search):
         moves = f"{d.partner} ({d.correlation:+.2f})"
         lines.append(
-            f"| {d.label} | {d.value:.4g} | {d.lo:g} ... {d.hi:g} | {d.deviation:.3f} "
+            f"| {d.label} | {d.unit} | {d.value:.4g} | {d.lo:g} ... {d.hi:g} | {d.deviation:.3f} "
             f"| {d.verdict} | {moves} | {d.scalar} |"
         )
     return lines

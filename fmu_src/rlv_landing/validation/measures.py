@@ -250,6 +250,9 @@ def rrms(time: Array, values: Array, test_time: Array, test_values: Array) -> fl
     test = test_values[inside]
     size = float(np.sqrt(np.mean(test**2)))
     if size == 0.0:
-        raise LandingError("the measured curve is 0 throughout; RRMS has nothing to relate to")
+        raise LandingError(
+            "the measured curve is 0 throughout, and RRMS has nothing to relate to; "
+            "leave the column out"
+        )
     difference = np.interp(test_time[inside], time, values) - test
     return float(np.sqrt(np.mean(difference**2))) / size

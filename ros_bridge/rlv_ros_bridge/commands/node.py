@@ -209,12 +209,14 @@ def _print_report(folder: Path) -> None:
     from rlv_landing.tables.landing import comparison_table, summary_table
 
     from ..logs.history import history_of
+    from ..logs.info import log_info
     from ..logs.reader import LogReader
 
     reader = LogReader(folder)
     history = history_of(reader)
     mode = reader.metadata["mode"]
-    click.echo(summary_table(history, f"{mode} landing"))
+    landing = log_info(reader).landing or {}
+    click.echo(summary_table(history, f"{mode} landing", landing.get("outcome", "")))
     try:
         click.echo(comparison_table(history, mode))
     except LandingError as e:
