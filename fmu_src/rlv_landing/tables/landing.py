@@ -116,9 +116,9 @@ def other_vehicle_note(parameters: Parameters | None) -> str:
         return ""
     more = f" and {len(differences) - 2} more" if len(differences) > 2 else ""
     return (
-        f"this is not the paper's vehicle ({', '.join(differences[:2])}{more}): its numbers are "
-        "read in the windows of time of the paper's, a dash where they miss the event; "
-        "the measures of the dampers hold for any vehicle\n"
+        f"this is not the paper's vehicle ({', '.join(differences[:2])}{more}): compression, "
+        "rebound and rest are found in its curves, windows after a contact grow with its "
+        "compression; a dash where the landing does not show an event\n"
     )
 
 

@@ -135,7 +135,13 @@ def node(
         sys.exit(128 + stop.number if stop.number else 0)
     _print_summary(summary)
     if report and summary.folder is not None:
-        _print_report(summary.folder)
+        try:
+            _print_report(summary.folder)
+        except LandingError as e:
+            if not summary.recording_error:
+                raise
+            # the disk that was too full for the log is so for the picture
+            click.echo(one_line(f"error: {e}"), err=True)
     if summary.signal:
         sys.exit(128 + summary.signal)
     if summary.recording_error:
