@@ -204,7 +204,7 @@ def begin(
         for i, value in enumerate(numbers):
             target[i] = value
     system = cast(Planar, solver.system)
-    system.energy_start = 0.0
+    system.energy_start = system.most_balance = 0.0
     solver.start(0.0)
     system.energy_start = solver.last[BODY_OUTPUTS + BALANCE]
     solver.start(0.0)

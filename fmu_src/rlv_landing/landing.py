@@ -234,7 +234,7 @@ class Landing:
         same digits.
         """
         ways = self._inputs.state()
-        return state_of(self._solver, self._time, self._system.energy_start, ways)
+        return state_of(self._solver, self._time, ways)
 
     def restore(self, state: array[float]) -> None:
         """Take up a state that `state()` of a landing with the same parameters gave.
@@ -244,7 +244,6 @@ class Landing:
         """
         header, ways = take_up(self._solver, state)
         self._time = header.time
-        self._system.energy_start = header.energy_start
         self._inputs.restore(ways)
         self._out_time = inf
 

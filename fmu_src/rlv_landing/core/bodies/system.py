@@ -74,6 +74,9 @@ class System:
         """
         return 0.0
 
+    def note(self, outputs: Doubles) -> None:
+        """Take notice of the `outputs` at the end of a step."""
+
     def lost(self, before: Doubles, after: Doubles, h: float) -> float:
         """What a step of `h` [s] has lost of what the system conserves, from the outputs `before`
         and `after` it, in units of what it may lose.
@@ -91,9 +94,13 @@ class System:
         self.read(y, u, rates, out, at)
 
     def may_rest(self, u: Doubles, rates: Doubles, outputs: Doubles) -> bool:
-        """Whether the system may be at rest with these `outputs`, and the inputs `u` with their
+        """Whether the system may be near a rest with these `outputs`, and the inputs `u` with their
         `rates` stay what they are.
         """
+        return False
+
+    def rests(self, outputs: Doubles) -> bool:
+        """Whether these `outputs` are those of a system at rest."""
         return False
 
     def distance(self, shift: Doubles) -> float:

@@ -186,7 +186,7 @@ class Solver(Rest):
     def _loses(self, h: float) -> bool:
         """Bring the end of a step of `h` [s] back to what the system conserves, read it, and write
         the step's interpolant; whether the step loses more of what the system conserves than it
-        may, before it is brought back.
+        may, before it is brought back or by that.
         """
         end, k_end = data(self.y_new), data(self.k_end)
         self._read_end(end, k_end)
@@ -195,6 +195,7 @@ class Solver(Rest):
         if away > 0.0:
             self._derivatives(self.t + h, end, k_end)
             self._read_end(end, k_end)
+            lost = max(lost, self.system.lost(data(self.last), data(self._end), h))
         self._write_dense(h)
         if h < SHORTEST_JUDGED:
             return False
@@ -227,17 +228,19 @@ class Solver(Rest):
 
     def _loses_inside(self, h: float) -> bool:
         """The same inside the step: at its quarters, where its interpolant leaves its ends far
-        behind or the tolerance is loose. What is conserved is not brought back there.
+        behind or the tolerance is loose. They are read as outputs are, brought back.
         """
         if self.rtol <= LOOSE and not self._bulges():
             return False
         inside = data(self.y_stage)
         most = 0.0
-        for i in range(2):
-            ahead = (0.25 + 0.5 * i) * h
+        for i in range(3):
+            ahead = 0.25 * (i + 1) * h
             t = self.t + ahead
             self._inside(self._other_dense(), t, self.t, self.t + h, inside)
             self._derivatives(t, inside, data(self.k_end))
+            if self.system.conserve(inside) > 0.0:
+                self._derivatives(t, inside, data(self.k_end))
             self.system.read(inside, data(self.u_now), data(self.k_end), data(self._half), 0)
             most = max(most, self.system.lost(data(self.last), data(self._half), ahead))
         self._derivatives(self.t + h, data(self.y_new), data(self.k_end))
@@ -269,6 +272,7 @@ class Solver(Rest):
         n = self.n
         y, end, k1, k_end = data(self.y), data(self.y_new), data(self.k1), data(self.k_end)
         self._next_row()
+        self.system.note(data(self.last))
         self.dense_at = self._other_dense()
         for i in range(n):
             y[i] = end[i]
