@@ -228,7 +228,7 @@ def begin(
         for i, value in enumerate(numbers):
             target[i] = value
     system = cast(Planar, solver.system)
-    system.energy_start = 0.0
+    system.energy_start = system.most_balance = 0.0
     solver.t_input = 0.0
     outputs = array("d", bytes(8 * system.row))
     solver.outputs_at(0.0, array("d", solver.y), outputs)

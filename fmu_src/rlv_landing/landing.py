@@ -237,7 +237,7 @@ class Landing:
         `restore` needs it to go on with the very same digits.
         """
         ways = self._inputs.state()
-        return state_of(self._solver, self._time, self._system.energy_start, ways)
+        return state_of(self._solver, self._time, ways)
 
     def restore(self, state: array[float]) -> None:
         """Restore a state that `state()` of a landing with the same parameters gave.
@@ -248,7 +248,6 @@ class Landing:
         """
         header, ways = load_state(self._solver, state)
         self._time = header.time
-        self._system.energy_start = header.energy_start
         self._inputs.restore(ways)
         self._reader.forget()
 

@@ -34,6 +34,7 @@ class StateHeader(NamedTuple):
     h: float  # the next internal step [s]
     error_old: float  # error of the last step, in units of the tolerance
     energy_start: float  # [J]
+    most_balance: float  # the largest energy balance at a step's end [J]
     steps: float
     rejected: float
     rhs_calls: float
@@ -48,9 +49,9 @@ class StateHeader(NamedTuple):
     waited: float
 
 
-# fields that the solver does not have by the same name
-OF_LANDING = ("time", "energy_start")
-OF_SOLVER = tuple(name for name in StateHeader._fields if name not in OF_LANDING)
+# fields that the solver's system has by the same name, and those that the solver has
+OF_SYSTEM = ("energy_start", "most_balance")
+OF_SOLVER = tuple(name for name in StateHeader._fields if name not in ("time", *OF_SYSTEM))
 WHOLE = ("fault", "dense_at", "seen", "still", "waited")
 
 
@@ -60,19 +61,17 @@ def _arrays(solver: Solver) -> tuple[Buffer, ...]:
     return (s.u, s.u_rate, s.y, s.dense, s.kept, s.before, s.middle, s.last)
 
 
-def state_of(
-    solver: Solver, time: float, energy_start: float, ways: Sequence[float]
-) -> array[float]:
+def state_of(solver: Solver, time: float, ways: Sequence[float]) -> array[float]:
     """The state of a landing.
 
     Args:
         solver: The landing's solver.
         time: The landing's time [s].
-        energy_start: The system's energy at the start [J].
         ways: The numbers of `DrivenInputs.state`.
     """
     kept = {name: float(getattr(solver, name)) for name in OF_SOLVER}
-    header = StateHeader(time=time, energy_start=energy_start, **kept)
+    kept |= {name: float(getattr(solver.system, name)) for name in OF_SYSTEM}
+    header = StateHeader(time=time, **kept)
     return array("d", itertools.chain(header, ways, *_arrays(solver)))
 
 
@@ -107,6 +106,8 @@ def load_state(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequen
         for i in range(len(target)):
             target[i] = state[at + i]
         at += len(target)
+    for name in OF_SYSTEM:
+        setattr(solver.system, name, getattr(header, name))
     for name in ("t", "t_input"):
         setattr(solver, name, getattr(header, name))
     solver.recompute_derived()
@@ -136,6 +137,8 @@ def _faults(h: StateHeader, dense: int) -> Iterator[str]:
             yield f"{name} = {value:g}, which is not a count"
     if max(h.still, h.waited) >= MOST_STILL:
         yield f"still = {h.still:g}, waited = {h.waited:g}, which none has"
+    if h.most_balance < 0.0:
+        yield f"a largest energy balance of {h.most_balance:g} J, which is a magnitude"
     if h.nearest < 0.0:
         yield f"a rest {h.nearest:g} m away"
     if not 0.0 <= h.spent < LARGEST_COUNT:

@@ -48,6 +48,7 @@ STATUS_OUTPUTS = len(StatusOutputs._fields)
 LEG_OUTPUTS = len(LegOutputs._fields)
 
 # where the energies that a user sees have what was dissipated, and their balance
+KINETIC = EnergyOutputs._fields.index("kinetic")
 DISSIPATED = EnergyOutputs._fields.index("dissipated")
 BALANCE = EnergyOutputs._fields.index("balance")
 

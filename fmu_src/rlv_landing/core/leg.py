@@ -107,8 +107,10 @@ def liquid_excess(forces: LegForces, p: LegModel) -> float:
     return 0.0
 
 
-def without_excess(leg: LegState, forces: LegForces, p: LegModel) -> LegState:
+def without_excess(leg: LegState, forces: LegForces, p: LegModel, left: float) -> LegState:
     """The leg with both states of its main strut law moved alike to the mass of the fill.
+
+    That mass is missed by `left` parts of it, on the side where it was.
 
     Newton's steps, held between states known to have too little and too much, and no longer than a
     reach that doubles: the mass grows with either state, but by many orders more in a cavity than
@@ -118,7 +120,8 @@ def without_excess(leg: LegState, forces: LegForces, p: LegModel) -> LegState:
     low = -FARTHEST
     high = FARTHEST
     reach = FIRST_REACH
-    excess = forces.liquid_mass - p.fill
+    aim = p.fill * (1.0 + left if forces.liquid_mass > p.fill else 1.0 - left)
+    excess = forces.liquid_mass - aim
     slope = forces.mass_1 + forces.mass_2
     for _ in range(CORRECTIONS):
         if excess > 0.0:
@@ -133,6 +136,6 @@ def without_excess(leg: LegState, forces: LegForces, p: LegModel) -> LegState:
         moved = tried
         reach *= 2.0
         strut = main_strut(forces.stroke, forces.stroke_rate, leg.z1 + moved, leg.z2 + moved, p)
-        excess = strut.liquid_mass - p.fill
+        excess = strut.liquid_mass - aim
         slope = strut.mass_1 + strut.mass_2
     return LegState(leg.r, leg.h, leg.vr, leg.vh, leg.z1 + moved, leg.z2 + moved, leg.q1, leg.q2)

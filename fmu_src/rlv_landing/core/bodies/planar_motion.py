@@ -59,9 +59,11 @@ from .planar_legs import (
 )
 from .system import System
 
-# Of a main strut's liquid, in parts: the excess that is left where it is, that a step may gather at
-# most, and the change that a step's error in one of the law's states may stand for
-CONSERVED, MOST_GATHERED, MOST_FOR_AN_ERROR = 8e-7, 1e-5, 1e-4
+# Of a main strut's liquid, in parts: the excess that is left where it is; what is left of a larger
+# one, next to as much, so that outputs do not jump where it becomes larger; the excess that a step
+# may gather at most, and the change that a step's error in one of the law's states may stand for
+CONSERVED, LEFT_OVER = 8e-7, 7.99e-7
+MOST_GATHERED, MOST_FOR_AN_ERROR = 1e-5, 1e-4
 
 
 class PlanarMotion(System):
@@ -301,6 +303,6 @@ class PlanarMotion(System):
             excess = fabs(liquid_excess(forces, model))
             if excess > CONSERVED:
                 leg = leg_state(y, BODY + LEG * i)
-                put(without_excess(leg, forces, model), y, BODY + LEG * i)
+                put(without_excess(leg, forces, model, LEFT_OVER), y, BODY + LEG * i)
                 farthest = max(farthest, excess)
         return farthest / MOST_GATHERED

@@ -34,11 +34,16 @@ def phase_of(
         return Phase.TOPPLED
     if depth <= 0.0:
         return Phase.FALLING
-    if kinetic > 0.5 * mass * REST_SPEED * REST_SPEED:
+    if not is_slow(kinetic, mass):
         return Phase.CONTACT
     if fabs(rates.vx) + fabs(rates.vy) + fabs(rates.pitch_rate) > REST_ACCELERATION:
         return Phase.CONTACT
     return Phase.SETTLED
+
+
+def is_slow(kinetic: float, mass: float) -> bool:
+    """Whether the `kinetic` energy [J] of a vehicle of this `mass` [kg] is that of at most 2 mm/s."""
+    return kinetic <= 0.5 * mass * REST_SPEED * REST_SPEED
 
 
 def is_phase(told: float, phase: int) -> bool:

@@ -75,6 +75,9 @@ class System:
         """
         return 0.0
 
+    def note(self, outputs: Doubles) -> None:
+        """Take notice of the `outputs` at the end of a step."""
+
     def lost(self, before: Doubles, after: Doubles, h: float) -> float:
         """The loss, in a step of `h` [s], of what the system conserves.
 
@@ -94,13 +97,17 @@ class System:
         self.read(y, u, rates, out, at)
 
     def may_rest(self, u: Doubles, rates: Doubles, outputs: Doubles) -> bool:
-        """Whether the system may be at rest with these `outputs` at constant inputs.
+        """Whether the system may be near a rest with these `outputs` at constant inputs.
 
         Args:
             u: The inputs.
             rates: Their rates.
             outputs: The outputs at the state.
         """
+        return False
+
+    def rests(self, outputs: Doubles) -> bool:
+        """Whether these `outputs` are those of a system at rest."""
         return False
 
     def distance(self, shift: Doubles) -> float:

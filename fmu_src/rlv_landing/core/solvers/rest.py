@@ -93,7 +93,7 @@ class Rest(Watch):
             return False
         look = data(self._look)
         self._outputs_at(self.t, place, look, 0)
-        return self.system.may_rest(data(self.u), data(self.u_rate), look)
+        return self.system.rests(look)
 
     def _reach_rest(self, y: Doubles) -> bool:
         """Bring the state `y` to its rest at the inputs at time `t`.

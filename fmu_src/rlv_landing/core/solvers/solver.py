@@ -125,6 +125,7 @@ class Solver(Trial):
         n = self.n
         y, end, k1, k_end = data(self.y), data(self.y_new), data(self.k1), data(self.k_end)
         self._next_row()
+        self.system.note(data(self.last))
         self.dense_at = self._other_dense()
         for i in range(n):
             y[i] = end[i]

@@ -97,8 +97,8 @@ class Trial(Rest):
     def _loses(self, h: float) -> bool:
         """Whether a step of `h` [s] loses more than it may of what the system conserves.
 
-        The loss is judged before the step's end is brought back to what is conserved. This brings
-        it back, reads it, and writes the step's interpolant.
+        The loss is judged before the step's end is brought back to what is conserved, and after.
+        This brings it back, reads it, and writes the step's interpolant.
         """
         end, k_end = data(self.y_new), data(self.k_end)
         self._read_end(end, k_end)
@@ -107,6 +107,7 @@ class Trial(Rest):
         if away > 0.0:
             self._derivatives(self.t + h, end, k_end)
             self._read_end(end, k_end)
+            lost = max(lost, self.system.lost(data(self.last), data(self._end), h))
         self._write_dense(h)
         if h < SHORTEST_JUDGED:
             return False
@@ -142,17 +143,19 @@ class Trial(Rest):
         """Whether the step loses more than it may at its quarters.
 
         They are judged where the step's interpolant leaves its ends far behind, or the tolerance is
-        loose. What is conserved is not brought back there.
+        loose. They are read as outputs are, brought back.
         """
         if self.rtol <= LOOSE and not self._bulges():
             return False
         inside = data(self.y_stage)
         most = 0.0
-        for i in range(2):
-            ahead = (0.25 + 0.5 * i) * h
+        for i in range(3):
+            ahead = 0.25 * (i + 1) * h
             t = self.t + ahead
             self._inside(self._other_dense(), t, self.t, self.t + h, inside)
             self._derivatives(t, inside, data(self.k_end))
+            if self.system.conserve(inside) > 0.0:
+                self._derivatives(t, inside, data(self.k_end))
             self.system.read(inside, data(self.u_now), data(self.k_end), data(self._half), 0)
             most = max(most, self.system.lost(data(self.last), data(self._half), ahead))
         self._derivatives(self.t + h, data(self.y_new), data(self.k_end))
