@@ -42,7 +42,7 @@ def phase_of(
 
 
 def is_slow(kinetic: float, mass: float) -> bool:
-    """Whether the `kinetic` energy [J] of a vehicle of this `mass` [kg] is that of at most 2 mm/s."""
+    """Whether a `mass` [kg] of this `kinetic` energy [J] is slower than 2 mm/s."""
     return kinetic <= 0.5 * mass * REST_SPEED * REST_SPEED
 
 
