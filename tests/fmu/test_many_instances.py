@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
-import os
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
