@@ -16,6 +16,7 @@ from array import array
 from collections.abc import Callable
 from contextlib import suppress
 from functools import wraps
+from pathlib import Path
 from typing import Any
 
 from pythonfmu import (
@@ -33,7 +34,7 @@ from pythonfmu.enums import Fmi2Status
 
 from rlv_landing import Landing, LandingError, Parameters, __version__
 from rlv_landing.core import COMPILED
-from rlv_landing.landing import DEFAULT_RTOL
+from rlv_landing.landing import DEFAULT_RTOL, LOOSEST_RTOL
 from rlv_landing.parameters import PARAMETER_QUANTITIES, check_value
 from rlv_landing.quantities import (
     INPUT_QUANTITIES,
@@ -47,6 +48,9 @@ from rlv_landing.quantities import (
 # the front sets the rate of input i as the real RATES + i, a value reference of no variable
 RATES = 2_000_000
 LARGEST_INTEGER = 2**31 - 1
+# start values of the vehicle that the FMU was built for; there is no file for the default vehicle
+VEHICLE = Path(__file__).with_name("vehicle.json")
+STARTS: dict[str, Any] = json.loads(VEHICLE.read_text()) if VEHICLE.is_file() else {}
 KINDS = {"real": Real, "integer": Integer, "boolean": Boolean, "string": String}
 
 
@@ -77,7 +81,7 @@ def new_landing(
     inputs: dict[str, float],
     rates: dict[str, float],
 ) -> Landing:
-    """A landing with some parameters set, in SI units, and defaults for the others.
+    """A landing with some parameters set, in SI units, and start values for the others.
 
     Args:
         values: Parameter values by name.
@@ -90,7 +94,9 @@ def new_landing(
             would pass below the ground.
     """
     checked = {name: check_value(PARAMETER_QUANTITIES[name], v) for name, v in values.items()}
-    return Landing(Parameters().with_values(checked), rtol=rtol, inputs=inputs, rates=rates)
+    return Landing(
+        Parameters().with_values({**STARTS, **checked}), rtol=rtol, inputs=inputs, rates=rates
+    )
 
 
 class RlvLanding(Fmi2Slave):
@@ -133,7 +139,11 @@ class RlvLanding(Fmi2Slave):
         self._peaks: tuple[list[float], list[float]] = [], []
         for q in PARAMETER_QUANTITIES.values():
             self._register(
-                q, q.default, Fmi2Causality.parameter, Fmi2Variability.fixed, Fmi2Initial.exact
+                q,
+                STARTS.get(q.name, q.default),
+                Fmi2Causality.parameter,
+                Fmi2Variability.fixed,
+                Fmi2Initial.exact,
             )
         for q in INPUT_QUANTITIES:
             self._register(q, 0.0, Fmi2Causality.input, Fmi2Variability.continuous, None)
@@ -171,9 +181,19 @@ class RlvLanding(Fmi2Slave):
     def setup_experiment(
         self, start_time: float, stop_time: float | None, tolerance: float | None
     ) -> None:
-        """Set the start time [s] and the integrator's relative tolerance; `stop_time` is unused."""
+        """Set the start time [s] and the integrator's relative tolerance; `stop_time` is unused.
+
+        A tolerance above LOOSEST_RTOL is a Warning, and LOOSEST_RTOL is taken.
+        """
         self._start_time = start_time
         self._rtol = DEFAULT_RTOL if tolerance is None else tolerance
+        if self._rtol > LOOSEST_RTOL:
+            self._rtol = LOOSEST_RTOL
+            self.log(
+                f"tolerance = {tolerance:g} makes peak forces and strokes wrong by more than 1 %; "
+                f"{LOOSEST_RTOL:g} is taken instead: set at most that, or none",
+                Fmi2Status.warning,
+            )
         self._landing = None
 
     @log_exceptions

@@ -1,0 +1,89 @@
+"""The files that an FMU is made of, in a checkout and in an installed package.
+
+The package's wheel carries those that are no part of a Python package in the folder `carried`
+(`carry`, called by setup.py), by the same paths as in the checkout.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from datetime import datetime, timezone
+from pathlib import Path
+
+HERE = Path(__file__).parent.parent
+ROOT = HERE.parent
+PACKAGE = HERE / "rlv_landing"
+CARRIED = Path(__file__).parent / "carried"
+TO_CARRY = ("CHANGELOG.md", "LICENSE", "fmu_src/landing_fmu.py", "fmu_src/fmu_front")
+DATE = "date.txt"
+# dates that a zip file can hold, 1980 to 2107 [s since 1970]; 1980 also for sources without a date
+OLDEST, NEWEST = 315532800, 4354819199
+
+
+def source(path: str) -> Path:
+    """A file or folder of the sources.
+
+    Args:
+        path: Its path in the checkout.
+    """
+    return (CARRIED if CARRIED.is_dir() else ROOT) / path
+
+
+def carry(package: Path) -> None:
+    """Copy what the FMU's build needs into an `fmu_build` that is to be installed.
+
+    Args:
+        package: The folder of that `fmu_build`.
+    """
+    folder = package / CARRIED.name
+    shutil.rmtree(folder, ignore_errors=True)
+    for path in TO_CARRY:
+        target = folder / path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if source(path).is_dir():
+            shutil.copytree(source(path), target, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copyfile(source(path), target)
+    (folder / DATE).write_text(f"{int(source_date().timestamp())}\n")
+
+
+def version() -> str:
+    """The package's version, from its `__init__.py`."""
+    found = re.search(r'^__version__ = "(.+)"$', (PACKAGE / "__init__.py").read_text(), re.M)
+    if found is None:
+        raise SystemExit("error: rlv_landing/__init__.py states no __version__")
+    return found[1]
+
+
+def source_date() -> datetime:
+    """The date of the sources [UTC].
+
+    SOURCE_DATE_EPOCH of the environment, else the date of the last git commit, or the one that an
+    installed package carries, else 1980-01-01.
+
+    Raises:
+        SystemExit: SOURCE_DATE_EPOCH is no number of seconds that a zip file can hold.
+    """
+    text = os.environ.get("SOURCE_DATE_EPOCH", "")
+    if not text and (CARRIED / DATE).is_file():
+        text = (CARRIED / DATE).read_text()
+    if not text and (ROOT / ".git").exists():
+        try:
+            text = subprocess.run(
+                ["git", "log", "-1", "--format=%ct"],
+                cwd=ROOT,
+                capture_output=True,
+                text=True,
+                check=True,
+            ).stdout
+        except (OSError, subprocess.CalledProcessError):
+            text = ""
+    if text and not (re.fullmatch(r"\d+\s*", text) and int(text) <= NEWEST):
+        raise SystemExit(
+            f"error: SOURCE_DATE_EPOCH = {text!r} is not a number of seconds from 1970-01-01 "
+            "to 2107; leave it out or correct it"
+        )
+    return datetime.fromtimestamp(max(int(text or OLDEST), OLDEST), timezone.utc)
