@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import hashlib
 import shutil
-import subprocess
 import sysconfig
 import tempfile
 from collections.abc import Callable
@@ -16,7 +15,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from xml.etree import ElementTree
 
-from .compilers import Compiler, environment, for_linux, for_windows
+from .compilers import Compiler, for_linux, for_windows, run
 from .fronts import prebuilt
 from .fronts.header import FRONT, front_identity, neutral_header, variables_header
 
@@ -160,15 +159,7 @@ def compile_front(target: Path, include: Path, compiler: Compiler) -> None:
             "error: FMI's C headers are missing, which FMPy brings; "
             'install it with pip install "rlv-landing[fmu]"'
         )
-    try:
-        done = subprocess.run(
-            command, capture_output=True, text=True, check=False, env=environment(), cwd=include
-        )
-    except FileNotFoundError:
-        raise SystemExit(
-            f"error: there is no C compiler {compiler.command[0]} for the FMU's front; "
-            "pip install ziglang, or name one by CC"
-        ) from None
+    done = run(command, include)
     if done.returncode != 0:
         raise SystemExit(
             f"error: the FMU's front does not compile: {' '.join(command)}\n{done.stderr}"
