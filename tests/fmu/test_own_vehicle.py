@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from zipfile import ZipFile
 
+import bridge_tools
 import fmpy
 import numpy as np
 import pytest
@@ -19,6 +20,9 @@ from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.presets import read_toml
 from rlv_landing.quantities import OUTPUT_NAMES, flat_name
 from rlv_ros_bridge.__main__ import main
+from rlv_ros_bridge.fmu.description import own_vehicle
+from rlv_ros_bridge.logs.bag_reader import open_log
+from rlv_ros_bridge.logs.history import read_history
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 # a stage of 25 t, the prototype's lengths times 5.2; stiffness and damping to match
@@ -207,7 +211,7 @@ def test_what_cannot_be_built_is_refused_in_one_line(command, stage, monkeypatch
         (["--name", "9x"], "model name '9x' must be letters, digits and underscores"),
         (["--name", "ä"], "must be letters"),
         (["--name", "a" * 65], "65 characters; at most 64"),
-        (["--fmi", "3"], "FMI 3 FMUs cannot be built; the versions are 2"),
+        (["--fmi", "3.0"], "FMI 3 FMUs cannot be built; the versions are 2"),
         (["-o", "x.zip"], "x.zip must end in .fmu"),
         (["-o", "nosuch/x.fmu"], "there is no folder nosuch"),
         (["--set", "vehicle.mass=0"], "vehicle.mass = 0 kg is outside"),
@@ -270,6 +274,19 @@ def test_simulate_is_simulate_of_the_same_vehicle(command, stage, flat, tmp_path
     assert files[0].read_bytes() == files[2].read_bytes()
     assert files[1].read_bytes() == files[2].read_bytes()
     assert files[3].read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+
+
+def test_the_node_lands_the_fmus_vehicle_unless_another_is_given(stage, parameters, fmu, tmp_path):
+    assert own_vehicle(fmu) is None
+    assert own_vehicle(tmp_path / "nosuch.fmu") is None
+    assert own_vehicle(stage) == Parameters().with_values(dict(parameters.items()))
+    short = ("node", "--fmu", stage, "--realtime-factor", "0", "--stop-time", "0.01")
+    for options, mass in (((), 25e3), (("--set", "vehicle.mass=26000"), 26e3)):
+        log = tmp_path / f"log{mass:g}"
+        done = bridge_tools.run(*short, *options, "--record", log)
+        assert done.returncode == 0, done.stderr
+        landed = read_history(open_log(log))[0].parameters
+        assert landed == own_vehicle(stage).with_values({"vehicle.mass": mass})
 
 
 def test_a_front_without_its_mark_is_refused(binary):

@@ -101,6 +101,7 @@ def build(
     from fmu_build.wanted import Wanted
 
     parameters = chosen_parameters(preset, file, mode, pairs)
+    wishes["fmi"] = wishes["fmi"].removesuffix(".0")
     wanted = Wanted(parameters, _source(preset, file, pairs), **wishes)
     target = output or Path(f"{wanted.name}.fmu")
     check_writable(target, ".fmu", force=force)

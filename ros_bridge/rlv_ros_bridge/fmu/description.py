@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -20,6 +22,8 @@ from rlv_landing.quantities import (
 MODEL_NAME = "RlvLanding"
 # how the description of an FMU that our build has made says so
 MADE_BY = "rlv-landing "
+# the start values of a vehicle that is not the default one
+VEHICLE = re.compile(r"resources/[^/]+/vehicle\.json")
 BUILD = "build ours by `rlv-landing fmu build`"
 NAMES = (
     *OUTPUT_NAMES,
@@ -111,6 +115,26 @@ def start_values(description: Any) -> dict[str, float | str]:
         for name, q in PARAMETER_QUANTITIES.items()
         if (text := starts.get(name, starts.get(flat_name(name)))) is not None
     }
+
+
+def own_vehicle(path: Path) -> Parameters | None:
+    """The vehicle that an FMU was built for; None for the default one, and for what is no FMU.
+
+    It is quick: the description is not read.
+
+    Raises:
+        LandingError: A value is not one of this version's.
+    """
+    try:
+        with zipfile.ZipFile(path) as archive:
+            files = [name for name in archive.namelist() if VEHICLE.fullmatch(name)]
+            values = json.loads(archive.read(files[0])) if files else None
+    except (OSError, ValueError, zipfile.BadZipFile):
+        return None
+    try:
+        return Parameters().with_values(values) if values else None
+    except LandingError as e:
+        raise LandingError(f"the vehicle of {path}: {e}") from None
 
 
 def vehicle_of(description: Any, values: Mapping[str, float | str] | None = None) -> Parameters:
