@@ -61,7 +61,7 @@ typedef struct {
     int groups, n;
     double rtol, t, t_old, t_input, h, error_old;
     double steps, rejected, rhs_calls;
-    double start_energy, dissipated, balance;
+    double start_energy, dissipated, balance, most_balance;
     double u[INPUTS], u_rate[INPUTS];
     double scale[MAX_STATES], relative[MAX_STATES];
     double y[MAX_STATES], y_new[MAX_STATES], y_stage[MAX_STATES], deviation[MAX_STATES];
@@ -531,13 +531,14 @@ static double error(const Landing *s)
     return sqrt(total / m);
 }
 
-/* Move both chambers' states alike until the leg's excess of liquid is gone. */
+/* Move both chambers' states alike until 7.99e-7 parts of the leg's excess of liquid are left. */
 static void take_off_excess(double *q, const Loads *found, const Parameters *p)
 {
     Loads w = *found;
     double z1 = q[Z1], z2 = q[Z2], moved = 0.0, low = -1e15, high = 1e15, reach = 1e3;
+    double aim = p->fill * (w.mass > p->fill ? 1.0 + 7.99e-7 : 1.0 - 7.99e-7);
     for (int k = 0; k < 60; k++) {
-        double excess = w.mass - p->fill;
+        double excess = w.mass - aim;
         if (excess > 0.0)
             high = moved;
         else
@@ -606,7 +607,7 @@ static double lost(const Landing *s, double balance, double h)
     for (int i = 0; i < s->groups; i++)
         legs += s->group[i].count;
     double rounding = 4e-15 * legs * p->B0 * (p->V10 + p->V20);
-    double growth = fabs(balance) - was - rounding;
+    double growth = fabs(balance) - MIN(MAX(MAX(was, rounding), s->most_balance), was + rounding);
     if (growth <= 0.0)
         return 0.0;
     double turned = MAX(0.1 * s->scale[s->n - 1], s->dissipated);
@@ -653,26 +654,30 @@ static double lost_inside(Landing *s, double h)
     double most = 0.0, *y = s->y_stage, dissipated, dy[MAX_STATES];
     if (s->rtol <= 1e-4 && !bulges(s, h))
         return 0.0;
-    for (double part = 0.25; part < 1.0; part += 0.5) {
+    for (double part = 0.25; part < 1.0; part += 0.25) {
         for (int i = 0; i < s->n; i++) {
             double change = s->y_new[i] - s->y[i], bend = h * s->k1[i] - change;
             double last = change - h * s->k5[i] - bend;
             y[i] = s->y[i] + part * (change + (1.0 - part) * (bend + part * last));
         }
         slope(s, s->t + part * h, y, dy);
+        conserve(s, s->t + part * h, y, dy);
         most = MAX(most, lost(s, energy(s, y, &dissipated) - s->start_energy, part * h));
     }
     slope(s, s->t + h, s->y_new, s->k5);
     return most;
 }
 
-/* What the step just computed has lost before it is brought back, in units of what it may lose. */
+/* What the step just computed has lost before it is brought back or by that, in units of what it may
+ * lose. */
 static double judged(Landing *s, double h, double *balance, double *dissipated)
 {
     *balance = energy(s, s->y_new, dissipated) - s->start_energy;
     double most = lost(s, *balance, h), away = conserve(s, s->t + h, s->y_new, s->k5);
-    if (away > 0.0)
+    if (away > 0.0) {
         *balance = energy(s, s->y_new, dissipated) - s->start_energy;
+        most = MAX(most, lost(s, *balance, h));
+    }
     if (h < 1e-10)
         return 0.0;
     most = MAX(most, away);
@@ -742,6 +747,7 @@ int advance(Landing *s, double t_end)
         } else if (e <= 1.0) {
             accept(s, h);
             s->balance = balance;
+            s->most_balance = MAX(s->most_balance, fabs(balance));
             s->dissipated = dissipated;
             e = MAX(e, 1e-10);
             double factor = 0.9 * pow(s->error_old, 0.04) / pow(e, exponent);

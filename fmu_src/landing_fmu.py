@@ -1,4 +1,4 @@
-"""The FMI 2.0 co-simulation slave: maps FMI variables and calls to `Landing`.
+"""The FMI 2.0 co-simulation slave: maps FMI variables and calls to a `HostedLanding`.
 
 It is a plain slave of pythonfmu. In the FMU that `fmu_build/build.py` makes, the C front
 (`fmu_front/`) calls it in place of pythonfmu's binary. The front passes only value references that
@@ -12,9 +12,7 @@ The build packs this file into the FMU's own copy of the package, whose name no 
 import json
 import math
 import sys
-from array import array
 from collections.abc import Callable
-from contextlib import suppress
 from functools import wraps
 from pathlib import Path
 from typing import Any
@@ -32,15 +30,15 @@ from pythonfmu import (
 )
 from pythonfmu.enums import Fmi2Status
 
-from rlv_landing import Landing, LandingError, Parameters, __version__
+from rlv_landing import LandingError, __version__
 from rlv_landing.core import COMPILED
+from rlv_landing.hosted import HostedLanding
 from rlv_landing.landing import DEFAULT_RTOL, LOOSEST_RTOL
-from rlv_landing.parameters import PARAMETER_QUANTITIES, check_value
+from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.quantities import (
     INPUT_QUANTITIES,
     OUTPUT_QUANTITIES,
     PEAK_QUANTITIES,
-    PEAKS,
     STATISTIC_QUANTITIES,
     Quantity,
 )
@@ -48,6 +46,8 @@ from rlv_landing.quantities import (
 # the front sets the rate of input i as the real RATES + i, a value reference of no variable
 RATES = 2_000_000
 LARGEST_INTEGER = 2**31 - 1
+# steps refused in a row from which on a refusal is an error
+MOST_REFUSALS = 10
 # start values of the vehicle that the FMU was built for; there is no file for the default vehicle
 VEHICLE = Path(__file__).with_name("vehicle.json")
 STARTS: dict[str, Any] = json.loads(VEHICLE.read_text()) if VEHICLE.is_file() else {}
@@ -75,30 +75,6 @@ def log_exceptions(method: Callable[..., Any]) -> Callable[..., Any]:
     return wrapped
 
 
-def new_landing(
-    values: dict[str, Any],
-    rtol: float,
-    inputs: dict[str, float],
-    rates: dict[str, float],
-) -> Landing:
-    """A landing with some parameters set, in SI units, and start values for the others.
-
-    Args:
-        values: Parameter values by name.
-        rtol: Relative tolerance of the integrator.
-        inputs: Inputs at the start by name; the others are 0.
-        rates: Rates of inputs at the start by name; the others are 0.
-
-    Raises:
-        LandingError: A value is out of bounds, values contradict each other, or the free flight
-            would pass below the ground.
-    """
-    checked = {name: check_value(PARAMETER_QUANTITIES[name], v) for name, v in values.items()}
-    return Landing(
-        Parameters().with_values({**STARTS, **checked}), rtol=rtol, inputs=inputs, rates=rates
-    )
-
-
 class RlvLanding(Fmi2Slave):
     """Touchdown of a four-legged rocket stage as an FMI 2.0 co-simulation slave.
 
@@ -120,23 +96,10 @@ class RlvLanding(Fmi2Slave):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self._start_time = 0.0
-        self._rtol = DEFAULT_RTOL
+        self._hosted = HostedLanding(STARTS)
         self._values: list[Any] = []
-        self._parameters: dict[str, Any] = {}
-        # set since the last step; rates of a refused step stay until their input is set again
-        self._inputs: dict[str, float] = {}
-        self._rates: dict[str, float] = {}
-        self._refused_rates: set[str] = set()
-        # inputs and rates with which the landing was made
-        self._first: tuple[dict[str, float], dict[str, float]] = {}, {}
-        self._landing: Landing | None = None
-        # the reason why the landing has ended; empty while it runs
-        self._failure = ""
-        # the outputs at the present time, if they were read; else empty
-        self._outputs: list[float] = []
-        # the peaks until the present time, if they were read, and the outputs that they belong to
-        self._peaks: tuple[list[float], list[float]] = [], []
+        # steps that were refused since the last one that was made
+        self._refusals = 0
         for q in PARAMETER_QUANTITIES.values():
             self._register(
                 q,
@@ -185,16 +148,15 @@ class RlvLanding(Fmi2Slave):
 
         A tolerance above LOOSEST_RTOL is a Warning, and LOOSEST_RTOL is taken.
         """
-        self._start_time = start_time
-        self._rtol = DEFAULT_RTOL if tolerance is None else tolerance
-        if self._rtol > LOOSEST_RTOL:
-            self._rtol = LOOSEST_RTOL
+        rtol = DEFAULT_RTOL if tolerance is None else tolerance
+        if rtol > LOOSEST_RTOL:
+            rtol = LOOSEST_RTOL
             self.log(
                 f"tolerance = {tolerance:g} makes peak forces and strokes wrong by more than 1 %; "
                 f"{LOOSEST_RTOL:g} is taken instead: set at most that, or none",
                 Fmi2Status.warning,
             )
-        self._landing = None
+        self._hosted.set_up(start_time, rtol)
 
     @log_exceptions
     def enter_initialization_mode(self) -> None:
@@ -211,107 +173,56 @@ class RlvLanding(Fmi2Slave):
 
         A bad value is an error. The importer may then set another and call this again.
         """
-        self._current_landing()
-        self._apply_inputs()
+        self._hosted.begin()
 
     @log_exceptions
     def do_step(self, current_time: float, step_size: float) -> bool:
         """Integrate from `current_time` to `current_time + step_size` [s].
 
         A step that cannot be made is refused: Discard with a logged reason, and nothing changes.
-        An integrator that fails within the step is an error and ends the landing: outputs and
-        steps are errors until the importer restores a state or resets.
+        From the tenth refusal in a row on it is an error, since an importer that repeats a
+        discarded step as it was, as FMPy's `simulate_fmu` does, would never end. An integrator that
+        fails within the step is an error and ends the landing: outputs and steps are errors until
+        the importer restores a state or resets.
         """
         try:
-            landing = self._current_landing()
-            if not 0.0 < step_size < math.inf:
-                raise LandingError(f"step = {step_size:g} s must be finite and above 0 s")
-            now = current_time - self._start_time
-            # the rounding of the importer's time, as a sum of doubles from its start, or as float32
-            rounding = 2.0**-50 * abs(current_time) + 2.0**-22 * landing.time
-            if not abs(now - landing.time) <= 1e-9 + rounding:
-                raise LandingError(
-                    f"the importer's time is {now:g} s, the landing's is {landing.time:g} s; "
-                    "restore a state or reset to go back"
-                )
-            self._apply_inputs()
+            end = self._hosted.prepare_step(current_time, step_size)
         except LandingError as e:
-            self.log(str(e), Fmi2Status.error if self._failure else Fmi2Status.discard)
+            self._refuse(str(e))
             return False
-        self._inputs, self._rates = {}, {}
-        try:
-            self._outputs = []
-            landing.advance_to(max(now + step_size, landing.time))
-        except LandingError as e:
-            self._failure = f"{e}; the landing has ended there: restore a state, or reset"
-            self.log(self._failure, Fmi2Status.error)
-            return False
+        self._refusals = 0
+        self._hosted.advance(end)
         return True
 
-    def _current_landing(self) -> Landing:
-        if self._failure:
-            raise LandingError(self._failure)
-        if self._landing is None:
-            first = dict(self._inputs), dict(self._rates)
-            self._landing = new_landing(self._parameters, self._rtol, *first)
-            self._first = first
-            self._outputs = []
-        return self._landing
-
-    def _apply_inputs(self) -> None:
-        """Pass the inputs that were set since the last step to the landing; may be called twice."""
-        if self._inputs or self._rates:
-            try:
-                self._current_landing().set_inputs(self._inputs, self._rates)
-            except LandingError:
-                self._refused_rates = set(self._rates)
-                raise
-            self._refused_rates.clear()
-            self._outputs = []
+    def _refuse(self, reason: str) -> None:
+        self._refusals += 1
+        if self._hosted.failure:
+            self.log(reason, Fmi2Status.error)
+        elif self._refusals < MOST_REFUSALS:
+            self.log(reason, Fmi2Status.discard)
+        else:
+            self.log(f"{reason} (refusal {self._refusals} in a row)", Fmi2Status.error)
 
     @log_exceptions
     def _read(self, vrs: list[int]) -> list[Any]:
-        first = self._first_output
-        if max(vrs, default=0) >= first:
-            self._update_outputs()
-        calculated: list[Any] = self._outputs
-        if max(vrs, default=0) >= first + len(OUTPUT_QUANTITIES):
-            counts = self._current_landing().statistics.values()
-            limited = [min(count, LARGEST_INTEGER) for count in counts]
-            calculated = [*calculated, *limited, COMPILED]
-        if max(vrs, default=0) >= first + len(calculated):
-            calculated = [*calculated, *self._read_peaks()]
+        first, last = self._first_output, max(vrs, default=0)
+        calculated: list[Any] = []
+        if last >= first:
+            calculated = self._hosted.outputs()
+        if last >= first + len(OUTPUT_QUANTITIES):
+            counts = [min(count, LARGEST_INTEGER) for count in self._hosted.statistics()]
+            calculated = [*calculated, *counts, COMPILED]
+        if last >= first + len(calculated):
+            calculated = [*calculated, *self._hosted.peaks()]
         return [self._values[vr] if vr < first else calculated[vr - first] for vr in vrs]
 
     @log_exceptions
     def _read_outputs(self) -> list[float]:
-        self._update_outputs()
-        return self._outputs
+        return self._hosted.outputs()
 
     def get_outputs(self) -> list[float]:
         """All outputs, in order, for the front; NaN after an error."""
         return self._read_outputs() or [math.nan] * len(OUTPUT_QUANTITIES)
-
-    def _update_outputs(self) -> None:
-        landing = self._current_landing()
-        # inputs act at once; the next step refuses those that are out of bounds
-        if self._inputs or self._rates:
-            with suppress(LandingError):
-                self._apply_inputs()
-        if not self._outputs:
-            self._outputs = landing.values()
-
-    def _read_peaks(self) -> list[float]:
-        """Values and times of the peaks until the present time; computed once after each change."""
-        if self._peaks[0] is not self._outputs:
-            extremes = self._current_landing().extremes()
-            found: list[float] = []
-            for peak in PEAKS:
-                low, low_time, high, high_time = extremes[peak.output]
-                value, time = (low, low_time) if peak.side == "min" else (high, high_time)
-                found += [value, self._start_time + time]
-            self._peaks = self._outputs, found
-        return self._peaks[1]
 
     def get_real(self, vrs: list[int]) -> list[float]:
         """Values of real variables; NaN after an error."""
@@ -333,21 +244,14 @@ class RlvLanding(Fmi2Slave):
     def _set(self, vrs: list[int], values: list[Any]) -> None:
         for vr, value in zip(vrs, values):
             if vr >= RATES:
-                name = self._names[vr - RATES]
-                self._rates[name] = value
-                self._refused_rates.discard(name)
+                self._hosted.set_rate(self._names[vr - RATES], value)
                 continue
             name = self._names[vr]
             self._values[vr] = value
             if name in PARAMETER_QUANTITIES:
-                self._parameters[name] = value
-                self._landing = None
+                self._hosted.set_parameter(name, value)
             else:
-                self._inputs[name] = value
-                if name in self._refused_rates:
-                    del self._rates[name]
-                    self._refused_rates.discard(name)
-        self._outputs = []
+                self._hosted.set_input(name, value)
 
     def set_real(self, vrs: list[int], values: list[float]) -> None:
         """Set parameters, inputs, or, from RATES on, the rates of inputs."""
@@ -358,42 +262,17 @@ class RlvLanding(Fmi2Slave):
         self._set(vrs, values)
 
     def _get_fmu_state(self) -> dict[str, Any]:
-        return {
-            "start_time": self._start_time,
-            "rtol": self._rtol,
-            "values": list(self._values),
-            "parameters": dict(self._parameters),
-            "inputs": dict(self._inputs),
-            "rates": dict(self._rates),
-            "refused_rates": sorted(self._refused_rates),
-            "first": [dict(kind) for kind in self._first],
-            "broken": self._failure,
-            "landing": None if self._landing is None else list(self._landing.state()),
-        }
+        return {"values": list(self._values), **self._hosted.state()}
 
     @log_exceptions
     def _set_fmu_state(self, state: dict[str, Any]) -> None:
         """Restore `state`; change nothing if it is no state of this FMU."""
         if "fault" in state:
             raise LandingError(f"the state cannot be read: {state['fault']}")
-        # all conversions come first, since each may fail
-        start_time, rtol = float(state["start_time"]), float(state["rtol"])
-        values, failure = list(state["values"]), str(state["broken"])
-        parameters, inputs = dict(state["parameters"]), dict(state["inputs"])
-        rates, refused_rates = dict(state["rates"]), set(state["refused_rates"])
-        first_inputs, first_rates = map(dict, state["first"])
-        landing = None
-        if state["landing"] is not None:
-            landing = self._landing
-            if landing is None or parameters != self._parameters or rtol != self._rtol:
-                landing = new_landing(parameters, rtol, first_inputs, first_rates)
-            landing.restore(array("d", state["landing"]))
-        self._landing, self._outputs = landing, []
-        self._start_time, self._rtol = start_time, rtol
-        self._values, self._failure = values, failure
-        self._parameters, self._inputs = parameters, inputs
-        self._rates, self._refused_rates = rates, refused_rates
-        self._first = first_inputs, first_rates
+        values = list(state["values"])
+        self._hosted.restore(state)
+        self._values = values
+        self._refusals = 0
 
     @staticmethod
     def _fmu_state_to_bytes(state: dict[str, Any]) -> bytes:

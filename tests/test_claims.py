@@ -65,7 +65,7 @@ def test_a_value_is_written_with_the_digits_of_the_page(value, shown, text):
     assert marks.like(value, shown) == text
 
 
-def test_a_wrong_number_is_found_and_mended_and_nothing_else_changes(tmp_path, monkeypatch):
+def test_a_wrong_number_is_found_and_corrected_and_nothing_else_changes(tmp_path, monkeypatch):
     monkeypatch.setattr(marks, "ROOT", tmp_path)
     page = tmp_path / "page.md"
     text = "creates <!-- =created 2-2 -->{}<!-- = --> J, 34 J\n| <!-- =scalars -->48<!-- = --> |\n"

@@ -10,12 +10,12 @@ import numpy as np
 from marks import Value
 
 from rlv_landing import Landing, load_preset
-from rlv_landing.extremes import Extreme
 from rlv_landing.history import History
 from rlv_landing.identification.conditions import CONDITIONS
 from rlv_landing.identification.free_numbers import FreeNumbers
 from rlv_landing.identification.targets import Fit, fit_of, paper_targets, targets_of_tests
 from rlv_landing.landing import DEFAULT_RTOL
+from rlv_landing.outputs import Extreme
 from rlv_landing.presets import preset_names
 from rlv_landing.quantities import LEGS, MODES, PEAKS
 from rlv_landing.studies.envelope.tip_over import RigidBlock

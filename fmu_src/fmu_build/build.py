@@ -9,9 +9,7 @@ validates the FMU and simulates one landing before it replaces an older file.
 from __future__ import annotations
 
 import argparse
-import json
 import re
-import shutil
 import sys
 import tempfile
 import zipfile
@@ -26,29 +24,13 @@ from pythonfmu.builder import FmuBuilder
 from rlv_landing.text.durable import write_durably, writing
 
 from .binary import record_libpython, replace_binaries
-from .core_source import package_name
 from .description import describe
 from .identity import NO_GUID, identify
 from .pages.documentation import write_documentation
-from .sources import PACKAGE, ROOT, source, source_date, version
+from .sources import ROOT, compiled_cores, copy_sources, source_date
 from .trial import check, expected
 from .wanted import MODEL_NAME, Wanted
 
-MODULES = (
-    "__init__.py",
-    "errors.py",
-    "quantities.py",
-    "parameters.py",
-    "touchdown.py",
-    "inputs/__init__.py",
-    "inputs/ground_way.py",
-    "inputs/driven.py",
-    "assembly.py",
-    "extremes.py",
-    "state.py",
-    "stints.py",
-    "landing.py",
-)
 # pythonfmu's command line, CSV tool and builder, which no slave needs
 NOT_NEEDED = ("__main__.py", "csvbuilder.py", "deploy.py", "builder.py", "osutil.py")
 # the line of pythonfmu's `__init__.py` that imports the builder, and with it argparse, logging and
@@ -57,56 +39,6 @@ IMPORTS_BUILDER = "from .builder import FmuBuilder\n"
 # modules that its slave needs to write a description only; Python 3.12.1 crashes when it imports
 # datetime after it was ended and started again
 IMPORTS_OF_SLAVE = "import datetime\n"
-
-SCRIPT = """\
-from {package}.slave import RlvLanding
-
-__all__ = ["RlvLanding"]
-"""
-
-
-def compiled_cores() -> list[Path]:
-    """The compiled cores for all Python versions, but none that older kernels were compiled to."""
-    return [
-        file
-        for file in sorted((PACKAGE / "core").iterdir())
-        if file.suffix in (".so", ".pyd") and package_name().encode() in file.read_bytes()
-    ]
-
-
-def copy_sources(folder: Path, wanted: Wanted) -> tuple[Path, Path]:
-    """Copy slave and package to `folder`; return pythonfmu's script and the package.
-
-    Their names carry the version; `identify` adds the build.
-
-    Raises:
-        SystemExit: There is no compiled core of the present kernels, though one is wanted.
-    """
-    name = "rlv_landing_" + re.sub(r"\W", "_", version())
-    package = folder / name
-    package.mkdir()
-    for module in MODULES:
-        target = package / module
-        target.parent.mkdir(exist_ok=True)
-        shutil.copy(PACKAGE / module, target)
-    cores = [] if wanted.pure else compiled_cores()
-    if not cores and not wanted.pure:
-        raise SystemExit(
-            "error: there is no compiled core of the present kernels: see why the compiler failed, "
-            "or compile it by python setup.py build_ext --inplace; --pure builds an FMU without "
-            "it, which lands to the same digits and takes ten times as long"
-        )
-    for file in [*sorted((PACKAGE / "core").rglob("*.py")), *cores]:
-        target = package / file.relative_to(PACKAGE)
-        target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(file, target)
-    if wanted.values:
-        (package / "vehicle.json").write_text(json.dumps(wanted.values, indent=1) + "\n")
-    text = source("fmu_src/landing_fmu.py").read_text()
-    (package / "slave.py").write_text(re.sub(r"^from rlv_landing\.?", "from .", text, flags=re.M))
-    script = folder / f"{name.replace('rlv_landing', 'landing_fmu')}.py"
-    script.write_text(SCRIPT.format(package=name))
-    return script, package
 
 
 def build_with_pythonfmu(folder: Path, wanted: Wanted) -> tuple[Path, Path, str]:

@@ -45,7 +45,7 @@ class Compiler:
 
     @property
     def name(self) -> str:
-        """What the build says of it: program and version in one line."""
+        """Program and version in one line, as the build prints it."""
         if self.is_zig:
             return f"zig {_first_line((*ZIG, 'version'))}"
         return _first_line((*self.command, "--version"))

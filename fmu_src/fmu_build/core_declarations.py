@@ -13,7 +13,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 # these become C: records, and how arrays and records are accessed
-TRANSLATED = ("records", "access", "memory")
+RECORDS = "records"
+TRANSLATED = (RECORDS, "access", "memory")
 MATH = (
     "from cython cimport final\n"
     "from libc.math cimport INFINITY as inf, cos, exp, expm1, fabs, log, pow, sin, sqrt, tanh\n"
@@ -34,7 +35,7 @@ TYPES = {
 
 def declarations(core: Path, sources: list[Path]) -> str:
     """The `.pxd` of the joined kernels `sources` of the `core`."""
-    records = ast.parse((core / "records.py").read_text())
+    records = _joined(sorted((core / RECORDS).glob("*.py")))
     access = ast.parse((core / "access.py").read_text())
     names = {
         node.name for node in records.body if isinstance(node, ast.ClassDef) and is_record(node)
@@ -51,6 +52,11 @@ def declarations(core: Path, sources: list[Path]) -> str:
     for module in modules:
         parts += types.module(module)
     return "".join(parts)
+
+
+def is_translated(path: Path, core: Path) -> bool:
+    """Whether a file of the `core` becomes C, and is no kernel."""
+    return Path(path.relative_to(core).parts[0]).stem in TRANSLATED
 
 
 def is_record(node: ast.stmt) -> bool:
@@ -72,6 +78,11 @@ def defined_names(tree: ast.Module) -> Iterator[str]:
             yield from _targets(node)
         elif isinstance(node, ast.AnnAssign):
             yield ast.unparse(node.target)
+
+
+def _joined(paths: list[Path]) -> ast.Module:
+    """The statements of several files, one after the other."""
+    return ast.Module([node for path in paths for node in ast.parse(path.read_text()).body], [])
 
 
 def _accessed(access: ast.Module) -> set[str]:

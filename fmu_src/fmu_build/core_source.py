@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from graphlib import TopologicalSorter
 from pathlib import Path
 
-from .core_declarations import TRANSLATED, declarations, defined_names, is_law, is_record
+from .core_declarations import declarations, defined_names, is_law, is_record, is_translated
 
 # for each table of laws, of each law in the order of names: its functions by the member's name
 Laws = dict[str, list[dict[str, str]]]
@@ -57,21 +57,22 @@ def files(core: Path = CORE) -> list[Path]:
 
 def kernels(core: Path = CORE) -> list[Path]:
     """The kernel files, each after those that it imports."""
-    imports = {path: set(_siblings(path)) for path in files(core) if path.stem not in TRANSLATED}
+    own = [path for path in files(core) if not is_translated(path, core)]
+    imports = {path: set(_siblings(path, core)) for path in own}
     return list(
         TopologicalSorter({path: sorted(needed) for path, needed in imports.items()}).static_order()
     )
 
 
-def _siblings(path: Path) -> Iterator[Path]:
-    """The kernel files that `path` imports."""
+def _siblings(path: Path, core: Path) -> Iterator[Path]:
+    """The kernel files of the `core` that `path` imports."""
     for node in ast.parse(path.read_text()).body:
         if isinstance(node, ast.ImportFrom) and node.level:
             folder = path.parents[node.level - 1]
             modules = [node.module] if node.module else [alias.name for alias in node.names]
             for module in modules:
                 found = folder.joinpath(*module.split(".")).with_suffix(".py")
-                if found.stem not in TRANSLATED:
+                if not is_translated(found, core):
                     yield found
 
 

@@ -6,6 +6,7 @@ The package's wheel carries those that are no part of a Python package in the fo
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -13,14 +14,37 @@ import subprocess
 from datetime import datetime, timezone
 from pathlib import Path
 
+from .core_source import package_name
+from .wanted import Wanted
+
 HERE = Path(__file__).parent.parent
 ROOT = HERE.parent
 PACKAGE = HERE / "rlv_landing"
 CARRIED = Path(__file__).parent / "carried"
 TO_CARRY = ("CHANGELOG.md", "LICENSE", "fmu_src/landing_fmu.py", "fmu_src/fmu_front")
 DATE = "date.txt"
+# what the slave needs of the package: files, and folders with all their files
+MODULES = (
+    "__init__.py",
+    "errors.py",
+    "touchdown.py",
+    "assembly.py",
+    "outputs.py",
+    "state.py",
+    "interruptible.py",
+    "landing.py",
+    "hosted.py",
+)
+FOLDERS = ("quantities", "parameters", "inputs", "core")
 # dates that a zip file can hold, 1980 to 2107 [s since 1970]; 1980 also for sources without a date
 OLDEST, NEWEST = 315532800, 4354819199
+
+
+SCRIPT = """\
+from {package}.slave import RlvLanding
+
+__all__ = ["RlvLanding"]
+"""
 
 
 def source(path: str) -> Path:
@@ -87,3 +111,45 @@ def source_date() -> datetime:
             "to 2107; leave it out or correct it"
         )
     return datetime.fromtimestamp(max(int(text or OLDEST), OLDEST), timezone.utc)
+
+
+def compiled_cores() -> list[Path]:
+    """The compiled cores for all Python versions, but none that older kernels were compiled to."""
+    return [
+        file
+        for file in sorted((PACKAGE / "core").iterdir())
+        if file.suffix in (".so", ".pyd") and package_name().encode() in file.read_bytes()
+    ]
+
+
+def copy_sources(folder: Path, wanted: Wanted) -> tuple[Path, Path]:
+    """Copy slave and package to `folder`; return pythonfmu's script and the package.
+
+    Their names carry the version; `identify` adds the build.
+
+    Raises:
+        SystemExit: There is no compiled core of the present kernels, though one is wanted.
+    """
+    name = "rlv_landing_" + re.sub(r"\W", "_", version())
+    package = folder / name
+    package.mkdir()
+    cores = [] if wanted.pure else compiled_cores()
+    if not cores and not wanted.pure:
+        raise SystemExit(
+            "error: there is no compiled core of the present kernels: see why the compiler failed, "
+            "or compile it by python setup.py build_ext --inplace; --pure builds an FMU without "
+            "it, which lands to the same digits and takes ten times as long"
+        )
+    modules = [PACKAGE / name for name in MODULES]
+    in_folders = [file for name in FOLDERS for file in sorted((PACKAGE / name).rglob("*.py"))]
+    for file in [*modules, *in_folders, *cores]:
+        target = package / file.relative_to(PACKAGE)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(file, target)
+    if wanted.values:
+        (package / "vehicle.json").write_text(json.dumps(wanted.values, indent=1) + "\n")
+    text = source("fmu_src/landing_fmu.py").read_text()
+    (package / "slave.py").write_text(re.sub(r"^from rlv_landing\.?", "from .", text, flags=re.M))
+    script = folder / f"{name.replace('rlv_landing', 'landing_fmu')}.py"
+    script.write_text(SCRIPT.format(package=name))
+    return script, package

@@ -24,8 +24,8 @@ from .core import (
 from .core.access import BALANCE, BODY_OUTPUTS
 from .core.struts.fluid import fluid
 from .core.struts.kinds import auxiliary_strut, auxiliary_strut_energy
-from .parameters import PARAMETER_QUANTITIES, Parameters, azimuth
-from .quantities import LEGS, MODES
+from .parameters import PARAMETER_QUANTITIES, Parameters
+from .quantities import LEGS, MODES, azimuth
 from .touchdown import AT_REST, FreeFlight, GroundMotion
 
 # Typical size of each state: the absolute part of the error that is allowed is rtol times this.
@@ -102,8 +102,10 @@ def liquid_fill(parameters: Parameters) -> float:
 
 
 def touchdown_energy(parameters: Parameters) -> float:
-    """Energy [J] that a landing has to get rid of: the kinetic energy at first contact, and the
-    weight times a tenth of the main strut's length.
+    """Energy that a landing has to dissipate [J].
+
+    It is the kinetic energy at the first contact, and the weight times a tenth of the main strut's
+    length.
     """
     vehicle, drop = parameters.vehicle, parameters.drop
     mass = vehicle.mass + vehicle.footpad_mass * len(LEGS)
@@ -127,7 +129,7 @@ def tangential_stiffness(parameters: Parameters) -> float:
 
 
 def leg_places(parameters: Parameters) -> list[LegPlace]:
-    """Where each leg group of the parameters' landing mode stands, and how many legs it stands for."""
+    """Place and number of legs of each leg group of the parameters' landing mode."""
     return [
         LegPlace(*azimuth(group.azimuth), float(len(group.legs)))
         for group in MODES[parameters.drop.mode]
@@ -135,8 +137,11 @@ def leg_places(parameters: Parameters) -> list[LegPlace]:
 
 
 def build_system(parameters: Parameters, kind: type[Planar] = Planar) -> Planar:
-    """The vehicle on its ground, for the parameters' landing mode; `kind` is the compiled or the
-    pure core's class.
+    """The vehicle on its ground, for the parameters' landing mode.
+
+    Args:
+        parameters: The parameters of the landing.
+        kind: The class of the compiled or of the pure core.
     """
     legs = leg_models(parameters)
     energy = touchdown_energy(parameters)
@@ -160,11 +165,17 @@ def ground_motion(inputs: Inputs, rates: Inputs) -> GroundMotion:
 
 
 def start_state(parameters: Parameters, ground: GroundMotion = AT_REST) -> array[float]:
-    """The state at time 0: the state at first contact taken back along the free flight of the rigid
-    vehicle. `ground` is the motion of the ground from time 0 on.
+    """The state at time 0.
 
-    At first contact the ground's origin lies below the CG, and the lowest footpad just touches.
-    Raises LandingError as `FreeFlight.start`.
+    It is the state at the first contact, taken back along the free flight of the rigid vehicle. At
+    the first contact the ground's origin lies below the CG, and the lowest footpad just touches.
+
+    Args:
+        parameters: The parameters of the landing.
+        ground: The motion of the ground from time 0 on.
+
+    Raises:
+        LandingError: As `FreeFlight.start`.
     """
     flight = FreeFlight(parameters, ground)
     body = BodyState(*flight.start())
@@ -180,8 +191,13 @@ def new_solver(
     method: type[Solver] = Exponential,
     kind: type[Planar] = Planar,
 ) -> Solver:
-    """A solver of relative tolerance `rtol` at the start of the parameters' landing; `method` and
-    `kind` are both compiled or both pure.
+    """A solver at the start of the parameters' landing.
+
+    Args:
+        parameters: The parameters of the landing.
+        rtol: Relative tolerance.
+        method: The integration method, of the same core as `kind`.
+        kind: The vehicle's class, of the compiled or of the pure core.
     """
     solver = method(build_system(parameters, kind), rtol)
     begin(solver, parameters)
@@ -191,10 +207,18 @@ def new_solver(
 def begin(
     solver: Solver, parameters: Parameters, inputs: Inputs = NO_INPUTS, rates: Inputs = NO_INPUTS
 ) -> None:
-    """Take a solver to the start of the parameters' landing: time 0, counts 0, the `inputs` and
-    their `rates`, an energy balance of 0.
+    """Take a solver to the start of the parameters' landing.
 
-    Raises LandingError as `start_state`; nothing is changed then.
+    The time, the counts and the energy balance are 0 then.
+
+    Args:
+        solver: A solver of `build_system(parameters)`.
+        parameters: The parameters of the landing.
+        inputs: The inputs at time 0.
+        rates: Their rates.
+
+    Raises:
+        LandingError: As `start_state`; nothing is changed then.
     """
     for target, numbers in (
         (solver.y, start_state(parameters, ground_motion(inputs, rates))),
@@ -204,9 +228,11 @@ def begin(
         for i, value in enumerate(numbers):
             target[i] = value
     system = cast(Planar, solver.system)
-    system.energy_start = 0.0
-    solver.start(0.0)
-    system.energy_start = solver.last[BODY_OUTPUTS + BALANCE]
+    system.energy_start = system.most_balance = 0.0
+    solver.t_input = 0.0
+    outputs = array("d", bytes(8 * system.row))
+    solver.outputs_at(0.0, array("d", solver.y), outputs)
+    system.energy_start = outputs[BODY_OUTPUTS + BALANCE]
     solver.start(0.0)
 
 

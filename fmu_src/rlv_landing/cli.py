@@ -187,3 +187,7 @@ def _refuse(message: str, status: int) -> int:
     with suppress(OSError):
         click.echo(one_line(f"error: {message}"), err=True)
     return status
+
+
+if __name__ == "__main__":
+    main()

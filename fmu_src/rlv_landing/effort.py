@@ -60,23 +60,23 @@ def duration_text(seconds: float) -> str:
     return f"{seconds / YEAR:.3g} years"
 
 
-def check_memory(what: str, needed: float, remedy: str) -> None:
+def check_memory(what: str, needed: float, remedy: str, *, at_most: bool = False) -> None:
     """Refuse what needs more memory than is free.
 
     Args:
         what: What needs it, for the error.
         needed: The memory [bytes].
         remedy: What to do.
+        at_most: Whether that is the most it may need, and not the least.
 
     Raises:
         LandingError: It is more.
     """
     free = free_memory()
     if needed > free:
-        raise LandingError(
-            f"{what} needs {size_text(needed)} of memory at least, and {size_text(free)} is free; "
-            f"{remedy}"
-        )
+        size = size_text(needed)
+        needs = f"may need {size} of memory" if at_most else f"needs {size} of memory at least"
+        raise LandingError(f"{what} {needs}, and {size_text(free)} is free; {remedy}")
 
 
 def check_duration(what: str, seconds: float, remedy: str) -> None:

@@ -11,10 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import LandingError, unknown
-from .extremes import Extreme
+from .outputs import Extreme
 from .parameters import Parameters
 from .text.durable import text_of, whole_file
 from .touchdown import AT_REST, GroundMotion
+
+# rows that are written at once: as Python's numbers they take four times their memory
+ROWS_AT_ONCE = 1000
 
 
 class History:
@@ -128,8 +131,10 @@ class History:
         """Write all columns to an open CSV file, SI units, full precision."""
         writer = csv.writer(file)
         writer.writerow(list(self))
-        for t, row in zip(self.time.tolist(), self.data.tolist()):
-            writer.writerow([repr(t), *map(repr, row)])
+        for first in range(0, len(self), ROWS_AT_ONCE):
+            part = slice(first, first + ROWS_AT_ONCE)
+            for t, row in zip(self.time[part].tolist(), self.data[part].tolist()):
+                writer.writerow([repr(t), *map(repr, row)])
 
 
 def _earlier(whole: Extreme, sampled: Extreme, end: float) -> Extreme:

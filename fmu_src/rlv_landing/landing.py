@@ -6,18 +6,17 @@ from array import array
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from math import inf
-from operator import itemgetter
 from typing import TYPE_CHECKING, Any
 
 from .assembly import NO_INPUTS, begin, build_system
 from .core import DormandPrince, Exponential, Inputs, Solver
 from .errors import LandingError, unknown
-from .extremes import Extreme, by_name, output_order
 from .inputs.driven import RATE_INPUTS, DrivenInputs, Setting, changed_setting
+from .interruptible import advance, check_going, record
+from .outputs import Extreme, OutputReader
 from .parameters import Parameters
 from .quantities import INPUT_NAMES, OUTPUT_NAMES
-from .state import LATEST, state_of, take_up
-from .stints import advance, check_going, record
+from .state import LATEST, load_state, state_of
 
 if TYPE_CHECKING:
     from numpy import float64
@@ -75,12 +74,7 @@ class Landing:
         self._system = build_system(self.parameters)
         self._solver: Solver = METHODS[method](self._system, rtol)
         self._solver.limit = self.parameters.solver.max_steps_per_second
-        self._y = array("d", bytes(8 * self._system.n))
-        self._out = array("d", bytes(8 * self._system.row))
-        self._out_time = inf
-        self._order = output_order(self.parameters.drop.mode)
-        self._pick = itemgetter(*(i for i, _ in self._order))
-        self._turned = [k for k, (_, factor) in enumerate(self._order) if factor < 0.0]
+        self._reader = OutputReader(self._solver, self.parameters.drop.mode)
         self._inputs = DrivenInputs(self._solver)
         self._first = changed_setting((NO_INPUTS, NO_INPUTS), inputs or {}, rates or {})
         self.reset()
@@ -99,11 +93,11 @@ class Landing:
 
     @property
     def statistics(self) -> dict[str, int]:
-        """What the integrator has done so far: steps, rejected steps, calls of the right-hand side;
-        and whether the landing sleeps (1, else 0).
+        """The integrator's work so far, and whether the landing sleeps (1, else 0).
 
-        A landing sleeps at rest under loads and a ground that do not change: time passes without
-        steps, until `set_inputs` changes something.
+        The work is steps, rejected steps and calls of the right-hand side. A landing sleeps at rest
+        under loads and a ground that do not change: time passes without steps, until `set_inputs`
+        changes something.
         """
         s = self._solver
         return {
@@ -129,7 +123,7 @@ class Landing:
         begin(self._solver, self.parameters, inputs, rates)
         self._inputs.begin()
         self._time = 0.0
-        self._out_time = inf
+        self._reader.forget()
 
     def set_inputs(self, values: Mapping[str, Any], rates: Mapping[str, Any] | None = None) -> None:
         """Set inputs by name from now on; others go on as they were.
@@ -160,10 +154,24 @@ class Landing:
             if new != present:
                 self._begin(*new)
         elif self._inputs.set(self._time, values, rates or {}):
-            self._out_time = inf
+            self._reader.forget()
+
+    def inputs(self) -> dict[str, float]:
+        """The inputs that act at the present time, by name.
+
+        Heave and tilt are the ground's present position, which is on its way to a new one that was
+        set; their rates are those of its motion.
+        """
+        self._solver.inputs_at(self._time)
+        return dict(zip(INPUT_NAMES, self._solver.u_now))
 
     def step(self, dt: float) -> None:
-        """Go on by `dt` [s]. Raises LandingError unless `dt` is finite and positive."""
+        """Go on by `dt` [s].
+
+        Raises:
+            LandingError: `dt` is not finite and above 0.
+            IntegrationError: The integrator cannot go on.
+        """
         if not 0.0 < dt < inf:
             raise LandingError(f"step = {dt:g} s must be finite and above 0 s")
         self.advance_to(self._time + dt)
@@ -201,15 +209,11 @@ class Landing:
             self._inputs.begin_step(end, time)
 
     def values(self) -> list[float]:
-        """All outputs at the present time, in the order of `rlv_landing.quantities.OUTPUT_NAMES`."""
-        if self._out_time != self._time:
-            self._solver.interpolate(self._time, self._y)
-            self._solver.outputs_at(self._time, self._y, self._out)
-            self._out_time = self._time
-        values = list(self._pick(self._out))
-        for i in self._turned:
-            values[i] = -values[i]
-        return values
+        """All outputs at the present time, in the order of OUTPUT_NAMES.
+
+        These names are in `rlv_landing.quantities`.
+        """
+        return self._reader.values(self._time)
 
     def outputs(self) -> dict[str, float]:
         """All outputs at the present time, by name."""
@@ -227,28 +231,27 @@ class Landing:
         They are kept at the integrator's steps, and looked for between these where an output turns:
         they depend neither on samples nor on communication steps.
         """
-        found = array("d", bytes(8 * 4 * self._system.row))
-        self._solver.extremes(self._time, found)
-        return by_name(found, self._order)
+        return self._reader.extremes(self._time)
 
     def state(self) -> array[float]:
-        """The whole state, the integrator's included: what `restore` needs to go on with the very
-        same digits.
+        """The whole state, the integrator's included.
+
+        `restore` needs it to go on with the very same digits.
         """
         ways = self._inputs.state()
-        return state_of(self._solver, self._time, self._system.energy_start, ways)
+        return state_of(self._solver, self._time, ways)
 
     def restore(self, state: array[float]) -> None:
-        """Take up a state that `state()` of a landing with the same parameters gave.
+        """Restore a state that `state()` of a landing with the same parameters gave.
 
-        Raises LandingError if its length is not that of this landing's state, a number in it is not
-        finite, or no landing has such numbers; nothing is changed then.
+        Raises:
+            LandingError: Its length is not that of this landing's state, a number in it is not
+                finite, or no landing has such numbers; nothing is changed then.
         """
-        header, ways = take_up(self._solver, state)
+        header, ways = load_state(self._solver, state)
         self._time = header.time
-        self._system.energy_start = header.energy_start
         self._inputs.restore(ways)
-        self._out_time = inf
+        self._reader.forget()
 
     def run(
         self,
@@ -256,51 +259,43 @@ class Landing:
         every: float = 1e-3,
         progress: Callable[[float], object] | None = None,
     ) -> History:
-        """Land from now until `until` [s]; return the outputs every `every` [s], the present time
-        included.
+        """Land from now until `until` [s].
 
         Times are counted, now + k * every, never summed. Other threads run meanwhile: landings in
-        several threads use several cores. `progress` is called with the time reached, every SLICE
-        samples. Raises LandingError unless `every` is above 0 and `until` is ahead, or if the samples
-        need more memory than is free, or the landing would take longer than 30 days.
+        several threads use several cores.
+
+        Args:
+            until: Time to land to [s].
+            every: Time between two samples [s].
+            progress: Called with the time reached [s], every SLICE samples.
+
+        Returns:
+            The outputs every `every` [s], the present time included.
+
+        Raises:
+            LandingError: `every` is not above 0, `until` is not ahead, the samples need more memory
+                than is free, or the landing would take longer than 30 days.
         """
         import numpy as np
 
-        from .effort import SECONDS_PER_SAMPLE, SECONDS_PER_SECOND, check_duration, check_memory
         from .history import History
+        from .sampling import sample_count
 
-        if not 0.0 < every < inf:
-            raise LandingError(f"every = {every:g} s must be finite and above 0 s")
-        if not self._time < until <= LATEST:
-            raise LandingError(
-                f"until = {until:g} s must be finite, after the present time, {self._time:g} s, "
-                f"and at most {LATEST:g} s"
-            )
+        start, row = self._time, self._system.row
+        # rows, the same turned, and columns are there at once
+        samples = sample_count(start, until, every, 2 * row + len(OUTPUT_NAMES))
         check_going(self._solver)
-        start, ground = self._time, self._inputs.ground(self._time)
-        span = f"a landing until {until:g} s in samples of {every:g} s"
-        remedy = "land shorter, or sample more seldom"
-        count = (until - start) / every
-        # rows and columns are there at once
-        check_memory(span, 16.0 * self._system.row * count, remedy)
-        seconds = SECONDS_PER_SECOND * (until - start) + SECONDS_PER_SAMPLE * count
-        check_duration(span, seconds, remedy)
-        samples = int(count * (1.0 + 1e-12) + 1e-9) + 1
-        rows = np.empty((samples, self._system.row))
+        ground = self._inputs.ground(start)
+        rows = np.empty((samples, row))
         self._solver.open_span(start)
         try:
             self._record(rows.reshape(-1), start, every, samples, progress)
-            found = array("d", bytes(8 * 4 * self._system.row))
-            self._solver.extremes_of_span(self._time, found)
+            extremes = self._reader.extremes_of_span(self._time)
         finally:
             self._solver.close_span()
-        # a column of the history is contiguous: what studies make of it takes a fraction of the
-        # time
-        columns = np.ascontiguousarray(rows.T)[[i for i, _ in self._order]]
-        columns[self._turned] *= -1.0
         time: NDArray[float64] = np.array([start + k * every for k in range(samples)])
-        extremes = by_name(found, self._order)
-        return History(time, OUTPUT_NAMES, columns.T, self.parameters, ground, extremes)
+        data = self._reader.columns(rows)
+        return History(time, OUTPUT_NAMES, data, self.parameters, ground, extremes)
 
     def _record(
         self,
@@ -334,7 +329,7 @@ class Landing:
             yield
         except BaseException:
             self._time = max(self._time, min(self._solver.t, time))
-            self._out_time = inf
+            self._reader.forget()
             raise
 
 

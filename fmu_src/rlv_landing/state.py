@@ -23,7 +23,7 @@ LATEST = 1e9
 
 
 class StateHeader(NamedTuple):
-    """What a state begins with: the landing's time, and what the solver keeps beside its arrays."""
+    """The head of a state: the landing's time, and the solver's numbers beside its arrays."""
 
     time: float  # [s]
     t: float  # end of the last internal step [s]
@@ -34,6 +34,7 @@ class StateHeader(NamedTuple):
     h: float  # the next internal step [s]
     error_old: float  # error of the last step, in units of the tolerance
     energy_start: float  # [J]
+    most_balance: float  # the largest energy balance at a step's end [J]
     steps: float
     rejected: float
     rhs_calls: float
@@ -48,36 +49,37 @@ class StateHeader(NamedTuple):
     waited: float
 
 
-# fields that the solver does not have by the same name
-OF_LANDING = ("time", "energy_start")
-OF_SOLVER = tuple(name for name in StateHeader._fields if name not in OF_LANDING)
+# fields that the solver's system has by the same name, and those that the solver has
+OF_SYSTEM = ("energy_start", "most_balance")
+OF_SOLVER = tuple(name for name in StateHeader._fields if name not in ("time", *OF_SYSTEM))
 WHOLE = ("fault", "dense_at", "seen", "still", "waited")
 
 
 def _arrays(solver: Solver) -> tuple[Buffer, ...]:
-    """What a state holds after its header."""
+    """The arrays that a state holds after its header."""
     s = solver
     return (s.u, s.u_rate, s.y, s.dense, s.kept, s.before, s.middle, s.last)
 
 
-def state_of(
-    solver: Solver, time: float, energy_start: float, ways: Sequence[float]
-) -> array[float]:
+def state_of(solver: Solver, time: float, ways: Sequence[float]) -> array[float]:
     """The state of a landing.
 
     Args:
         solver: The landing's solver.
         time: The landing's time [s].
-        energy_start: The system's energy at the start [J].
         ways: The numbers of `DrivenInputs.state`.
     """
     kept = {name: float(getattr(solver, name)) for name in OF_SOLVER}
-    header = StateHeader(time=time, energy_start=energy_start, **kept)
+    kept |= {name: float(getattr(solver.system, name)) for name in OF_SYSTEM}
+    header = StateHeader(time=time, **kept)
     return array("d", itertools.chain(header, ways, *_arrays(solver)))
 
 
-def take_up(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequence[float]]:
-    """Give the `solver` the state; return its header, and the ways for `DrivenInputs.restore`.
+def load_state(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequence[float]]:
+    """Load a state into the `solver`.
+
+    Returns:
+        The state's header, and the ways for `DrivenInputs.restore`.
 
     Raises:
         LandingError: The length is not that of this solver's state, a number is not finite, or the
@@ -96,14 +98,16 @@ def take_up(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequence[
         raise LandingError("state holds numbers that are not finite; take one that state() gave")
     header, ways = StateHeader(*state[:head]), state[head:at]
     rates = state[at + len(solver.u) :]
-    for told in itertools.chain(
+    for fault in itertools.chain(
         _faults(header, len(solver.dense) // 2), way_faults(ways, rates, header.time)
     ):
-        raise LandingError(f"state holds {told}; take one that state() gave")
+        raise LandingError(f"state holds {fault}; take one that state() gave")
     for target in targets:
         for i in range(len(target)):
             target[i] = state[at + i]
         at += len(target)
+    for name in OF_SYSTEM:
+        setattr(solver.system, name, getattr(header, name))
     for name in ("t", "t_input"):
         setattr(solver, name, getattr(header, name))
     solver.recompute_derived()
@@ -115,7 +119,7 @@ def take_up(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequence[
 
 
 def _faults(h: StateHeader, dense: int) -> Iterator[str]:
-    """What is wrong with a header; `dense` is the length of one interpolant."""
+    """The faults of a header; `dense` is the length of one interpolant."""
     if not 0.0 <= h.t_start <= h.t_before <= h.t_old <= h.time <= h.t <= LATEST:
         yield (
             f"times that are not in order: start {h.t_start:g}, steps {h.t_before:g}, "
@@ -133,6 +137,8 @@ def _faults(h: StateHeader, dense: int) -> Iterator[str]:
             yield f"{name} = {value:g}, which is not a count"
     if max(h.still, h.waited) >= MOST_STILL:
         yield f"still = {h.still:g}, waited = {h.waited:g}, which none has"
+    if h.most_balance < 0.0:
+        yield f"a largest energy balance of {h.most_balance:g} J, which is a magnitude"
     if h.nearest < 0.0:
         yield f"a rest {h.nearest:g} m away"
     if not 0.0 <= h.spent < LARGEST_COUNT:

@@ -95,7 +95,7 @@ def _contact_force(history: History, leg: int) -> dict[str, float]:
 
 
 def unfinished(summary: dict[str, Any]) -> list[str]:
-    """A line for each stroke that the landing's end cuts off: legs, and what is not known."""
+    """A line for each kind of stroke that the end cuts off: legs, and what is not known."""
     lines = []
     for state, missing in UNFINISHED.items():
         legs = [
@@ -106,4 +106,17 @@ def unfinished(summary: dict[str, Any]) -> list[str]:
                 f"at the end, {summary['end_time']:.3f} s, the damper of leg {', '.join(legs)} is "
                 f"still {state}: {missing}; run it longer"
             )
+    last = summary["end_time"] - 1e-9
+    growing = [
+        str(leg["leg"])
+        for leg in summary["legs"]
+        if leg["main_strut_first_stroke"] != "in compression"
+        and leg["main_strut_stroke_max"] > 0.0
+        and leg["main_strut_stroke_max_time"] >= last
+    ]
+    if growing:
+        lines.append(
+            f"at the end, {summary['end_time']:.3f} s, the damper of leg {', '.join(growing)} goes "
+            "in further than ever before: its largest stroke is not known; run it longer"
+        )
     return lines

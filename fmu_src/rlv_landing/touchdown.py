@@ -7,8 +7,8 @@ from math import cos, sin
 from typing import NamedTuple
 
 from .errors import LandingError
-from .parameters import Parameters, azimuth
-from .quantities import MODES
+from .parameters import Parameters
+from .quantities import MODES, azimuth
 
 # parts of the free flight's duration at which the footpads are checked to be above the ground
 FLIGHT_CHECKS = tuple(i / 64.0 for i in range(65))

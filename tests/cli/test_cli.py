@@ -6,12 +6,15 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
+import click
 import numpy as np
 import pytest
 
 from rlv_landing import Landing, load_preset
+from rlv_landing.cli import cli
 from rlv_landing.quantities import OUTPUT_NAMES
 
 
@@ -151,7 +154,7 @@ def test_options_take_units(tmp_path):
     assert data[:, 0].tolist() == [k * 0.01 for k in range(11)]
 
 
-def test_files_are_not_overwritten_unless_told(tmp_path):
+def test_files_are_not_overwritten_unless_asked(tmp_path):
     (tmp_path / "l.csv").write_text("precious")
     done = run("simulate", "--until", "0.1", "--output", "l.csv", cwd=tmp_path)
     assert done.returncode == 2
@@ -161,3 +164,28 @@ def test_files_are_not_overwritten_unless_told(tmp_path):
         run("simulate", "--until", "0.1", "--output", "l.csv", "--force", cwd=tmp_path).returncode
         == 0
     )
+
+
+def test_the_module_runs_as_the_command_does():
+    done = subprocess.run(
+        [sys.executable, "-m", "rlv_landing.cli", "--version"], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == run("--version").stdout.replace("-c,", "python -m rlv_landing.cli,")
+
+
+def _commands(group: click.Group) -> Iterator[click.Command]:
+    context = click.Context(group)
+    for name in group.list_commands(context):
+        command = group.get_command(context, name)
+        assert command is not None
+        if isinstance(command, click.Group):
+            yield from _commands(command)
+        else:
+            yield command
+
+
+def test_help_prints_no_open_range():
+    texts = {c.name: c.get_help(click.Context(c)) for c in _commands(cli)}
+    assert {"envelope", "node", "export"} <= set(texts)
+    assert [name for name, text in texts.items() if "None" in text] == []

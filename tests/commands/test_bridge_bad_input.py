@@ -8,6 +8,11 @@ from pathlib import Path
 import pytest
 from bridge_tools import one_error_line, run
 
+from rlv_landing.cli import cli
+from rlv_landing.errors import LandingError
+from rlv_ros_bridge.fmu.builds import build_metadata
+from rlv_ros_bridge.messages.topics import check_namespace
+
 NODE_CASES: dict[str, tuple[tuple[str, ...], str]] = {
     "unknown parameter": (("--set", "vehicle.mas=1"), "did you mean vehicle.mass?"),
     "parameter out of bounds": (
@@ -28,6 +33,11 @@ NODE_CASES: dict[str, tuple[tuple[str, ...], str]] = {
     "step not a number": (("--step", "nan"), "step_size = nan"),
     "step of half a nanosecond": (("--step", "0.0010000005"), "not a whole number of nanoseconds"),
     "stop before the first step": (("--stop-time", "0"), "stop_time = 0 s is below the step"),
+    "real-time factor of months": (
+        ("--realtime-factor", "1e-7"),
+        "at realtime_factor = 1e-07 would take 116 days at least",
+    ),
+    "name that is no namespace": (("--namespace", "1x"), "namespace '1x' is none of ROS 2's"),
     "negative real-time factor": (("--realtime-factor", "-1"), "realtime_factor = -1 is outside"),
     "unknown mode": (("--mode", "2-1"), "unknown landing mode '2-1'"),
     "unknown preset": (("--preset", "yue2022-figure"), "did you mean yue2022-figures?"),
@@ -59,6 +69,22 @@ NODE_CASES: dict[str, tuple[tuple[str, ...], str]] = {
         "only 0 of 1 subscribers",
     ),
 }
+
+
+@pytest.mark.parametrize(
+    "name", ["a//b", "a/", "~", "a-b", "{x}", "1x", "a/1", "\u00e4", "a" * 300]
+)
+def test_names_that_ros_does_not_take_are_refused_before_it_starts(name: str) -> None:
+    with pytest.raises(LandingError, match="is none of ROS 2's; write at most 200 letters"):
+        check_namespace(name)
+    for command in ("view", "node"):
+        with pytest.raises(LandingError, match="is none of ROS 2's"):
+            cli.main([command, "--namespace", name], standalone_mode=False)
+
+
+@pytest.mark.parametrize("name", ["", "/", "a", "/a", "a/b_1/_c"])
+def test_names_that_ros_takes_are_taken(name: str) -> None:
+    check_namespace(name)
 
 
 @pytest.mark.parametrize("case", NODE_CASES)
@@ -98,6 +124,16 @@ def test_node_refuses_what_is_not_our_fmu(fmu: Path, tmp_path: Path) -> None:
         assert path.name in line
         assert done.returncode == 2
     assert sorted(p.name for p in tmp_path.iterdir()) == ["archive.fmu", "foreign.fmu", "text.fmu"]
+
+
+def test_a_device_or_a_damaged_archive_has_no_model(fmu: Path, tmp_path: Path) -> None:
+    data = bytearray(fmu.read_bytes())
+    data[: len(data) * 3 // 4] = bytes(len(data) * 3 // 4)
+    damaged = tmp_path / "damaged.fmu"
+    damaged.write_bytes(data)
+    assert build_metadata(fmu)["model"]
+    for path in (Path("/dev/zero"), damaged, tmp_path):
+        assert build_metadata(path)["model"] == ""
 
 
 def test_node_never_overwrites_and_says_what_cannot_be_written(fmu: Path, tmp_path: Path) -> None:

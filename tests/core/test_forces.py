@@ -133,7 +133,7 @@ def test_an_excess_is_taken_off_wherever_it_is(z1, z2, part):
     p = P._replace(fill=leg_forces(leg, still, P).liquid_mass / (1.0 + part))
     forces = leg_forces(leg, still, p)
     assert liquid_excess(forces, p) == approx(part, rel=1e-6, abs=1e-12)
-    mended = without_excess(leg, forces, p)
+    mended = without_excess(leg, forces, p, 0.0)
     assert abs(liquid_excess(leg_forces(mended, still, p), p)) < 1e-9
     assert mended[:4] == leg[:4]
     assert mended[6:] == leg[6:]

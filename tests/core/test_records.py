@@ -48,7 +48,7 @@ def test_accounts_are_what_the_energies_name():
     assert list(records.Accounts._fields) == booked
 
 
-def test_phases_are_told_in_their_order():
+def test_phases_are_described_in_their_order():
     told = next(q for q in STATUS_QUANTITIES if q.name == "status.phase")
     assert (told.lo, told.hi) == (min(Phase), max(Phase))
     for phase in Phase:

@@ -43,6 +43,9 @@ class Hung(System):
     def may_rest(self, u, rates, outputs):
         return rates[0] == 0.0 and abs(outputs[1]) < 1e-3
 
+    def rests(self, outputs):
+        return abs(outputs[1]) < 1e-3
+
     def distance(self, shift):
         return max(abs(shift[0]), abs(shift[2]), abs(shift[3]))
 

@@ -106,7 +106,7 @@ def test_names_are_escaped(text):
     assert "yue2022-figures &lt;&amp;&gt;" in text
 
 
-def test_the_command_writes_the_page_and_does_not_overwrite_unless_told(command, tmp_path):
+def test_the_command_writes_the_page_and_does_not_overwrite_unless_asked(command, tmp_path):
     path = tmp_path / "report.html"
     assert command("validate", "--mode", "2-2", "--html", str(path)).code == 0
     assert path.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")

@@ -54,6 +54,32 @@ def nothing_is_cut_off(path: Path) -> bool:
     return all((edge == 1.0).all() for edge in edges)
 
 
+def test_panels_above_an_empty_place_have_numbers_and_covered_boundaries_show(saved, tmp_path):
+    """Four panels are in two rows of three; families of one panel may have the same boundary."""
+    parameters = load_preset("yue2022-figures", "2-2").with_values({"drop.contact_time": 0.0})
+    study = EnvelopeStudy(
+        parameters,
+        Axis("drop.horizontal_velocity", -6.0, 6.0, 6.0),
+        Axis("drop.tilt", -0.3, 0.3, 0.3),
+        families=tuple(
+            {"main_strut.orifice_area_compression": area, "ground.friction": friction}
+            for area in (6e-6, 7e-6)
+            for friction in (0.3, 0.4, 0.5, 0.6)
+        ),
+        cells=2,
+        levels=0,
+        until=0.3,
+    )
+    save_envelope(envelope(study, 2), tmp_path / "e.png")
+    (figure,) = saved
+    panels = [ax for ax in figure.axes if ax.get_visible()]
+    assert len(panels) == 4
+    for ax in panels:
+        assert bool(ax.get_xlabel()) == any(t.get_visible() for t in ax.get_xticklabels())
+    widths = [line.get_linewidth() for line in figure.legends[0].get_lines()[:2]]
+    assert widths[0] > widths[1] + 1.0
+
+
 @pytest.mark.parametrize("families", [1, 2])
 def test_the_legend_of_an_envelope_is_whole_with_one_family_too(saved, tmp_path, families):
     parameters = load_preset("yue2022-figures", "2-2").with_values({"drop.contact_time": 0.0})
@@ -73,7 +99,11 @@ def test_the_legend_of_an_envelope_is_whole_with_one_family_too(saved, tmp_path,
     ((legend,),) = (figure.legends for figure in saved)
     shown = [text.get_text() for text in legend.get_texts()]
     assert any("passes body.top_axial_acceleration first" in text for text in shown)
+    assert {"a landing that is lost", "one that is not"} <= set(shown)
     assert nothing_is_cut_off(tmp_path / "e.png")
+    (figure,) = saved
+    limits = "(auxiliary_strut.force 6 kN, body.top_axial_acceleration 40 m/s2)"
+    assert limits in figure.get_suptitle()
 
 
 def test_one_wide_interval_leaves_all_axes_from_0_to_1(saved, tmp_path):

@@ -11,8 +11,8 @@ from fmpy.fmi1 import FMICallException
 from fmu_instance import ERROR, OK, WARNING, assert_lands_like_landing, reals, refs
 
 from rlv_landing import Landing, Parameters, load_preset
-from rlv_landing.extremes import Extreme
 from rlv_landing.landing import LOOSEST_RTOL
+from rlv_landing.outputs import Extreme
 from rlv_landing.presets import preset_names
 from rlv_landing.quantities import MODES, PEAKS
 

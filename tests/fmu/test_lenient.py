@@ -1,4 +1,4 @@
-"""What hosts do that FMI does not foresee, and that does no harm."""
+"""Calls of hosts that FMI does not foresee, and that do no harm."""
 
 from __future__ import annotations
 

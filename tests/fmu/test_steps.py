@@ -6,8 +6,9 @@ from ctypes import byref, c_char_p, c_double, c_int
 
 import numpy as np
 import pytest
-from fmpy import fmi2
-from fmu_instance import DISCARD, OK, assert_lands_like_landing
+from fmpy import fmi2, simulate_fmu
+from fmpy.fmi1 import FMICallException
+from fmu_instance import DISCARD, ERROR, OK, assert_lands_like_landing
 
 from rlv_landing import Landing
 from rlv_landing.quantities import OUTPUT_NAMES
@@ -71,3 +72,27 @@ def test_results_are_the_same_for_steps_from_10_us_to_100_ms_in_any_order(make):
             np.abs(np.array(found) - expected)
             <= 1e-9 * np.maximum(1.0, np.abs(expected).max(axis=0))
         )
+
+
+def test_the_tenth_refusal_in_a_row_is_an_error_and_the_landing_goes_on_after(instance):
+    instance.start()
+    instance.steps(0, 3)
+    instance.set("external.force_x", float("nan"))
+    assert [instance.step(3e-3, 1e-3) for _ in range(11)] == [DISCARD] * 9 + [ERROR] * 2
+    assert "external.force_x" in instance.reason()
+    assert "refusal 11 in a row" in instance.reason()
+    instance.set("external.force_x", 0.0)
+    assert instance.step(3e-3, 1e-3) == OK
+    assert_lands_like_landing(instance, 4)
+    assert instance.step(0.0, 1e-3) == DISCARD
+
+
+def test_an_importer_that_repeats_refused_steps_ends_with_the_reason(fmu, capfd):
+    """FMPy's loop repeats a discarded step as it was."""
+    pulse = np.array(
+        [(0.0, 0.0), (0.01, np.nan), (0.1, 0.0)],
+        dtype=[("time", float), ("external.force_x", float)],
+    )
+    with pytest.raises(FMICallException, match="error"):
+        simulate_fmu(str(fmu), stop_time=0.1, output_interval=1e-3, input=pulse)
+    assert "external.force_x" in capfd.readouterr().err

@@ -187,7 +187,7 @@ def test_every_prior_has_bounds_and_a_reason_and_table_1_is_never_free():
             assert parameters.source(p.name) in ("identified", "closure")
 
 
-def test_conditions_are_silent_on_a_sensible_landing_and_speak_up_on_a_hard_one():
+def test_conditions_cost_nothing_on_a_plausible_landing_and_something_on_a_hard_one():
     sensible = Landing(load_preset(FIGURES, "2-2")).run(0.6)
     hard = Landing(
         load_preset(FIGURES, "2-2").with_values(

@@ -117,6 +117,13 @@ def test_a_weight_multiplies_the_misfit_and_the_cost_of_a_miss():
     assert three == approx(3.0 * one)
 
 
+def test_a_scale_has_the_unit_of_its_heading_else_that_of_the_value(tmp_path):
+    for heading, unit, scale in (("scale [N]", "kN", 0.5), ("scale", "kN", 500.0)):
+        text = f"id,value,unit,mode,{heading}\n{FORCE},-4,{unit},2-2,500\n"
+        (wanted,) = read_targets(targets(tmp_path, text))
+        assert (wanted.value, wanted.scale, wanted.unit) == (-4.0, approx(scale), "kN")
+
+
 @pytest.mark.parametrize(
     ("row", "message"),
     [
@@ -127,13 +134,14 @@ def test_a_weight_multiplies_the_misfit_and_the_cost_of_a_miss():
         ("outcome.first_limit_time,1,s,2-2", "is not a number that varies continuously"),
         ("body.pitch.final,0,deg,2-2", "= 0 has no size to judge a difference on"),
         (f"{FORCE},-4,mm,2-2", "has the wrong unit; give it in N"),
-        (f"{FORCE},-4 kN,N,2-2", "has a unit, and N beside it; leave one"),
+        (f"{FORCE},-4 kN,N,2-2", "has the units kN and N; leave one"),
         (f"{FORCE},-4,,2-2", r"no unit of .*write it in a column unit, or in the heading"),
         (f"{FORCE},-4,kN,", "says no landing mode; add a column mode"),
         (f"{FORCE},-4,kN,3-1", "unknown landing mode '3-1'"),
         (f"{FORCE},inf,kN,2-2", "must be finite"),
         ("22-s3-max,24,mm,1-2-1", "22-s3-max is a number of 2-2, and its mode is 1-2-1"),
         (f"{FORCE},-4,kN,2-2,1", "5 cells for 4 columns"),
+        (f"{FORCE},-4,kN", "3 cells for 4 columns; give every column a cell"),
         (f"{FORCE},-4,kN,2-2\n{FORCE},-5,kN,2-2", "is there twice; leave one"),
     ],
 )
@@ -153,6 +161,8 @@ def test_bad_rows_are_refused_with_line_and_remedy(tmp_path, row, message):
         ("id [m],value\n", "column id takes no unit in its heading"),
         (f"id,value [kN],mode,weight\n{FORCE},-4,2-2,0\n", "weight = 0 is outside"),
         (f"id,value [kN],mode,scale\n{FORCE},-4,2-2,-1 kN\n", "scale of .* must be finite and"),
+        (f"id,value [kN],unit,mode\n{FORCE},-4,N,2-2\n", "has the units kN and N; leave one"),
+        (f"id,value,unit,mode,scale [N]\n{FORCE},-4,kN,2-2,9 kN\n", "has the units kN and N"),
     ],
 )
 def test_bad_columns_are_refused(tmp_path, text, message):

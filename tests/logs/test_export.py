@@ -203,18 +203,31 @@ def test_export_refuses_what_cannot_be_done(
     assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("there.csv", "mine")]
 
 
-def test_a_full_disk_leaves_no_half_file(one_log: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("log", "export", "{log}", "out.csv"), "out.csv cannot be written: File too large"),
+        (("log", "export", "{log}", "out.parquet"), "out.parquet cannot be written: File too"),
+        (("view", "{log}", "--save", "out.rrd"), "out.rrd cannot be written: File too large"),
+        (("animate", "{log}", "o.mp4", "--end", "0.2"), "o.mp4 cannot be written: ffmpeg ended"),
+        (("log", "verify", "{log}", "--fmu", "{fmu}"), "name another folder by TMPDIR"),
+    ],
+)
+def test_a_full_disk_leaves_no_half_file(
+    one_log: Path, fmu: Path, tmp_path: Path, arguments: tuple[str, ...], message: str
+) -> None:
     done = subprocess.run(
-        command("log", "export", one_log, tmp_path / "out.csv"),
+        command(*(a.format(log=one_log, fmu=fmu) for a in arguments)),
         env=environment(),
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, 50_000)),
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000)),
         capture_output=True,
         text=True,
+        cwd=tmp_path,
         timeout=TIMEOUT,
         check=False,
     )
     assert done.returncode == 2
-    assert "out.csv cannot be written: File too large" in one_error_line(done)
+    assert message in one_error_line(done)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -60,7 +60,7 @@ def test_the_record_is_that_of_the_landing_to_the_last_digit(log: Path, mode: st
         assert texts["unit"] == peak.value.unit
 
 
-def test_info_tells_peaks_that_lie_between_the_messages(log: Path, mode: str) -> None:
+def test_info_prints_peaks_that_lie_between_the_messages(log: Path, mode: str) -> None:
     info = log_info(LogReader(log))
     whole = Landing(load_preset("yue2022-figures"), mode).run(1.0)
     assert info.landing["peaks_of"] == "landing"
@@ -71,7 +71,7 @@ def test_info_tells_peaks_that_lie_between_the_messages(log: Path, mode: str) ->
     assert "peaks: of the landing, between its messages too" in info.text()
 
 
-def test_the_tables_of_a_log_and_of_its_landing_tell_the_same_peaks(log: Path, mode: str) -> None:
+def test_the_tables_of_a_log_and_of_its_landing_have_the_same_peaks(log: Path, mode: str) -> None:
     """`node --report` prints this table of the log."""
     whole = Landing(load_preset("yue2022-figures"), mode).run(1.0)
     told, expected = (
@@ -84,7 +84,7 @@ def test_the_tables_of_a_log_and_of_its_landing_tell_the_same_peaks(log: Path, m
     assert told[-2] == expected[-2].partition(";")[0]
 
 
-def test_a_log_without_the_record_tells_peaks_of_its_messages_and_says_so(
+def test_a_log_without_the_record_has_the_peaks_of_its_messages_and_says_so(
     one_log: Path, tmp_path: Path
 ) -> None:
     bare = with_peaks(one_log, tmp_path / "bare", lambda texts: None)

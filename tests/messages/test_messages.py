@@ -68,7 +68,7 @@ def test_pitch_is_a_turn_about_ros_y_that_takes_the_nose_forward_and_down(pitch:
 
 
 @given(st.floats(-3.0, 3.0), st.floats(-10.0, 10.0), st.floats(-10.0, 10.0))
-def test_odometry_tells_the_velocity_in_the_body(pitch: float, vx: float, vy: float) -> None:
+def test_odometry_has_the_velocity_in_the_body_frame(pitch: float, vx: float, vy: float) -> None:
     messages = filled(sample({"body.pitch": pitch, "body.vx": vx, "body.vy": vy}))
     seen = messages.messages[ODOM].twist.twist.linear
     expected = Rotation.from_quat(pitch_quaternion(pitch)).inv().apply(to_ros(vx, vy, 0.0))

@@ -7,8 +7,8 @@ import pytest
 
 from rlv_landing import Landing, Parameters, load_preset
 from rlv_landing.errors import StepLimitError
+from rlv_landing.interruptible import LIMIT
 from rlv_landing.landing import METHODS
-from rlv_landing.stints import LIMIT
 
 COPIES = {
     "copy": copy.copy,

@@ -224,7 +224,7 @@ def test_no_state_hangs_a_landing(spoilt):
     landing.advance_to(0.02)
 
 
-def test_the_limit_is_told_as_other_parameters_are():
+def test_the_limit_is_listed_as_other_parameters_are():
     q = PARAMETER_QUANTITIES[LIMIT]
     assert (q.unit, q.kind) == ("1/s", "real")
     assert load_preset("yue2022-figures")[LIMIT] == q.default == 5e5

@@ -62,7 +62,7 @@ def test_peaks_are_those_of_a_landing_at_the_tightest_tolerance(mode):
 
 
 def test_samples_a_millisecond_apart_miss_peaks_of_the_ground_force():
-    """What the extremes are for: half of the peak is between two samples."""
+    """Half of the peak is between two samples."""
     parameters = load_preset(FIGURES, "1-2-1").with_values(HARD)
     history = Landing(parameters).run(0.6)
     peak = history.extremes["leg[1].contact.force_y"]

@@ -104,6 +104,26 @@ def test_a_parked_vehicle_takes_nothing_from_the_slope_it_stands_on(mode):
         assert after[name] == approx(before[name], abs=1e-3)
 
 
+@pytest.mark.parametrize("rtol", [1e-3, 1e-4])
+@pytest.mark.parametrize(
+    ("values", "side"),
+    [
+        ({"vehicle.transverse_load_at": "joint", "ground.friction": 0.8}, 0.15),
+        ({"main_strut.seal_coulomb": 3531.0, "ground.friction": 0.7, "ground.slope": 0.2}, 0.0),
+        ({"vehicle.footpad_mass": 0.42, "ground.friction": 0.9}, 0.0),
+    ],
+    ids=["side load", "stiff seals", "light feet"],
+)
+def test_what_trembles_at_a_loose_tolerance_comes_to_rest_too(mode, values, side, rtol):
+    """However its accelerations tremble: else it would neither be called settled nor sleep."""
+    upright = {"drop.horizontal_velocity": 0.0, "drop.tilt": values.get("ground.slope", 0.0)}
+    landing = Landing(load_preset(FIGURES, mode).with_values({**upright, **values}), rtol=rtol)
+    landing.set_inputs({"external.force_x": side * 9.81 * 194.8})
+    landing.advance_to(12.0)
+    assert landing.get("status.phase") == SETTLED
+    assert drift(landing) < DRIFT
+
+
 @pytest.mark.parametrize("slope", [12.0, 20.0])
 def test_on_a_slope_beyond_the_friction_angle_it_slides_and_is_said_to(slope):
     values = {

@@ -1,4 +1,4 @@
-"""What would take too much memory or time is refused at the door, with the estimate."""
+"""Work that would take too much memory or time is refused at once, with the estimate."""
 
 from __future__ import annotations
 
@@ -7,6 +7,19 @@ from study_tools import write_study
 
 from rlv_landing import Landing, LandingError
 from rlv_landing.effort import check_duration, check_memory, duration_text, free_memory, size_text
+from rlv_landing.studies.study_effort import check_indices, check_landings
+
+AXES = ("--x", "drop.horizontal_velocity=-4..4", "--y", "drop.tilt=-0.2..0.2")
+FACTORS = """
+[[factor]]
+name = "drop.tilt"
+low = -0.1
+high = 0.1
+[[factor]]
+name = "ground.friction"
+low = 0.2
+high = 0.5
+"""
 
 
 @pytest.mark.parametrize(
@@ -87,8 +100,7 @@ def test_families_whose_product_explodes_are_refused_with_their_time(tmp_path, c
     values = ",".join(str(k / 1000) for k in range(1, 1001))
     names = ("ground.friction", "external.force_x", "external.force_y", "drop.pitch_rate")
     families = [a for n in names for a in ("--family", f"{n}={values}")]
-    axes = ("--x", "drop.horizontal_velocity=-4..4", "--y", "drop.tilt=-0.2..0.2")
-    done = command("envelope", *axes, *families, "--work", str(tmp_path / "e"))
+    done = command("envelope", *AXES, *families, "--work", str(tmp_path / "e"))
     assert done.code == 2
     assert "families of 1e+12 boundaries would take 285 years at least" in done.err
     assert not (tmp_path / "e").exists()
@@ -98,3 +110,61 @@ def test_whole_numbers_of_500_digits_are_refused_with_their_time(command):
     done = command("identify", "--count", "9" * 500)
     assert done.code == 2
     assert "has more than 18 digits; so many steps of 1 ms would take 10^489 years" in done.err
+
+
+def test_landings_until_they_are_decided_are_refused_by_the_memory_that_they_may_need(
+    tmp_path, command
+):
+    study = tmp_path / "s.toml"
+    study.write_text(f'[study]\nmethod = "sobol"\nsamples = 1024\nevery = 1e-6\n{FACTORS}')
+    for name in ("sweep", "sensitivity"):
+        done = command(name, str(study), "--workers", "1024", "--results", str(tmp_path / "r"))
+        assert done.code == 2
+        assert "until 10 s at most, every = 1e-06 s, 1024 landings at once, may need" in done.err
+        assert not (tmp_path / "r").exists()
+
+
+def test_an_envelope_that_does_not_fit_is_refused_and_makes_no_folder(tmp_path, command):
+    study = tmp_path / "e.toml"
+    study.write_text("[envelope]\nevery = 1e-5\n")
+    work = ("--work", str(tmp_path / "e"))
+    done = command("envelope", str(study), *AXES, "--until", "3600", "--workers", "64", *work)
+    assert done.code == 2
+    assert "until 3600 s at most, every = 1e-05 s, 64 landings at once, may need" in done.err
+    families = ",".join(str(k / 1e4) for k in range(1, 900))
+    fine = ("--cells", "256", "--family", f"ground.friction={families}", "--workers", "1")
+    done = command("envelope", str(study), *AXES, "--until", "1 s", *fine, *work)
+    assert done.code == 2
+    assert "59378051 landings, until 1 s at most" in done.err
+    assert "would take 69.4 days at least, more than 30 days" in done.err
+    assert not (tmp_path / "e").exists()
+
+
+def test_landings_on_a_cluster_are_not_timed():
+    check_landings(10**8, 1, 100.0, 1e-2, decided=False, timed=False)
+    with pytest.raises(LandingError, match="would take"):
+        check_landings(10**8, 1, 100.0, 1e-2, decided=False)
+
+
+def test_indices_that_do_not_fit_are_refused_before_the_landings(tmp_path, command):
+    study = tmp_path / "s.toml"
+    study.write_text(f'[study]\nmethod = "sobol"\nsamples = {2**26}\n{FACTORS}')
+    done = command("sensitivity", str(study))
+    assert done.code == 2
+    assert f"this study has {2**28} points, more than 100000000" in done.err
+    with pytest.raises(
+        LandingError, match=r"needs 230 TB of memory at least.*; take fewer samples"
+    ):
+        check_indices(10**10, 7, 80, 999)
+    with pytest.raises(LandingError, match=r"10000000000 resamples of .* would take 81 days"):
+        check_indices(1000, 2, 1, 10**10)
+
+
+def test_a_search_whose_memory_does_not_fit_is_refused(tmp_path, command, monkeypatch):
+    monkeypatch.setattr("rlv_landing.effort.free_memory", lambda: 200_000_000)
+    work = ("--workers", "1", "--work", str(tmp_path / "i"))
+    done = command("identify", "--population", "100000", *work)
+    assert "--population 100000 needs 300 MB of memory at least" in done.err
+    done = command("identify", "--evaluations", "9999999", *work)
+    assert "--evaluations 9999999 may need 600 MB of memory, and 200 MB is free" in done.err
+    assert not (tmp_path / "i").exists()

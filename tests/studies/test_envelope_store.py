@@ -79,6 +79,10 @@ DAMAGED: dict[str, tuple[Callable[[bytes], bytes], str]] = {
     "leg": (changed(2, lambda r: r["landed"].update(leg=9)), "leg 9 is none of 4"),
     "more": (changed(2, lambda r: r["landed"].update(x=1)), "it is no landing"),
     "limit": (changed(2, lambda r: r["landed"].update(first_limit={})), "it is no landing"),
+    "digit": (
+        changed(2, lambda r: r["landed"].update(time=r["landed"]["time"] + 1e-3)),
+        "line 3, is damaged (its check sum is another)",
+    ),
     "contradiction": (
         lambda data: (
             data

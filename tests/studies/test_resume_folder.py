@@ -7,6 +7,7 @@ import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from pyarrow import parquet
@@ -65,6 +66,15 @@ def link_to(target: Path, link: Path) -> None:
     link.symlink_to(target)
 
 
+def in_another_unit(table: Any) -> Any:
+    """The same numbers, the unit of the last column with one another."""
+    schema = table.schema
+    at = max(i for i, f in enumerate(schema) if (f.metadata or {}).get(b"unit"))
+    field = schema.field(at)
+    other = field.with_metadata({**field.metadata, b"unit": b"furlong"})
+    return table.cast(schema.set(at, other))
+
+
 PART = "parts/000000000010.parquet"
 FAULTS: dict[str, tuple[Callable[[Path, Path], object], str]] = {
     "empty part": (lambda f, m: (f / PART).write_bytes(b""), "is damaged"),
@@ -116,6 +126,20 @@ FAULTS: dict[str, tuple[Callable[[Path, Path], object], str]] = {
     "torn results": (
         lambda f, m: (f / "results.parquet").write_bytes(b""),
         "results.parquet is damaged",
+    ),
+    "changed results": (
+        lambda f, m: (f / "results.parquet").write_bytes(
+            # the first page's data follow its head
+            (d := (m / "whole/r/results.parquet").read_bytes())[:200] + b"\xaa" * 9 + d[209:]
+        ),
+        "results.parquet is damaged",
+    ),
+    "other unit": (
+        lambda f, m: parquet.write_table(
+            in_another_unit(parquet.read_table(m / "whole/r/results.parquet")),
+            f / "results.parquet",
+        ),
+        "results.parquet is damaged (its columns are not the study's)",
     ),
     "short results": (
         lambda f, m: shutil.copy(f / PART, f / "results.parquet"),

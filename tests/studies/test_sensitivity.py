@@ -198,3 +198,11 @@ def test_help_of_both_commands_teaches():
         done = run(name, "--help", cwd=Path.cwd())
         assert done.returncode == 0
         assert f"rlv-landing {name} study.toml --dry-run" in done.stdout
+
+
+def test_indices_do_not_depend_on_how_many_resamples_are_drawn_at_once(monkeypatch):
+    pages = np.random.default_rng(0).random((5, 2, 64))
+    first, total = sobol_indices(pages, 7, 0.95, 99)
+    monkeypatch.setattr("rlv_landing.studies.sweep.sensitivity.BATCH", 640)
+    again = sobol_indices(pages, 7, 0.95, 99)
+    assert np.array_equal(again, (first, total))

@@ -286,7 +286,7 @@ def test_rows_that_cannot_be_landed_say_why_and_the_others_are_landed(tmp_path, 
     assert not (tmp_path / "strict").exists()
 
 
-def test_a_dry_run_tells_number_first_rows_and_time_and_makes_nothing(tmp_path, command):
+def test_a_dry_run_prints_number_first_rows_and_time_and_makes_nothing(tmp_path, command):
     study = str(write_study(tmp_path))
     printed = json.loads(command("sweep", study, "--dry-run", "--json").out)
     assert (printed["landings"], printed["samples"], len(printed["first"])) == (40, 20, 5)

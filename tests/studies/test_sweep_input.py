@@ -10,6 +10,8 @@ import builtins
 import pytest
 from study_tools import write_study
 
+from rlv_landing.tables.landing import new_table, render
+
 TILT = '[[factor]]\nname = "drop.tilt"\n'
 LHS = '[study]\nmethod = "lhs"\nsamples = 8\n'
 RANGE = TILT + "low = -0.1\nhigh = 0.1\n"
@@ -113,7 +115,7 @@ ROW = "1,0,0,-1\n"
         ('[study]\nmethod = "gird"\n' + RANGE, "unknown method 'gird'; did you mean grid?"),
         (
             "[study]\nsamples = 8\n" + RANGE,
-            "unknown method 'none'; known are grid, lhs, sobol, table",
+            "[study] has no method; write one of grid, lhs, sobol, table",
         ),
         ("[study\n", "TOML syntax"),
         (TABLE, "there is no table"),
@@ -213,3 +215,10 @@ def test_what_is_not_installed_is_named_with_its_extra(
     done = command("sweep", str(write_study(tmp_path)), "--results", str(tmp_path / "r"), *options)
     assert done.code == 2
     assert 'pip install "rlv-landing[studies]"' in done.err
+
+
+def test_a_table_cuts_no_name():
+    names = [f"main_strut.orifice_area_compression_{k}" for k in range(8)]
+    text = render(new_table("", (), names), 100)
+    assert "…" not in text
+    assert sum(c.isdigit() for c in text) == len(names)

@@ -135,7 +135,7 @@ def test_to_judge_a_landing_leaves_it_where_it_was():
     assert landing.state() == before
 
 
-def test_a_history_that_is_cut_tells_peaks_that_were_before_the_cut():
+def test_a_history_that_is_cut_has_the_peaks_from_before_the_cut():
     history = Landing(load_preset("yue2022-figures", "2-2"), rtol=1e-4).run(UNTIL)
     half = history.until(300)
     assert len(half) == 300

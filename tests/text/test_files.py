@@ -30,10 +30,11 @@ PARAMETERS = '[vehicle]\nmass = "200 kg"\n[drop]\ntilt = "\u22122 deg"\n'
         lambda text: codecs.BOM_UTF8 + text.encode(),
         lambda text: text.replace("\n", "\r\n").encode(),
         lambda text: codecs.BOM_UTF8 + text.replace("\n", "\r\n").encode(),
+        lambda text: text.replace("\n", "\r").encode(),
         lambda text: text.rstrip("\n").encode(),
         lambda text: (text + "\n\n").encode(),
     ],
-    ids=["plain", "mark", "CRLF", "mark and CRLF", "no last end", "empty lines"],
+    ids=["plain", "mark", "CRLF", "mark and CRLF", "CR", "no last end", "empty lines"],
 )
 def test_files_are_read_with_a_byte_order_mark_and_any_line_ends(tmp_path, change):
     toml, curves, states = tmp_path / "p.toml", tmp_path / "c.csv", tmp_path / "s.csv"
@@ -48,6 +49,20 @@ def test_files_are_read_with_a_byte_order_mark_and_any_line_ends(tmp_path, chang
     assert history["leg[1].main_strut.force"].tolist() == [-1500.0, -2500.0]
     assert history["body.pitch"].tolist() == [0.017453292519943295, 0.03490658503988659]
     assert read_states(states, [], []).columns["drop.tilt"].tolist() == [0.017453292519943295]
+
+
+def test_files_with_nul_characters_are_refused_with_what_they_may_be(tmp_path):
+    toml, curves, states = tmp_path / "p.toml", tmp_path / "c.csv", tmp_path / "s.csv"
+    toml.write_bytes(PARAMETERS.encode("utf-16-le"))
+    curves.write_text(CURVES.replace("2.5", "2\0.5"))
+    states.write_bytes(STATES.encode() + bytes(100))
+    for read in (
+        lambda: read_toml(toml),
+        lambda: read_curves(curves),
+        lambda: read_states(states, [], []),
+    ):
+        with pytest.raises(LandingError, match="has NUL characters: it is torn, no text, or UTF-1"):
+            read()
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import exp, isclose, pi, sqrt
+from math import exp, isclose, isnan, pi, sqrt
 
 import numpy as np
 import pytest
@@ -18,6 +18,8 @@ from rlv_landing.tables.landing import comparison_table
 from rlv_landing.validation.curves import read_curves
 from rlv_landing.validation.first_stroke import first_stroke
 from rlv_landing.validation.measures import DamperWork, damper_work, leg_work
+from rlv_landing.validation.own_reading import OwnReading
+from rlv_landing.validation.paper import MEANINGS, compare
 from rlv_landing.validation.validate import validate
 
 GRAVITY = 9.81
@@ -229,16 +231,46 @@ def test_validate_lands_the_25_t_stage_until_its_dampers_have_rebounded():
         assert work.dissipated < 0.8 * work.absorbed
 
 
-def test_the_papers_windows_give_no_number_for_a_stroke_that_ends_after_them():
-    """The comparison with the paper leaves the 25 t stage's turns out, and says why."""
-    history = stage().run(5.0, 1e-3)
-    assert isclose(leg_work(history)[1].top, 0.479, abs_tol=0.01)
+@pytest.mark.parametrize("mass", [60.0, 25_000.0])
+def test_another_vehicles_scalars_are_the_prototypes_scaled(mode, mass):
+    """Its turns, its rest, and what follows a contact are found in its own time."""
+    prototype = load_preset("yue2022-figures", mode)
+    f = (mass / prototype.vehicle.mass) ** (1.0 / 3.0)
+    whole = Landing(prototype, rtol=1e-6).run(2.0, 1e-3)
+    vehicle = Landing(scaled(prototype, mass), rtol=1e-6)
+    found = compare(vehicle.run(round(2000 * sqrt(f)) * 1e-3, 1e-3 * sqrt(f)), mode)
+    one = OwnReading(whole)
+    factors = {"N": f**3, "s": sqrt(f), "mm": f, "m/s2": 1.0}
+    for c in found:
+        read, leg = MEANINGS[c.scalar.id]
+        expected = read(one, leg) * factors[c.scalar.unit]
+        assert c.ours == approx(expected, rel=0.02, abs=2e-3 * f, nan_ok=True), c.scalar.id
+    for c in compare(whole, mode):
+        read, leg = MEANINGS[c.scalar.id]
+        if "rest" not in c.scalar.id and "end" not in c.scalar.id and "pk1-t" not in c.scalar.id:
+            own = read(one, leg)
+            assert own == approx(c.ours, rel=0.01, abs=1e-3) or isnan(own), c.scalar.id
+    assert [c.scalar.id for c in found if isnan(c.ours)] == (
+        [] if mode == "2-2" else ["121-fa3-pk1-t", "121-fa3-pk2-t"]
+    )
+
+
+def test_what_another_vehicles_landing_does_not_show_is_a_dash():
+    """The 25 t stage is compressed until 0.479 s and at rest after 1.5 s."""
+    history = stage().run(3.0, 1e-3)
+    work = leg_work(history)
+    assert isclose(work[1].top, 0.479, abs_tol=0.01)
     table = comparison_table(history, "2-2")
     assert "this is not the paper's vehicle (vehicle.mass = 25000 kg for 178 kg" in table
-    (row,) = (
-        r for r in table.splitlines() if "main strut stroke" in r and "3" in r[20:40] and "max" in r
-    )
-    assert " - " in row
+    for until, dashes in ((3.0, 0), (0.7, 4)):
+        found = {c.scalar.id: c.ours for c in compare(history.until(round(until * 1e3) + 1), "2-2")}
+        missing = [name for name, value in found.items() if isnan(value)]
+        assert len(missing) >= dashes, missing
+        assert ("22-rest" in missing) == bool(dashes)
+        assert ("22-s3-end" in missing) == bool(dashes)
+    found = {c.scalar.id: c.ours for c in compare(history, "2-2")}
+    assert found["22-s3-max"] == approx(1e3 * work[3].stroke_max)
+    assert found["22-s1-reb-t"] == approx(work[1].end)
 
 
 def test_measured_forces_of_the_wrong_sign_are_refused(validation, tmp_path):
@@ -255,3 +287,12 @@ def test_energy_is_lost_in_an_oscillator_by_its_damping():
     """The ratio of the swings about the static stroke is exp(-pi a / w)."""
     high, low = HEAVY.stroke(np.array([HEAVY.turn(0), HEAVY.turn(1)]))
     assert (HEAVY.d - low) / (high - HEAVY.d) == approx(exp(-pi * HEAVY.a / HEAVY.w))
+
+
+def test_a_stroke_that_still_grows_after_the_first_is_told():
+    summary = summarise(stage().run(5.0, 1e-2))
+    assert unfinished(summary) == []
+    summary["legs"][2]["main_strut_stroke_max_time"] = summary["end_time"]
+    (note,) = unfinished(summary)
+    assert "leg 3 goes in further than ever before" in note
+    assert "run it longer" in note

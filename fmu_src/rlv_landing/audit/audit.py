@@ -1,4 +1,4 @@
-"""What a landing must conserve, where it must end, and how exact it is.
+"""The audit of a landing: conservation laws, rest, and convergence.
 
 Each is measured and compared with a bound that has its reason.
 """

@@ -15,8 +15,8 @@ from scipy.integrate import cumulative_simpson
 
 from ..history import History
 from ..landing import Landing
-from ..parameters import Parameters, azimuth
-from ..quantities import LEGS, MODES, OUTPUT_NAMES
+from ..parameters import Parameters
+from ..quantities import LEGS, MODES, OUTPUT_NAMES, azimuth
 from .bounds import TIGHT_RTOL, Check
 from .cases import mass
 

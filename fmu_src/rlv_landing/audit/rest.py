@@ -1,4 +1,4 @@
-"""How a landing comes to rest.
+"""The rest of a landing: its drift, forces and energy.
 
 The checks: what is lost on the way, what the ground carries, what still moves, and whether the
 footpads creep.
@@ -9,30 +9,34 @@ from __future__ import annotations
 import numpy as np
 
 from ..history import History
+from ..landing import Landing
 from ..quantities import LEGS
 from .bounds import TIGHT_RTOL, Check
 from .cases import Case, weight
 from .energy import largest_fall
 
-REST_AFTER, DRIFT_TIME = 10.0, 5.0
+# a heavy or lightly damped vehicle rocks for longer than REST_AFTER; it gets LONGEST_WAIT to
+# settle and then DECAY
+REST_AFTER, LONGEST_WAIT, DECAY, DRIFT_TIME = 10.0, 60.0, 30.0, 5.0
 
 
 def rest(case: Case) -> tuple[dict[str, float], list[Check]]:
-    """The state 10 s after first contact, and the checks of rest.
+    """The state at rest, 10 s after first contact, and the checks of rest.
 
-    The state has the time since when the vehicle has been settled (NaN if it is not, or has
+    A vehicle that neither rests nor has toppled by then is given up to 60 s to settle, and 30 s
+    more. The state has the time since when the vehicle has been settled (NaN if it is not, or has
     toppled), and how fast a footpad drifts in the 5 s after that.
     """
     landing = case.landing(TIGHT_RTOL)
-    history = landing.run(case.parameters.drop.contact_time + REST_AFTER, 5e-3)
+    parts = _until_rest(landing, case.parameters.drop.contact_time)
+    history, stands = parts[-1], _stands(parts)
+    since = settled_since(next(h for h in parts if _settled(h))) if stands else float("nan")
     before = feet(history, -1)
     drift = float(
         np.abs(feet(landing.run(landing.time + DRIFT_TIME, DRIFT_TIME), -1) - before).max()
     )
-    phase = history["status.phase"]
-    stands = bool(phase[-1] == 2.0) and not np.any(phase == 3.0)
     state = {
-        "settled_since": settled_since(history) if stands else float("nan"),
+        "settled_since": since,
         "pitch": float(history["body.pitch"][-1]),
         "stability_margin": float(history["status.stability_margin"][-1]),
         **{f"stroke_{leg}": float(history[f"leg[{leg}].main_strut.stroke"][-1]) for leg in LEGS},
@@ -40,12 +44,38 @@ def rest(case: Case) -> tuple[dict[str, float], list[Check]]:
     whole = weight(case.parameters)
     carried = sum(float(history[f"leg[{leg}].contact.force_y"][-1]) for leg in LEGS)
     return state, [
-        Check("dissipated", largest_fall(history)),
+        Check("dissipated", largest_fall(parts[0])),
         Check("rest_weight", abs(carried - whole) / whole if whole > 0.0 else float("nan")),
         Check("rest_speed", _speed(history), case.holds),
         Check("rest_drift", drift / DRIFT_TIME, case.holds),
         Check("rest_phase", float(stands), case.holds),
     ]
+
+
+def _until_rest(landing: Landing, contact: float) -> list[History]:
+    """The landing until it rests, in parts of 10 s: one, if it has settled in that, or toppled.
+
+    One that settles later gets 30 s more, for what has just settled still decays.
+    """
+    parts = [landing.run(contact + REST_AFTER, 5e-3)]
+    longest = round(LONGEST_WAIT / REST_AFTER)
+    while not _settled(parts[-1]) and not _toppled(parts) and len(parts) < longest:
+        parts.append(landing.run(landing.time + REST_AFTER, 5e-3))
+    if len(parts) > 1 and _settled(parts[-1]):
+        parts.append(landing.run(landing.time + DECAY, 5e-3))
+    return parts
+
+
+def _settled(history: History) -> bool:
+    return bool(history["status.phase"][-1] == 2.0)
+
+
+def _toppled(parts: list[History]) -> bool:
+    return any(bool(np.any(h["status.phase"] == 3.0)) for h in parts)
+
+
+def _stands(parts: list[History]) -> bool:
+    return _settled(parts[-1]) and not _toppled(parts)
 
 
 def feet(history: History, at: int) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""What the transverse load at the auxiliary struts' joints creates in a landing."""
+"""The energy that the transverse load at the auxiliary struts' joints creates in a landing."""
 
 from __future__ import annotations
 

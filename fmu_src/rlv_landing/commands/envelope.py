@@ -130,6 +130,7 @@ def envelope(
     """
     from ..audit.transverse import joint_warning
     from ..studies.envelope.results import record
+    from ..studies.study_effort import check_landings
     from ..tables.envelope_tables import envelope_tables
     from ..workers import default_workers
 
@@ -137,9 +138,11 @@ def envelope(
     check_writable(plot, ending, force=options["force"])
     asked = _study(study, options)
     print_warning(joint_warning(map(asked.parameters_with, asked.families), asked.inputs))
+    workers = options["workers"] or default_workers()
+    check_landings(asked.fewest_landings, workers, asked.until, asked.every, decided=True)
     store = _open_store(asked, work, resume=resume)
     try:
-        found = _search(asked, store, options["workers"] or default_workers())
+        found = _search(asked, store, workers)
         _write(found, work)
     except KeyboardInterrupt:
         _end("interrupted", INTERRUPTED, store, work)

@@ -191,6 +191,7 @@ def identify(work: Path, *, list_priors: bool, **options: Any) -> None:
 
 
 def _print_priors(options: dict[str, Any]) -> None:
+    from ..identification.priors import quantity
     from ..identification.vehicle_priors import priors_of
 
     parameters, modes, _ = choose(
@@ -198,4 +199,5 @@ def _print_priors(options: dict[str, Any]) -> None:
     )
     for p in priors_of(parameters, modes[0]).values():
         scope = "each mode; " if p.by_mode else ""
-        click.echo(f"{p.name:42s} {p.lo:10.4g} ... {p.hi:<10.4g} {scope}{p.reason}")
+        unit = quantity(p.name).unit
+        click.echo(f"{p.name:38s} {p.lo:10.4g} ... {p.hi:<10.4g} {unit:7s} {scope}{p.reason}")

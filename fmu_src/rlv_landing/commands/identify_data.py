@@ -1,4 +1,4 @@
-"""What the options of `rlv-landing identify` choose: free numbers, scalars, curves, conditions."""
+"""Free numbers, scalars, curves and conditions by the options of `rlv-landing identify`."""
 
 from __future__ import annotations
 

@@ -22,6 +22,9 @@ FAILED = 1
 # a process with the model and its targets beyond what it shares, and both modes' landings, at least
 BYTES_PER_PROCESS = 30e6
 SECONDS_PER_EVALUATION = 6e-3
+# a point of a generation with its landings' misfits; the loss of an evaluation, and its text
+BYTES_PER_POINT, BYTES_PER_EVALUATION = 3e3, 60.0
+FEWER = "take fewer: a search ends where it converges, and --resume goes on"
 
 
 class Interrupts:
@@ -52,7 +55,9 @@ class Interrupts:
 
 
 def check_effort(options: dict[str, Any]) -> None:
-    """Refuse more evaluations than 30 days take, and more processes than fit into memory.
+    """Refuse more evaluations than 30 days take, and what does not fit into memory.
+
+    That is the processes, a generation of the search, and the losses that it keeps.
 
     Raises:
         LandingError: They are more.
@@ -64,11 +69,23 @@ def check_effort(options: dict[str, Any]) -> None:
     check_memory(
         f"--workers {workers}", BYTES_PER_PROCESS * workers, "leave it out: one for each core"
     )
-    count = max(options["evaluations"], options["polish"], options["count"])
+    check_memory(
+        f"--population {options['population']}",
+        BYTES_PER_POINT * options["population"],
+        "take fewer points",
+    )
+    generation = options["population"] if options["evaluations"] > 1 else 0
+    count = max(options["evaluations"], generation, options["polish"], options["count"])
     check_duration(
         f"{count} evaluations by {workers} processes",
         SECONDS_PER_EVALUATION * count / min(workers, default_workers()),
-        "take fewer: a search ends where it converges, and --resume goes on",
+        FEWER,
+    )
+    check_memory(
+        f"--evaluations {options['evaluations']}",
+        BYTES_PER_EVALUATION * options["evaluations"],
+        FEWER,
+        at_most=True,
     )
 
 

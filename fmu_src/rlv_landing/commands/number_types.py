@@ -50,23 +50,36 @@ class NumberRange(click.FloatRange):
 
 
 class WholeNumber(click.IntRange):
-    """A whole number of at most 18 digits, within a range."""
+    """A whole number of at most 18 digits, within a range where one is given."""
+
+    def _describe_range(self) -> str:
+        return "" if self.min is None and self.max is None else super()._describe_range()
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> int:
         """The number, within the range."""
-        if isinstance(value, str):
-            if not _WHOLE.fullmatch(value):
-                self.fail(f"{value!r} is not a valid integer.", param, ctx)
-            if len(value.strip()) > MOST_DIGITS:
-                years = len(value.strip()) - 11
-                self.fail(
-                    f"{value!r} has more than {MOST_DIGITS} digits; so many steps of 1 ms "
-                    f"would take 10^{years} years or more.",
-                    param,
-                    ctx,
-                )
-        number: int = super().convert(value, param, ctx)
+        number: int = super().convert(_digits(self, value, param, ctx), param, ctx)
         return number
+
+
+def _digits(
+    kind: click.types.IntParamType,
+    value: Any,
+    param: click.Parameter | None,
+    ctx: click.Context | None,
+) -> Any:
+    """`value`, if it is a number, or a text of decimal digits; fails otherwise."""
+    if isinstance(value, str):
+        if not _WHOLE.fullmatch(value):
+            kind.fail(f"{value!r} is not a valid integer.", param, ctx)
+        if len(value.strip()) > MOST_DIGITS:
+            years = len(value.strip()) - 11
+            kind.fail(
+                f"{value!r} has more than {MOST_DIGITS} digits; so many steps of 1 ms "
+                f"would take 10^{years} years or more.",
+                param,
+                ctx,
+            )
+    return value
 
 
 def _in_si(

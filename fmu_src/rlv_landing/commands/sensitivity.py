@@ -65,6 +65,7 @@ def sensitivity(
     are those of sweep.
     """
     from ..figures.sensitivity_figure import save_bars
+    from ..studies.study_effort import check_indices
     from ..studies.sweep.sensitivity import indices_of, numeric_responses, sobol_design
     from ..studies.sweep.study import read_study
     from ..studies.sweep.sweep_row import Task
@@ -79,6 +80,7 @@ def sensitivity(
     if run.dry_run:
         show_plan(task, run)
         return
+    check_indices(read.samples, len(read.factors), len(wanted), resamples)
     folder = run.results or Path(f"{read.name}-sensitivity")
     path = run_task(task, folder, run)
     found = indices_of(path, read, wanted, level, resamples)

@@ -153,21 +153,19 @@ def _check_effort(task: Task, options: RunOptions) -> None:
     Raises:
         LandingError: They need too much. The time on a cluster is not known here.
     """
-    from ..effort import SECONDS_PER_SAMPLE, SECONDS_PER_SECOND, check_duration, check_memory
-    from ..quantities import OUTPUT_NAMES
+    from ..studies.study_effort import check_landings
+    from ..studies.whole_landing import LATEST
     from ..workers import default_workers
 
-    plan, workers = task.plan, options.workers or default_workers()
-    if plan.until is None:
-        return
-    samples, at_once = plan.until / plan.every, min(workers, len(task))
-    what = f"until = {plan.until:g} s, every = {plan.every:g} s"
-    remedy = "land shorter, sample more seldom, or make fewer landings"
-    needed = 16.0 * len(OUTPUT_NAMES) * samples * at_once
-    check_memory(f"{what}, {at_once} landings at once,", needed, f"{remedy} at once (--workers)")
-    if options.scheduler is None:
-        each = SECONDS_PER_SECOND * plan.until + SECONDS_PER_SAMPLE * samples
-        check_duration(f"{len(task)} landings, {what},", each * len(task) / at_once, remedy)
+    plan = task.plan
+    check_landings(
+        len(task),
+        options.workers or default_workers(),
+        LATEST if plan.until is None else plan.until,
+        plan.every,
+        decided=plan.until is None,
+        timed=options.scheduler is None,
+    )
 
 
 def _run_or_exit(task: Task, results: Results, engine: Engine, *, strict: bool) -> Path:

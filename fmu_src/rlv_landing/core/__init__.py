@@ -1,10 +1,9 @@
-"""The kernels: plain Python on `math` alone, compiled where a compiler was there, the same digits
-either way.
+"""The kernels: plain Python on `math` alone, compiled where there was a compiler.
 
-The classes come from the compiled module if there is one for this Python, else from the plain
-files. RLV_LANDING_PURE=1 in the environment asks for the plain files. Records and laws' names are
-those of the plain files always. WHY_NOT_COMPILED is empty where the core is compiled, or where the
-plain files were asked for; else it is the reason.
+Both give the same digits. The classes come from the compiled module if there is one for this
+Python, else from the plain files. RLV_LANDING_PURE=1 in the environment asks for the plain files.
+Records and laws' names are those of the plain files always. WHY_NOT_COMPILED is empty where the
+core is compiled, or where the plain files were asked for; else it is the reason.
 """
 
 from __future__ import annotations
@@ -29,7 +28,8 @@ from .struts.kinds import AUXILIARY_STRUTS, MAIN_STRUTS
 COMPILED = False
 WHY_NOT_COMPILED = ""
 if not TYPE_CHECKING and os.environ.get("RLV_LANDING_PURE") != "1":
-    # the compiled module imports it unchecked: without it, or interrupted there, the process crashes
+    # the compiled module imports it unchecked: without it, or interrupted there, the process
+    # crashes
     import inspect  # noqa: F401
 
     try:

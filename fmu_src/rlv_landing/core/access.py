@@ -2,8 +2,8 @@
 
 A state is the body's, then each leg's, then the accounts. What is kept between two kernels is an
 array of records of one kind. Compiled, each of these functions is an access through an address (see
-`core_declarations`): a record that was read is that in the array, so a kernel must not go on reading
-it after it has written there.
+`core_declarations`): a record that was read is that in the array, so a kernel must not go on
+reading it after it has written there.
 """
 
 from __future__ import annotations
@@ -48,6 +48,7 @@ STATUS_OUTPUTS = len(StatusOutputs._fields)
 LEG_OUTPUTS = len(LegOutputs._fields)
 
 # where the energies that a user sees have what was dissipated, and their balance
+KINETIC = EnergyOutputs._fields.index("kinetic")
 DISSIPATED = EnergyOutputs._fields.index("dissipated")
 BALANCE = EnergyOutputs._fields.index("balance")
 

@@ -21,8 +21,9 @@ FIRST_REACH, FARTHEST = 1e3, 1e15
 
 
 def strut_motion(leg: LegState, joint_r: float, joint_h: float, length: float) -> StrutMotion:
-    """A strut of `length` [m], unloaded, from its joint on the body to the footpad, seen in the
-    body's frame. Eqs. (19), (25).
+    """A strut from its joint on the body to the footpad, in the body's frame. Eqs. (19), (25).
+
+    Its unloaded `length` is in m.
     """
     dr = leg.r - joint_r
     dh = leg.h - joint_h
@@ -33,8 +34,9 @@ def strut_motion(leg: LegState, joint_r: float, joint_h: float, length: float) -
 
 
 def leg_forces(leg: LegState, foot: FootMotion, p: LegModel) -> LegForces:
-    """All forces and powers of one leg, and the rates of its laws' states, where the footpad moves
-    as `foot` says.
+    """All forces and powers of one leg, and the rates of its laws' states.
+
+    `foot` is the footpad's motion against the ground.
     """
     main = strut_motion(leg, p.La, p.Lb, p.Lm0)
     aux = strut_motion(leg, p.Lc, p.Ld, p.Ls0)
@@ -80,8 +82,9 @@ def leg_forces(leg: LegState, foot: FootMotion, p: LegModel) -> LegForces:
 
 
 def leg_status(leg: LegState, forces: LegForces, depth: float, p: LegModel) -> LegStatus:
-    """What one leg holds, and its main strut's chambers, with its footpad at penetration `depth`
-    [m].
+    """The energies that one leg holds, and its main strut's chambers.
+
+    `depth` is the footpad's penetration [m].
     """
     strut = main_strut_status(forces.stroke, leg.z1, leg.z2, p)
     return LegStatus(
@@ -95,17 +98,19 @@ def leg_status(leg: LegState, forces: LegForces, depth: float, p: LegModel) -> L
 
 
 def liquid_excess(forces: LegForces, p: LegModel) -> float:
-    """How much more liquid the main strut has than it was filled with, in parts of it; 0 for a law
-    without a liquid.
+    """The main strut's liquid beyond that of its fill, in parts of the fill.
+
+    It is 0 for a law without a liquid.
     """
     if forces.liquid_mass > 0.0:
         return forces.liquid_mass / p.fill - 1.0
     return 0.0
 
 
-def without_excess(leg: LegState, forces: LegForces, p: LegModel) -> LegState:
-    """The leg with both states of its main strut law moved alike until its liquid is that of the
-    fill.
+def without_excess(leg: LegState, forces: LegForces, p: LegModel, left: float) -> LegState:
+    """The leg with both states of its main strut law moved alike to the mass of the fill.
+
+    That mass is missed by `left` parts of it, on the side where it was.
 
     Newton's steps, held between states known to have too little and too much, and no longer than a
     reach that doubles: the mass grows with either state, but by many orders more in a cavity than
@@ -115,7 +120,8 @@ def without_excess(leg: LegState, forces: LegForces, p: LegModel) -> LegState:
     low = -FARTHEST
     high = FARTHEST
     reach = FIRST_REACH
-    excess = forces.liquid_mass - p.fill
+    aim = p.fill * (1.0 + left if forces.liquid_mass > p.fill else 1.0 - left)
+    excess = forces.liquid_mass - aim
     slope = forces.mass_1 + forces.mass_2
     for _ in range(CORRECTIONS):
         if excess > 0.0:
@@ -130,6 +136,6 @@ def without_excess(leg: LegState, forces: LegForces, p: LegModel) -> LegState:
         moved = tried
         reach *= 2.0
         strut = main_strut(forces.stroke, forces.stroke_rate, leg.z1 + moved, leg.z2 + moved, p)
-        excess = strut.liquid_mass - p.fill
+        excess = strut.liquid_mass - aim
         slope = strut.mass_1 + strut.mass_2
     return LegState(leg.r, leg.h, leg.vr, leg.vh, leg.z1 + moved, leg.z2 + moved, leg.q1, leg.q2)

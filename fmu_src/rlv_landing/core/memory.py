@@ -1,4 +1,4 @@
-"""How kernels hand arrays and records to each other.
+"""Arrays and records as kernels pass them to each other.
 
 Compiled, all of this is addresses and structs (see `core_source`).
 """
@@ -17,8 +17,9 @@ nogil = nullcontext()
 
 
 class Doubles(Protocol):
-    """Numbers that kernels read and write: an array or buffer of doubles, in the compiled core the
-    address of its first.
+    """Numbers that kernels read and write: an array or buffer of doubles.
+
+    In the compiled core it is the address of the first.
     """
 
     def __len__(self) -> int: ...
@@ -48,7 +49,10 @@ def stored(records: Sequence[Record]) -> Records[Record]:
 
 
 def room(count: int, size: int) -> Records[Any]:
-    """Room for `count` records of `size` numbers each, which a kernel writes before it reads them."""
+    """Room for `count` records of `size` numbers each.
+
+    A kernel writes a record there before it reads it.
+    """
     return [()] * count
 
 

@@ -5,6 +5,7 @@ It is the moving form of the paper's Figs. 12 and 18.
 
 from __future__ import annotations
 
+import logging
 import shutil
 import signal
 from collections.abc import Callable, Iterator
@@ -106,25 +107,41 @@ def save_animation(
     figure = MovingFigure(history, parameters, rows, title, film.view)
     unfinished = temporary_name(path, f"{PART}{path.suffix}")
     try:
-        with _writer_class(path.suffix) as writer_class:
+        # where it cannot be made, ffmpeg says so in lines of its own
+        unfinished.touch()
+        with _writer_class(path.suffix) as writer_class, _without_ffmpegs_lines():
             _write(writer_class(fps=fps * BELOW), figure, unfinished, film.width / WIDTH, progress)
         unfinished.replace(path)
     except OSError as e:
         raise unwritable(path, e) from None
     except CalledProcessError as e:
-        message = (
-            (e.stderr or b"").decode("utf-8", "replace").strip()
-            if isinstance(e.stderr, bytes)
-            else str(e.stderr or "")
-        )
         raise LandingError(
-            f"{path} cannot be written: ffmpeg ended with {e.returncode} {message[-300:]}; "
-            "try a .gif"
+            f"{path} cannot be written: ffmpeg ended with {e.returncode}{_last_line(e.stderr)}; "
+            "make room, name another, or try a .gif"
         ) from None
     finally:
         with suppress(OSError):
             unfinished.unlink()
     return Filmed(len(rows), fps)
+
+
+def _last_line(text: bytes | str | None) -> str:
+    """The last line that a program wrote, behind a colon; empty where it wrote none."""
+    plain = text.decode("utf-8", "replace") if isinstance(text, bytes) else text or ""
+    lines = plain.strip().splitlines()
+    return f": {lines[-1]}" if lines else ""
+
+
+@contextmanager
+def _without_ffmpegs_lines() -> Iterator[None]:
+    """Keep matplotlib from printing what ffmpeg said; the error has it."""
+    logger = logging.getLogger("matplotlib.animation")
+    before = logger.disabled
+    logger.disabled = True
+    try:
+        yield
+    finally:
+        logger.disabled = before
 
 
 def frame_rows(history: History, film: Film, fps: float) -> NDArray[np.intp]:

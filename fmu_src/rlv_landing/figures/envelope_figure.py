@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..quantities import Quantity, shown
-from ..studies.envelope.results import stretches
+from ..studies.envelope.results import lost_text, stretches
 from ..studies.envelope.search import Envelope, Family
 from ..studies.sweep.factors import value_text
 from .plots import COLOURS, save_whole
@@ -18,6 +18,9 @@ MORE_COLOURS = (*COLOURS, "#7a4fa3", "#b8860b", "#3d3d3d")
 MARKERS = "osD^v<>Ph*X"
 # height of a line of the legend [inch]
 LEGEND_LINE = 0.2
+# width of the last boundary of a panel, by how much each before it is wider, and the first at most
+# [points]
+LINE, WIDER, WIDEST = 1.6, 1.4, 4.2
 
 
 def save_envelope(envelope: Envelope, path: str | Path) -> None:
@@ -46,18 +49,33 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
     for ax, (title, families) in zip(axes, panels.items()):
         for k, family in enumerate(families):
             colour = MORE_COLOURS[k % len(MORE_COLOURS)]
-            named[_name(family)] = Line2D([], [], color=colour, linewidth=1.6)
-            _draw(ax, envelope, family, colour, markers)
+            # a boundary that others cover shows beside them
+            later = len(families) - 1
+            width = LINE + min(WIDER, WIDEST / max(later, 1)) * (later - k)
+            named[_name(family)] = Line2D([], [], color=colour, linewidth=width)
+            _draw(ax, envelope, family, colour, markers, width)
         ax.set_title(title, loc="left", fontsize="medium")
         ax.grid(visible=True, linewidth=0.3)
     for ax in axes[len(panels) :]:
         ax.set_visible(False)
     for ax in axes[max(0, len(panels) - columns) : len(panels)]:
         ax.set_xlabel(_label(envelope.study.x.quantity))
+        # below some of them is a panel that is not drawn
+        ax.tick_params(labelbottom=True)
     for ax in axes[::columns]:
         ax.set_ylabel(_label(envelope.study.y.quantity))
     for condition, marker in markers.items():
         named[condition] = Line2D([], [], color="#666666", marker=marker, linestyle="none")
+    for text, face in (("a landing that is lost", "#666666"), ("one that is not", "none")):
+        named[text] = Line2D(
+            [],
+            [],
+            color="#666666",
+            marker="o",
+            markersize=3,
+            markerfacecolor=face,
+            linestyle="none",
+        )
     across = 1 if columns == 1 else 2
     figure.legend(
         named.values(),
@@ -69,7 +87,7 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
     )
     figure.set_figheight(figure.get_figheight() + LEGEND_LINE * -(-len(named) // across))
     title = (
-        f"lost: {envelope.study.criterion}; {envelope.landings} landings "
+        f"lost: {lost_text(envelope.study)}\n{envelope.landings} landings "
         f"(a uniform grid: {envelope.uniform})"
     )
     figure.suptitle(title, fontsize="medium", x=0.01, ha="left")
@@ -108,7 +126,12 @@ def _name(family: Family) -> str:
 
 
 def _draw(
-    ax: Axes, envelope: Envelope, family: Family, colour: str, markers: dict[str, str]
+    ax: Axes,
+    envelope: Envelope,
+    family: Family,
+    colour: str,
+    markers: dict[str, str],
+    width: float,
 ) -> None:
     (_, sx), (_, sy) = shown(envelope.study.x.quantity), shown(envelope.study.y.quantity)
     for lost in (False, True):
@@ -129,7 +152,7 @@ def _draw(
                 alpha=0.35,
             )
     for line in family.lines:
-        ax.plot([c.x / sx for c in line], [c.y / sy for c in line], color=colour, linewidth=1.6)
+        ax.plot([c.x / sx for c in line], [c.y / sy for c in line], color=colour, linewidth=width)
         for stretch in stretches(line):
             marked = (stretch.points[0], stretch.points[len(stretch.points) // 2])
             xs, ys = [c.x / sx for c in marked], [c.y / sy for c in marked]

@@ -24,14 +24,8 @@ from ..text.durable import unwritable, write_durably
 from ..validation.paper import Scalar
 from ..validation.validate import Validation
 from .plots import inline_svg
-from .report_figures import (
-    NUMBERS,
-    acceleration_figure,
-    curve_figure,
-    error_figure,
-    loop_figure,
-    measures_figure,
-)
+from .report_bars import error_figure, measures_figure
+from .report_figures import NUMBERS, acceleration_figure, curve_figure, loop_figure
 from .report_marks import AUXILIARY, FORCE, STROKE
 from .report_movement import movement_figure
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..history import History
-from ..parameters import Parameters, azimuth
-from ..quantities import LEGS, MODES
+from ..parameters import Parameters
+from ..quantities import LEGS, MODES, azimuth
 from ..touchdown import footpad_between
 
 Lines = NDArray[np.float64]

@@ -35,7 +35,7 @@ class Condition:
     measure: Callable[[History], float]
 
     def departure(self, history: History) -> float:
-        """How far a history is beyond the limit, in scales; 0 where the condition is met."""
+        """Distance of a history beyond the limit, in scales; 0 where the condition is met."""
         return max(0.0, (self.measure(history) - self.limit) / self.scale)
 
 

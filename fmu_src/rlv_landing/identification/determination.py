@@ -1,4 +1,4 @@
-"""How well the misfits determine each of the free numbers."""
+"""The determination of each free number by the misfits."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from .free_numbers import folded
 from .identify import Search
+from .priors import quantity
 
 AT_BOUND = 0.01
 # the standard deviation of a uniform prior on [0, 1]: a number not known better than that is not
@@ -18,11 +19,12 @@ WELL, POORLY = 0.05, 0.15
 
 @dataclass(frozen=True)
 class Determination:
-    """How well the misfits determine one number.
+    """The determination of one number by the misfits.
 
     Attributes:
         label: The number.
         value: Its value, SI.
+        unit: Its unit.
         lo: Its lower bound, SI.
         hi: Its upper bound, SI.
         z: Its place between the bounds, in [0, 1].
@@ -34,6 +36,7 @@ class Determination:
 
     label: str
     value: float
+    unit: str
     lo: float
     hi: float
     z: float
@@ -80,6 +83,7 @@ def determinations(search: Search) -> list[Determination]:
             Determination(
                 labels[i],
                 value,
+                quantity(prior.name).unit,
                 prior.lo,
                 prior.hi,
                 z=float(z[i]),

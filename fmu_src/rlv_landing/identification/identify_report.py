@@ -25,7 +25,7 @@ def write_report(search: Search, parameters: Parameters) -> str:
         LandingError: A landing cannot be run or read.
     """
     objective = search.objective
-    lines = ["# Identification", "", _story(search.best), ""]
+    lines = ["# Identification", "", _search_text(search.best), ""]
     if objective.targets:
         lines += _fit_lines(objective, parameters)
     if objective.series:
@@ -54,19 +54,19 @@ def short_report(objective: Objective, parameters: Parameters) -> list[str]:
     return lines
 
 
-def _story(best: Best) -> str:
-    story = (
+def _search_text(best: Best) -> str:
+    text = (
         f"rlv-landing {__version__}, seed {best.seed}, {best.evaluations} evaluations of the "
         f"landings; loss {best.start_loss:.2f} at the start, {best.loss:.2f} at the best point "
         f"(from the {best.stage})."
     )
     if best.counting:
-        story += (
+        text += (
             f" {best.counted} of them counted misses: {best.start_missed:.2f} at the start, "
             f"{best.missed:.2f} at the best point."
         )
     return (
-        f"{story} The loss is the sum of ln(1 + misfit^2), a misfit of one being "
+        f"{text} The loss is the sum of ln(1 + misfit^2), a misfit of one being "
         f"{100 * TOLERANCE:g} % of a scalar, or an RMS of so much of a curve's own."
     )
 
@@ -173,13 +173,13 @@ def _determination_lines(search: Search) -> list[str]:
         "",
         f"{deviation} (0.29: the prior alone).",
         "",
-        "| number | value | bounds | deviation | verdict | moves with | most sensitive |",
-        "|---|---:|---|---:|---|---|---|",
+        "| number | unit | value | bounds | deviation | verdict | moves with | most sensitive |",
+        "|---|---|---:|---|---:|---|---|---|",
     ]
     for d in determinations(search):
         moves = f"{d.partner} ({d.correlation:+.2f})"
         lines.append(
-            f"| {d.label} | {d.value:.4g} | {d.lo:g} ... {d.hi:g} | {d.deviation:.3f} "
+            f"| {d.label} | {d.unit} | {d.value:.4g} | {d.lo:g} ... {d.hi:g} | {d.deviation:.3f} "
             f"| {d.verdict} | {moves} | {d.scalar} |"
         )
     return lines

@@ -1,4 +1,4 @@
-"""Where the values of a search come from: the text of its TOML file, and each value's source."""
+"""The origins of a search's values: the text of its TOML file, and each value's source."""
 
 from __future__ import annotations
 

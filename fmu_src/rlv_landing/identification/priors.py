@@ -1,4 +1,4 @@
-"""What is identified, between which physical bounds, and why.
+"""The numbers that are identified, with their physical bounds and the reasons.
 
 A prior is uniform between its bounds, in the value or in its logarithm. Names are those of the
 parameters, except `main_strut.rod_area`: the rod's cross section, by which the bore exceeds the

@@ -163,7 +163,7 @@ def _in_unit(wanted: Wanted, value: float | None) -> float:
 
 
 def fit_of(parameters: Parameters, wanted: Iterable[Wanted], *, sensors: bool = False) -> list[Fit]:
-    """What landings of `parameters` reach of the wanted numbers, mode by mode.
+    """The numbers that landings of `parameters` reach, beside the wanted ones, mode by mode.
 
     Args:
         parameters: The parameters.

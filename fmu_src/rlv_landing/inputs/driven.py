@@ -49,11 +49,11 @@ class DrivenInputs:
         self._adopt([Way(at, at, 0.0, 0.0, 0.0) for at in places])
 
     def state(self) -> list[float]:
-        """What `restore` needs besides the solver's inputs."""
+        """The numbers that `restore` needs besides the solver's inputs."""
         return [number for way in self._ways for number in way]
 
     def restore(self, numbers: Sequence[float]) -> None:
-        """Take up the `numbers` that `state` gave, after the solver's inputs were restored."""
+        """Restore the `numbers` that `state` gave, after the solver's inputs were restored."""
         self._adopt(ways_of(numbers))
 
     def ground(self, t: float) -> GroundMotion:
@@ -87,7 +87,7 @@ class DrivenInputs:
             LandingError: As `changed_setting`; nothing is changed then.
         """
         present = self.setting(t)
-        setting, ways = self._told(t, present, values, rates)
+        setting, ways = self._changed(t, present, values, rates)
         if setting == present:
             self._ways = ways
             return False
@@ -120,12 +120,12 @@ class DrivenInputs:
             self._restart(t, setting, position, rates)
 
     def next_end(self, until: float) -> float | None:
-        """When the first motion to a new position ends [s], if it ends before `until` [s]."""
+        """End of the first motion to a new position [s], if it is before `until` [s]."""
         rate = self._solver.u_rate
         ends = (way.end for i, way in zip(POSITIONS, self._ways) if rate[i] != 0.0)
         return min((end for end in ends if not reached(until, end)), default=None)
 
-    def _told(
+    def _changed(
         self, t: float, present: Setting, values: Mapping[str, Any], rates: Mapping[str, Any]
     ) -> tuple[Setting, list[Way]]:
         """The setting after `present` that `values` and `rates` make, and its ways.

@@ -58,7 +58,7 @@ def ways_of(numbers: Sequence[float]) -> list[Way]:
 
 
 def way_faults(numbers: Sequence[float], rates: Sequence[float], time: float) -> Iterator[str]:
-    """What is wrong with the ways in a state.
+    """The faults of the ways in a state.
 
     Args:
         numbers: Those of both ways, as for `ways_of`.

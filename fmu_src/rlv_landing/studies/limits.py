@@ -9,9 +9,9 @@ from math import inf
 import numpy as np
 
 from ..errors import unknown
-from ..extremes import Extreme
 from ..history import History
 from ..landing import Landing
+from ..outputs import Extreme
 from ..parameters import check_value
 from ..quantities import Quantity
 from .replay import ReplayedHistory
@@ -165,7 +165,7 @@ def _time_beyond(history: History, name: str, leg: int | None, limit: float) -> 
 
 
 def time_passed(history: History, output: str, limit: float, *, magnitude: bool = False) -> float:
-    """When an output first passed a `limit` that it has passed [s].
+    """Time at which an output first passed a `limit` that it has passed [s].
 
     Exact for a `ReplayedHistory`, else the time of the first sample beyond, or of the extreme where
     that is earlier.

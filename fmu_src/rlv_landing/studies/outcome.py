@@ -14,8 +14,7 @@ from ..core import Phase
 from ..errors import LandingError
 from ..history import History
 from ..landing import Landing
-from ..parameters import azimuth
-from ..quantities import MODES, Quantity
+from ..quantities import MODES, Quantity, azimuth
 from ..touchdown import AT_REST
 from .limits import PassedLimit, first_limit_passed, time_passed
 from .replay import ReplayedHistory
@@ -145,7 +144,7 @@ def _stroke(leg: int) -> str:
 
 
 def _until_toppled(history: History) -> tuple[float, History]:
-    """When a landing that has toppled did so [s], and the landing until the sample at that time."""
+    """Time at which a landing toppled [s], and the landing until the sample at that time."""
     first = _first_of_last_period(history["status.phase"], TOPPLED)
     time = float(history.time[first])
     if not isinstance(history, ReplayedHistory) or first == 0:

@@ -6,9 +6,9 @@ from array import array
 from bisect import bisect_right
 from collections.abc import Callable, Mapping
 
-from ..extremes import Extreme
 from ..history import History
 from ..landing import Landing
+from ..outputs import Extreme
 
 Holds = Callable[[Landing], bool]
 # a time is found to this part of it, or to this [s]

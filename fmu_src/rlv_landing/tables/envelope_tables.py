@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..quantities import shown
-from ..studies.envelope.results import NAMES, stretches, verdict
+from ..studies.envelope.results import NAMES, lost_text, stretches, verdict
 from ..studies.envelope.search import Envelope, Family
 from ..studies.sweep.factors import value_text
 from .landing import new_table, render
@@ -13,15 +13,16 @@ def envelope_tables(found: Envelope) -> str:
     """Outcomes by family, critical conditions along the boundaries, and the number of landings."""
     study = found.study
     table = new_table(
-        f"lost: {study.criterion}; {study.x.name} and {study.y.name}",
+        f"{study.x.name} and {study.y.name}; lost: {lost_text(study)}",
         ("family",),
-        ("landings", *NAMES),
+        ("landings", "lost", *NAMES),
         ("",),
     )
     for f in found.families:
         table.add_row(
             _family(f),
             str(len(f.landings)),
+            str(sum(landing.lost(study.criterion) for _, _, landing in f.landings) or "-"),
             *(str(f.count(name) or "-") for name in NAMES),
             verdict(f, study.criterion),
         )

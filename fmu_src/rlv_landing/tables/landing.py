@@ -17,6 +17,8 @@ from ..quantities import Quantity
 from ..summary import summarise, unfinished
 from ..validation.paper import Comparison, compare, counts, other_vehicle
 
+FIRST_STROKE = "absorbed, dissipated and efficiency are of a damper's first compression and rebound"
+
 
 def render(table: Table, width: int = 140) -> str:
     """A table as plain text."""
@@ -28,14 +30,17 @@ def render(table: Table, width: int = 140) -> str:
 def new_table(
     title: str, left: Iterable[str], right: Iterable[str], more: Iterable[str] = ()
 ) -> Table:
-    """An empty table: columns aligned left, right (numbers), and left again."""
+    """An empty table: columns aligned left, right (numbers), and left again.
+
+    A word that is wider than its column goes on in the next line; nothing is cut.
+    """
     table = Table(title=escape(title), title_justify="left", title_style="bold")
     for name in left:
-        table.add_column(escape(name))
+        table.add_column(escape(name), overflow="fold")
     for name in right:
-        table.add_column(escape(name), justify="right")
+        table.add_column(escape(name), justify="right", overflow="fold")
     for name in more:
-        table.add_column(escape(name))
+        table.add_column(escape(name), overflow="fold")
     return table
 
 
@@ -90,7 +95,7 @@ def comparison_table(history: History, mode: str) -> str:
 
 
 def sampling_note(history: History) -> str:
-    """How far apart the samples are that numbers are read from; empty for a single one."""
+    """Note on the interval of the samples that numbers are read from; empty for a single one."""
     if len(history) < 2:
         return ""
     step = 1e3 * float(history.time[-1] - history.time[0]) / (len(history) - 1)
@@ -98,22 +103,22 @@ def sampling_note(history: History) -> str:
 
 
 def peaks_note(history: History) -> str:
-    """What the peaks of a summary are of."""
+    """Note on the source of a summary's peaks."""
     if history.extremes is None:
         return sampling_note(history).strip()
     return "peaks are those of the landing at the integrator's steps, between samples too"
 
 
 def other_vehicle_note(parameters: Parameters | None) -> str:
-    """What the comparison is worth for a vehicle that is not the paper's; empty for the paper's."""
+    """Note on comparing a vehicle other than the paper's; empty for the paper's."""
     differences = [] if parameters is None else other_vehicle(parameters)
     if not differences:
         return ""
     more = f" and {len(differences) - 2} more" if len(differences) > 2 else ""
     return (
-        f"this is not the paper's vehicle ({', '.join(differences[:2])}{more}): its numbers are "
-        "read in the windows of time of the paper's, a dash where they miss the event; "
-        "the measures of the dampers hold for any vehicle\n"
+        f"this is not the paper's vehicle ({', '.join(differences[:2])}{more}): compression, "
+        "rebound and rest are found in its curves, windows after a contact grow with its "
+        "compression; a dash where the landing does not show an event\n"
     )
 
 
@@ -141,8 +146,11 @@ def near_zero_note(comparisons: Iterable[Comparison]) -> str:
     )
 
 
-def summary_table(history: History, title: str) -> str:
-    """The peaks of every leg and its damper's first compression and rebound; the outcome below."""
+def summary_table(history: History, title: str, outcome: str = "") -> str:
+    """The peaks of every leg and its damper's first compression and rebound; the outcome below.
+
+    A log's history lacks the outcome: name it.
+    """
     s = summarise(history)
     table = new_table(
         title,
@@ -177,12 +185,12 @@ def summary_table(history: History, title: str) -> str:
             decimals(leg["main_strut_dissipated"], 1),
             decimals(leg["main_strut_efficiency"], 3),
         )
-    outcome = (
-        f"after {s['end_time']:.3f} s: {s.get('outcome', 'recorded')}; "
+    ended = (
+        f"after {s['end_time']:.3f} s: {s.get('outcome', outcome) or 'outcome not known'}; "
         f"top acceleration up to {s['top_axial_acceleration_max']:.2f} m/s2 "
         f"at {s['top_axial_acceleration_max_time']:.3f} s"
     )
-    lines = [outcome]
+    lines = [ended]
     known = []
     if "stability_margin_min" in s:
         known.append(f"stability margin at least {s['stability_margin_min']:.3f} m")
@@ -195,7 +203,8 @@ def summary_table(history: History, title: str) -> str:
             f"BOTTOMED OUT: the damper of leg {', '.join(map(str, s['bottomed_out']))} "
             "met its compression stop"
         )
-    return render(table, 190) + "\n".join([*lines, *unfinished(s), peaks_note(history)]) + "\n"
+    notes = [*unfinished(s), FIRST_STROKE, peaks_note(history)]
+    return render(table, 190) + "\n".join([*lines, *notes]) + "\n"
 
 
 def parameter_table(parameters: Parameters) -> str:

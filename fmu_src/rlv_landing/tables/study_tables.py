@@ -152,7 +152,9 @@ def _landed(found: Audit) -> str:
 
 def _energy_table(found: Audit) -> str:
     table = new_table(
-        f"{_landed(found)}: energies [J], rtol 1e-8", ("term",), ("start", "end", "change")
+        f"{_landed(found)}: energies [J], at 0 s and 1 s after first contact, rtol 1e-8",
+        ("term",),
+        ("start", "end", "change"),
     )
     sums = [0.0, 0.0]
     for term, (start, end) in found.energy.items():

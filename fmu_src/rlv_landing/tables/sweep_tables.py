@@ -18,11 +18,14 @@ def plan_table(task: Task) -> str:
     table = new_table(
         f"the first of {len(task)} landings",
         ("index",),
-        [f"{q.name} [{q.unit}]" for q in task.quantities()[: len(task.names)]],
+        [
+            f"{q.name} [{q.unit}]" if q.unit else q.name
+            for q in task.quantities()[: len(task.names)]
+        ],
     )
     for index, values in enumerate(task.rows(0, min(FIRST_ROWS, len(task)))):
         table.add_row(str(index), *map(_text, values.values()))
-    return render(table)
+    return render(table, 200)
 
 
 def summary_table(name: str, summary: Summary) -> str:

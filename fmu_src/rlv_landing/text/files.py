@@ -37,7 +37,7 @@ _SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "strokes"}
 
 
 def read_text(path: Path, what: str, missing: str = "") -> str:
-    """The text of a file, with or without a byte order mark.
+    """The text of a file, with or without a byte order mark; its lines end in a line feed.
 
     Args:
         path: The file.
@@ -45,7 +45,8 @@ def read_text(path: Path, what: str, missing: str = "") -> str:
         missing: The error where it is missing [default: there is no `what` `path`].
 
     Raises:
-        LandingError: The file is missing, cannot be read, is larger than 4 MiB or is not UTF-8.
+        LandingError: The file is missing, cannot be read, is larger than 4 MiB, is not UTF-8, or
+            has NUL characters.
     """
     try:
         with path.open("rb") as file:
@@ -57,9 +58,12 @@ def read_text(path: Path, what: str, missing: str = "") -> str:
     if len(data) > LARGEST_TEXT:
         raise LandingError(f"{what} {path} is larger than 4 MiB, more than such a file can need")
     try:
-        return data.decode("utf-8-sig")
+        text = data.decode("utf-8-sig")
     except UnicodeDecodeError as e:
         raise unreadable(what, path, e, data) from None
+    if "\0" in text:
+        raise _with_nuls(what, path)
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def unreadable(what: str, path: Path, error: Exception, start: bytes = b"") -> LandingError:
@@ -174,8 +178,8 @@ def read_csv(path: Path, what: str, missing: str = "") -> Iterator[tuple[int, li
         missing: The error where it is missing [default: there is no `what` `path`].
 
     Raises:
-        LandingError: The file is missing or cannot be read, is not UTF-8, or its first row is
-            separated by semicolons, tabs or strokes.
+        LandingError: The file is missing or cannot be read, is not UTF-8, has NUL characters, or
+            its first row is separated by semicolons, tabs or strokes.
     """
     try:
         with path.open(newline="", encoding="utf-8-sig") as file:
@@ -200,7 +204,15 @@ def _lines(file: TextIO, what: str, path: Path) -> Iterator[str]:
     while line := file.readline(LONGEST_LINE + 1):
         if len(line) > LONGEST_LINE:
             raise LandingError(f"{what} {path} has a line of more than {LONGEST_LINE} characters")
+        if "\0" in line:
+            raise _with_nuls(what, path)
         yield line
+
+
+def _with_nuls(what: str, path: Path) -> LandingError:
+    return LandingError(
+        f"{what} {path} has NUL characters: it is torn, no text, or UTF-16; save it as UTF-8"
+    )
 
 
 def _start(path: Path) -> bytes:

@@ -60,14 +60,14 @@ def first_stroke(stroke: Array) -> FirstStroke:
         before > CHATTER * largest
     )
     turned = _first(fallen)
-    if turned is None and not _still(stroke, largest):
+    if turned is None and not is_still(stroke, largest):
         return FirstStroke("in compression")
     top = int(np.argmax(stroke[:turned]))
     after, size = stroke[top:], float(stroke[top])
     risen = after - np.minimum.accumulate(after) > max(TURN * size, NOISE * largest)
     again = _first(risen)
     low = int(np.argmin(after[:again]))
-    rests = turned is None or _still(after, size)
+    rests = turned is None or is_still(after, size)
     if again is None and not rests and after[low] > EXTENDED * size:
         return FirstStroke("in rebound", top)
     return FirstStroke("complete", top, top + low)
@@ -78,7 +78,14 @@ def _first(found: NDArray[np.bool_]) -> int | None:
     return i if found[i] else None
 
 
-def _still(stroke: Array, largest: float) -> bool:
-    """Whether the curve ends at rest."""
+def is_still(stroke: Array, largest: float) -> bool:
+    """Whether the curve ends at rest.
+
+    In the last quarter of its time it moves by at most 2 % of the largest stroke.
+
+    Args:
+        stroke: Stroke at even steps [m], (n,), n above 0.
+        largest: The largest stroke [m].
+    """
     last = stroke[int((1.0 - LAST) * (len(stroke) - 1)) :]
     return len(stroke) > 1 and float(np.ptp(last)) <= STILL * largest

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import trapezoid
 
 from ..core import Phase
 from ..errors import LandingError
@@ -63,7 +62,7 @@ class DamperWork:
 
     @property
     def note(self) -> str:
-        """Why measures are missing; empty where none is."""
+        """Reason why measures are missing; empty where none is."""
         return {
             "not compressed": "its damper was not compressed",
             "in compression": "ends in the first compression: no measures; run it longer",
@@ -82,7 +81,7 @@ def work_of(force: Array, stroke: Array) -> float:
         force: Axial force, negative in compression [N], (n,).
         stroke: Stroke, positive in compression [m], (n,).
     """
-    return float(-trapezoid(force, stroke))
+    return float(-np.trapezoid(force, stroke))
 
 
 def buffering_efficiency(absorbed: float, force_max: float, stroke_max: float) -> float:
@@ -251,6 +250,9 @@ def rrms(time: Array, values: Array, test_time: Array, test_values: Array) -> fl
     test = test_values[inside]
     size = float(np.sqrt(np.mean(test**2)))
     if size == 0.0:
-        raise LandingError("the measured curve is 0 throughout; RRMS has nothing to relate to")
+        raise LandingError(
+            "the measured curve is 0 throughout, and RRMS has nothing to relate to; "
+            "leave the column out"
+        )
     difference = np.interp(test_time[inside], time, values) - test
     return float(np.sqrt(np.mean(difference**2))) / size

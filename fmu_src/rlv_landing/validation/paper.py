@@ -18,6 +18,7 @@ import numpy as np
 
 from ..history import History
 from ..parameters import PARAMETER_QUANTITIES, Parameters
+from .own_reading import OwnReading
 from .reading import RUN_AFTER_CONTACT, Reading
 
 __all__ = [
@@ -31,6 +32,7 @@ __all__ = [
     "other_vehicle",
     "paper_counts_against_test",
     "printed_scalars",
+    "reading_of",
 ]
 
 NUMBERS = Path(__file__).with_name("paper_numbers.csv")
@@ -193,13 +195,25 @@ def compare(history: History, mode: str) -> list[Comparison]:
     Raises:
         LandingError: The history is too short.
     """
-    reading = Reading(history)
+    reading = reading_of(history)
     found = []
     for scalar in printed_scalars():
         if scalar.mode == mode:
             read, leg = MEANINGS[scalar.id]
             found.append(Comparison(scalar, read(reading, leg)))
     return found
+
+
+def reading_of(history: History) -> Reading:
+    """The reading of a landing: in the paper's windows of time only if it is the paper's vehicle.
+
+    A history without parameters is read as the paper's.
+
+    Raises:
+        LandingError: No footpad touches, or the history of the paper's vehicle is too short.
+    """
+    other = history.parameters is not None and other_vehicle(history.parameters)
+    return OwnReading(history) if other else Reading(history)
 
 
 def other_vehicle(parameters: Parameters) -> list[str]:

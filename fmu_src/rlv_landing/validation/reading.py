@@ -1,7 +1,7 @@
 """The readings of a landing that correspond to the scalars that the paper prints.
 
 Each method states how the paper's words are understood. Its windows of time are those of the
-paper's vehicle; `measures` has the measures of any vehicle.
+paper's vehicle; `own_reading` reads other vehicles, and `measures` has the measures of any.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ STROKE_WINDOW = 0.22
 REBOUND_WINDOW = 0.25
 UNLOADED = -250.0
 RUN_AFTER_CONTACT = 0.8
+REST_ANGLE = np.radians(0.5)
 NAN = float("nan")
 
 
@@ -38,12 +39,21 @@ class Reading:
         first = min(self._contact.values())
         if not np.isfinite(first):
             raise LandingError("no footpad touches the ground in this history; run it longer")
-        self.end = first + RUN_AFTER_CONTACT
+        self.end = self._end(first)
+        self._unloaded = UNLOADED
         if self.t[-1] < self.end - 1e-3:
             raise LandingError(
                 f"the history ends at {self.t[-1]:g} s; "
                 f"the paper's scalars need it until {self.end:g} s"
             )
+
+    def _end(self, first: float) -> float:
+        """The end of what is read [s], for the time of the first contact."""
+        return first + RUN_AFTER_CONTACT
+
+    def _window(self, length: float) -> float:
+        """A window of time after a contact [s], for that of the paper's vehicle."""
+        return length
 
     def _contact_time(self, leg: int) -> float:
         depth = f"leg[{leg}].contact.penetration"
@@ -80,7 +90,8 @@ class Reading:
         """Most negative strut force within 12 ms after that leg's contact [N]."""
         t = self._contact[leg]
         return self._at(
-            self._force(leg), self._peak(-1.0, self._force(leg), t, t + FIRST_PEAK_WINDOW)
+            self._force(leg),
+            self._peak(-1.0, self._force(leg), t, t + self._window(FIRST_PEAK_WINDOW)),
         )
 
     def _force(self, leg: int) -> NDArray[np.float64]:
@@ -120,11 +131,13 @@ class Reading:
 
     def unloaded_from(self, leg: int) -> float:
         """First time after the maximum stroke with the force above -250 N [s]."""
-        return self._first(self._force(leg) > UNLOADED, self.maximum_stroke_time(leg))
+        return self._first(self._force(leg) > self._unloaded, self.maximum_stroke_time(leg))
 
     def unloaded_until(self, leg: int) -> float:
         """First time at least 40 ms after `unloaded_from` with the force below -250 N [s]."""
-        return self._first(self._force(leg) < UNLOADED, self.unloaded_from(leg) + 0.04)
+        return self._first(
+            self._force(leg) < self._unloaded, self.unloaded_from(leg) + self._window(0.04)
+        )
 
     def _rebound(self, leg: int) -> int | None:
         return self._turn(-1.0, leg, self.maximum_stroke_time(leg), REBOUND_WINDOW)
@@ -139,14 +152,17 @@ class Reading:
 
     def settled_stroke(self, leg: int) -> float:
         """Mean stroke over the last 0.15 s of the 0.8 s after first contact [mm]."""
+        return self._settled(leg)
+
+    def _settled(self, leg: int) -> float:
         return float(1e3 * self._stroke(leg)[self._between(self.end - 0.15, self.end)].mean())
 
     def _first_valley(self, leg: int) -> int | None:
         return self._peak(
             -1.0,
             self._force(leg),
-            self._contact[leg] + FIRST_PEAK_WINDOW,
-            self.maximum_stroke_time(leg) - 0.02,
+            self._contact[leg] + self._window(FIRST_PEAK_WINDOW),
+            self.maximum_stroke_time(leg) - self._window(0.02),
         )
 
     def first_valley_force(self, leg: int) -> float:
@@ -163,7 +179,9 @@ class Reading:
     def auxiliary_compression(self, leg: int) -> float:
         """Smallest auxiliary strut force within 30 ms after contact [N]."""
         t = self._contact[leg]
-        return self._at(self._auxiliary(leg), self._peak(-1.0, self._auxiliary(leg), t, t + 0.03))
+        return self._at(
+            self._auxiliary(leg), self._peak(-1.0, self._auxiliary(leg), t, t + self._window(0.03))
+        )
 
     def auxiliary_tension(self, leg: int) -> float:
         """Largest auxiliary strut force of the landing [N]."""
@@ -182,7 +200,9 @@ class Reading:
 
     def _acceleration(self, leg: int) -> int | None:
         t = self._contact[leg]
-        return self._peak(1.0, self.h["body.top_axial_acceleration"], t, t + FIRST_PEAK_WINDOW)
+        return self._peak(
+            1.0, self.h["body.top_axial_acceleration"], t, t + self._window(FIRST_PEAK_WINDOW)
+        )
 
     def acceleration_peak(self, leg: int) -> float:
         """Largest axial acceleration at the top within 12 ms after that leg's contact [m/s2]."""
@@ -197,7 +217,10 @@ class Reading:
 
         The mean is over the last 0.1 s.
         """
+        return self._rest()
+
+    def _rest(self) -> float:
         pitch = self.h["body.pitch"]
         settled = pitch[self._between(self.end - 0.1, self.end)].mean()
-        moving = np.flatnonzero((np.abs(pitch - settled) > np.radians(0.5)) & (self.t <= self.end))
+        moving = np.flatnonzero((np.abs(pitch - settled) > REST_ANGLE) & (self.t <= self.end))
         return float(self.t[moving[-1]]) if len(moving) else 0.0

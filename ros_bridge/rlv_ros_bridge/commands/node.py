@@ -15,6 +15,7 @@ from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.text.durable import writing
 from rlv_landing.text.files import is_utf8
 
+from ..messages.topics import check_namespace
 from ..node.run_summary import RunSummary
 from ..ros.arguments import ROS_COMMAND_SETTINGS, split_ros_args
 
@@ -128,6 +129,7 @@ def node(
         changes = parse_pairs(options.pop("changes"), PARAMETER_QUANTITIES, "parameter")
         settings = {name: value for name, value in options.items() if value is not None}
         _refuse_other_encodings({**settings, **recording, "namespace": namespace})
+        check_namespace(namespace)
         if managed:
             settings["autostart"] = False
         require_ros()
@@ -138,7 +140,13 @@ def node(
         sys.exit(128 + stop.number if stop.number else 0)
     _print_summary(summary)
     if report and summary.folder is not None:
-        _print_report(summary.folder)
+        try:
+            _print_report(summary.folder)
+        except LandingError as e:
+            if not summary.recording_error:
+                raise
+            # the disk that was too full for the log is so for the picture
+            click.echo(one_line(f"error: {e}"), err=True)
     if summary.signal:
         sys.exit(128 + summary.signal)
     if summary.recording_error:
@@ -212,12 +220,14 @@ def _print_report(folder: Path) -> None:
     from rlv_landing.tables.landing import comparison_table, summary_table
 
     from ..logs.history import history_of
+    from ..logs.info import log_info
     from ..logs.reader import LogReader
 
     reader = LogReader(folder)
     history = history_of(reader)
     mode = reader.metadata["mode"]
-    click.echo(summary_table(history, f"{mode} landing"))
+    landing = log_info(reader).landing or {}
+    click.echo(summary_table(history, f"{mode} landing", landing.get("outcome", "")))
     try:
         click.echo(comparison_table(history, mode))
     except LandingError as e:

@@ -15,6 +15,7 @@ from rlv_landing.commands.number_types import WholeNumber
 from rlv_landing.commands.options import check_writable, parameter_options
 from rlv_landing.errors import LandingError
 
+from ..messages.topics import check_namespace
 from ..ros.interruption import exit_on_sigterm
 from ..ros.setup import StopFlag, require_ros
 from .landing_source import VehicleOptions, read_landing, warn_incomplete
@@ -88,6 +89,7 @@ def view(log: Path | None, *, save: Path | None, force: bool, **options: Any) ->
     vehicle = VehicleOptions.take(options)
     server = ServerOptions(options["port"], options["no_browser"])
     namespace = options["namespace"]
+    check_namespace(namespace)
     check_writable(save, ".rrd", force=force)
     if log is None and vehicle.given:
         raise LandingError(

@@ -6,15 +6,17 @@ import hashlib
 import platform
 import re
 import zipfile
+import zlib
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 
 import rlv_landing
 
 # The source files that decide the computed bits. The FMU carries the same files.
 MODEL_FILE = re.compile(
-    r"(?:^|/)rlv_landing[^/]*/((?:(?:core|inputs)/(?:\w+/)*\w+|assembly|extremes|state|landing"
-    r"|parameters|quantities|touchdown)\.py)$"
+    r"(?:^|/)rlv_landing[^/]*/((?:(?:core|inputs|parameters|quantities)/(?:\w+/)*\w+"
+    r"|assembly|outputs|state|landing|touchdown)\.py)$"
 )
 
 
@@ -23,15 +25,17 @@ def build_metadata(fmu: Path) -> dict[str, str]:
 
     The digest is empty where `fmu` cannot be read.
     """
-    try:
-        with zipfile.ZipFile(fmu) as archive:
-            sources = {
-                m[1]: archive.read(name)
-                for name in archive.namelist()
-                if (m := MODEL_FILE.search(name))
-            }
-    except (OSError, zipfile.BadZipFile):
-        sources = {}
+    sources = {}
+    # a device has no end, and no archive's directory there; a damaged archive has errors of many
+    # kinds
+    with suppress(OSError, ValueError, RuntimeError, zipfile.BadZipFile, zlib.error):
+        if fmu.is_file():
+            with zipfile.ZipFile(fmu) as archive:
+                sources = {
+                    m[1]: archive.read(name)
+                    for name in archive.namelist()
+                    if (m := MODEL_FILE.search(name))
+                }
     return {"model": _digest(sources), "machine": machine_name()}
 
 
@@ -54,7 +58,7 @@ def machine_name() -> str:
 
 
 def inexact_reason(metadata: Mapping[str, str], fmu: Path | None = None) -> str:
-    """Why a rerun here need not give the bits of the log; empty where it must.
+    """Reason why a rerun here need not give the bits of the log; empty where it must.
 
     Args:
         metadata: the log's metadata by name.

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import nan
 
-from rlv_landing.extremes import Extreme
 from rlv_landing.history import History
+from rlv_landing.outputs import Extreme
 from rlv_landing.quantities import PEAKS
 
 # value [SI] and time [s]

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import ctypes
+import zipfile
+import zlib
 from collections.abc import Mapping, Sequence
 from operator import itemgetter
 from pathlib import Path
+from tempfile import gettempdir
 from types import TracebackType
 from typing import Any, NoReturn
 
@@ -19,6 +22,7 @@ from rlv_landing.quantities import (
     PEAKS,
     STATISTIC_QUANTITIES,
 )
+from rlv_landing.text.durable import writing
 
 from .description import MODEL_NAME, read_description, references
 from .folder import FmuFolder
@@ -41,7 +45,7 @@ class FmuRunner:
 
     Raises:
         LandingError: no such file, not an FMU, another model, an unknown parameter, or one that the
-            FMU refuses (with its reason).
+            FMU refuses (with its reason), or there is no room to unpack it.
     """
 
     def __init__(self, fmu_path: str | Path, values: Mapping[str, float | str]) -> None:
@@ -76,9 +80,13 @@ class FmuRunner:
         from fmpy import extract
         from fmpy.fmi2 import FMU2Slave
 
-        self._folder = FmuFolder()
-        unpacked = str(self._folder.path)
-        extract(str(self.path), unzipdir=unpacked)
+        with writing(Path(gettempdir()), "make room, or name another folder by TMPDIR"):
+            self._folder = FmuFolder()
+            unpacked = str(self._folder.path)
+            try:
+                extract(str(self.path), unzipdir=unpacked)
+            except (zipfile.BadZipFile, zlib.error, RuntimeError, ValueError) as e:
+                raise LandingError(f"{self.path} is damaged: {e}; build it again") from None
         try:
             slave = FMU2Slave(
                 guid=description.guid,

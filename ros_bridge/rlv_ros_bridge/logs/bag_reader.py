@@ -11,7 +11,8 @@ from typing import Any
 
 from rlv_landing.errors import LandingError
 
-from .reader import FINISHED, UNFINISHED, Channel, LogMessage, LogReader
+from .log_files import FINISHED, UNFINISHED
+from .reader import Channel, LogMessage, LogReader
 
 METADATA_FILE = "metadata.yaml"
 

@@ -14,8 +14,8 @@ from rlv_landing.errors import LandingError
 from rlv_landing.text.durable import write_durably
 from rlv_landing.text.files import is_utf8
 
+from .log_files import FINISHED, UNFINISHED
 from .mcap_files.stream import LIBRARY
-from .reader import FINISHED, UNFINISHED
 
 # A killed writer loses at most the open chunk and what was not yet flushed.
 CHUNK_BYTES = 60 * 1024

@@ -109,7 +109,8 @@ def _choose_topics(reader: LogReader, topics: Sequence[str]) -> dict[str, str]:
 
 
 def _notes(reader: LogReader, chosen: dict[str, str], incomplete: int) -> list[str]:
-    ignored = [name for name in reader.channels if name not in chosen]
+    own = f"/{reader.namespace.strip('/')}/"
+    ignored = [name.removeprefix(own) for name in reader.channels if name not in chosen]
     notes = [f"left aside: {', '.join(ignored)}"] if ignored else []
     if incomplete:
         notes.append(f"left out: {incomplete} instants that lack one of the topics")

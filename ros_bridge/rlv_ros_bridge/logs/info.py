@@ -12,7 +12,7 @@ from rlv_landing.errors import LandingError
 from rlv_landing.history import History
 from rlv_landing.summary import OUTCOMES, summarise, unfinished
 from rlv_landing.tables.landing import decimals
-from rlv_landing.validation.reading import Reading
+from rlv_landing.validation.paper import reading_of
 
 from ..messages.topics import DIAGNOSTICS
 from .history import read_history
@@ -208,7 +208,7 @@ def _landing(history: History, phase: str) -> dict[str, Any]:
     if phase in PHASES:
         landing["outcome"] = OUTCOMES[PHASES.index(phase)]
     try:
-        reading = Reading(history)
+        reading = reading_of(history)
     except LandingError:
         return landing
     for leg in landing["legs"]:

@@ -11,13 +11,9 @@ from rlv_landing.errors import LandingError, unknown
 from rlv_landing.parameters import Parameters
 
 from ..messages.topics import STRUTS
-from .mcap_files.records import HEADER, MAGIC, RECORD_HEAD
+from .log_files import check_file, find_files
 from .mcap_files.stream import RecordStream
 from .peaks import RECORD as PEAKS_RECORD
-
-FINISHED = ".mcap"
-# The ending until the writer has finished the file.
-UNFINISHED = ".mcap.part"
 
 
 @dataclass(frozen=True)
@@ -249,60 +245,3 @@ class Decoder:
             raise LandingError(
                 f"{at} is not what its definition says; it cannot be decoded"
             ) from None
-
-
-def find_files(path: Path) -> list[Path]:
-    """The MCAP files of the log at `path` in their order, unfinished ones too.
-
-    Raises:
-        LandingError: there are none.
-    """
-    if path.is_file():
-        return [path]
-    if not path.is_dir():
-        raise LandingError(f"there is no log {path}; name a log's folder or its .mcap file")
-    try:
-        files = sorted(
-            (f for f in path.iterdir() if f.name.endswith((FINISHED, UNFINISHED)) and f.is_file()),
-            key=_number,
-        )
-    except OSError as e:
-        raise LandingError(f"{path} cannot be read: {e.strerror or e}") from None
-    if not files:
-        raise LandingError(f"{path} holds no .mcap file; name a log's folder or its .mcap file")
-    return files
-
-
-def log_name(file: Path) -> str:
-    """The name of a log's file without its ending."""
-    return file.name.removesuffix(UNFINISHED).removesuffix(FINISHED)
-
-
-def _number(file: Path) -> tuple[str, int]:
-    # The files of a split log end in `_0`, `_1`, ..., `_10`.
-    name = log_name(file)
-    stem, _, number = name.rpartition("_")
-    return (stem, int(number)) if number.isdecimal() else (name, 0)
-
-
-def check_file(file: Path) -> None:
-    """Checks that `file` can be opened, starts as MCAP does, and has a whole first record.
-
-    Raises:
-        LandingError: it does not.
-    """
-    try:
-        with file.open("rb") as stream:
-            start = stream.read(len(MAGIC) + RECORD_HEAD.size)
-            length = int.from_bytes(start[len(MAGIC) + 1 :], "little")
-            whole = file.stat().st_size >= len(MAGIC) + RECORD_HEAD.size + length
-    except OSError as e:
-        raise LandingError(f"{file} cannot be read: {e.strerror or e}") from None
-    if not start:
-        raise LandingError(f"{file} is empty; nothing was recorded")
-    if not MAGIC.startswith(start[: len(MAGIC)]):
-        raise LandingError(
-            f"{file} is not MCAP: it does not start as one; name a log's folder or its .mcap file"
-        )
-    if len(start) < len(MAGIC) + RECORD_HEAD.size or start[len(MAGIC)] != HEADER or not whole:
-        raise LandingError(f"{file} is cut within its first record; nothing in it can be read")

@@ -11,8 +11,9 @@ from rlv_landing.errors import LandingError
 from rlv_landing.text.files import shown_name
 
 from .bag_writer import BagTopic, BagWriter
+from .log_files import check_file, find_files, log_name
 from .mcap_files.stream import RecordStream
-from .reader import Definitions, check_file, find_files, log_name
+from .reader import Definitions
 
 # Metadata that the new log's writer makes itself.
 WRITERS_METADATA = "rosbag2"

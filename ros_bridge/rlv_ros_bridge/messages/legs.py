@@ -1,16 +1,15 @@
-"""Where the legs' joints sit, in ROS axes."""
+"""Positions of the legs' joints, in ROS axes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rlv_landing.parameters import azimuth
-from rlv_landing.quantities import LEGS, MODES
+from rlv_landing.quantities import LEGS, MODES, azimuth
 
 from .axes import to_ros
 
 
-def around(mode: str, radius: float, height: float) -> list[tuple[float, float, float]]:
+def leg_points(mode: str, radius: float, height: float) -> list[tuple[float, float, float]]:
     """A point of each leg, in the order of `LEGS`, in the body's frame.
 
     Args:

@@ -17,7 +17,7 @@ from rlv_landing.quantities import LEGS
 
 from .axes import from_ros, to_ros
 from .fields import indices
-from .legs import around
+from .legs import leg_points
 from .samples import set_stamp, set_vector
 from .topics import WORLD_FRAME
 from .wire import SENTINEL_STAMP, MessageLayout, sentinel_numbers
@@ -44,11 +44,14 @@ class Wireframe:
         self._bottom = (0.0, -max(main.joint_depth, auxiliary.joint_depth), 0.0)
         # The paper's axes, as the sample's.
         self._main = [
-            from_ros(*j) for j in around(parameters.drop.mode, main.joint_radius, -main.joint_depth)
+            from_ros(*j)
+            for j in leg_points(parameters.drop.mode, main.joint_radius, -main.joint_depth)
         ]
         self._auxiliary = [
             from_ros(*j)
-            for j in around(parameters.drop.mode, auxiliary.joint_radius, -auxiliary.joint_depth)
+            for j in leg_points(
+                parameters.drop.mode, auxiliary.joint_radius, -auxiliary.joint_depth
+            )
         ]
         self._body = indices("body.x", "body.y", "body.pitch")
         self._feet = [indices(*(f"leg[{leg}].footpad.{axis}" for axis in "xyz")) for leg in LEGS]

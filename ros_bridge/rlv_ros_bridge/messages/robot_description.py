@@ -16,7 +16,7 @@ from rlv_landing.quantities import (
 )
 from rlv_landing.touchdown import footpad_at_rest
 
-from .legs import around
+from .legs import leg_points
 from .topics import BODY_FRAME, TOP_FRAME
 
 Point = tuple[float, float, float]
@@ -63,7 +63,7 @@ def robot_description(parameters: Parameters) -> str:
     mount = _joint(robot, f"{TOP_FRAME}_mount", "fixed", BODY_FRAME, TOP_FRAME)
     _origin(mount, (0.0, 0.0, top))
     radius, height = footpad_at_rest(p)
-    feet = around(p.drop.mode, radius, height)
+    feet = leg_points(p.drop.mode, radius, height)
     for strut, own, width, travel in (
         ("main_strut", p.main_strut, MAIN_RADIUS, (0.0, p.main_strut.stroke_max)),
         (
@@ -73,7 +73,7 @@ def robot_description(parameters: Parameters) -> str:
             (-0.5 * p.auxiliary_strut.length, 0.5 * p.auxiliary_strut.length),
         ),
     ):
-        joints = around(p.drop.mode, own.joint_radius, -own.joint_depth)
+        joints = leg_points(p.drop.mode, own.joint_radius, -own.joint_depth)
         for leg, joint, foot in zip(LEGS, joints, feet):
             _strut(robot, f"leg_{leg}_{strut}", joint, foot, width, travel)
     indent(robot)

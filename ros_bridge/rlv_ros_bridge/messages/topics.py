@@ -5,8 +5,10 @@ Which field of a message carries which output is told by the table in `fields.py
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
+from rlv_landing.errors import LandingError
 from rlv_landing.quantities import LEGS
 
 WORLD_FRAME = "map"
@@ -63,6 +65,26 @@ LATCHED: tuple[Topic, ...] = (ROBOT_DESCRIPTION, VARIABLES)
 # What is recorded, in the order it is published at one instant. The clock is not: a replay makes
 # its own.
 RECORDED: tuple[Topic, ...] = (*SAMPLED, *OCCASIONAL, *APPLIED, ROBOT_DESCRIPTION)
+
+
+# ROS 2 takes 245 characters, and the name of a topic below them
+LONGEST_NAMESPACE = 200
+_TOKEN = "[A-Za-z_][A-Za-z0-9_]*"
+_NAMESPACE = re.compile(f"/?(?:{_TOKEN}(?:/{_TOKEN})*)?")
+
+
+def check_namespace(namespace: str) -> None:
+    """Checks that ROS 2 takes the namespace.
+
+    Raises:
+        LandingError: it does not.
+    """
+    if len(namespace) > LONGEST_NAMESPACE or not _NAMESPACE.fullmatch(namespace):
+        raise LandingError(
+            f"namespace {namespace!r} is none of ROS 2's; write at most {LONGEST_NAMESPACE} "
+            "letters, digits and underscores, with '/' between parts, each of which starts with a "
+            "letter or an underscore"
+        )
 
 
 def resolve(namespace: str, name: str) -> str:

@@ -25,7 +25,7 @@ LITTLE_ENDIAN_CDR = b"\x00\x01\x00\x00"
 
 @dataclass(frozen=True)
 class Transform:
-    """Where the frame `child` is in `parent`: translation x, y, z [m] and rotation x, y, z, w."""
+    """The frame `child` in `parent`: translation x, y, z [m] and rotation x, y, z, w."""
 
     parent: str
     child: str

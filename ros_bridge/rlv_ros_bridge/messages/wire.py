@@ -50,7 +50,7 @@ class Slots(NamedTuple):
 
 
 class MessageLayout:
-    """Where numbers and stamp stand in the serialised messages of one instant.
+    """Byte offsets of numbers and stamp in the serialised messages of one instant.
 
     Args:
         serialised: each message as rclpy serialises it, with the stamp `SENTINEL_STAMP` and the

@@ -50,7 +50,7 @@ class Pacer:
         return self._active + running
 
     def due(self, k: int) -> float:
-        """When step k is due, on `time.perf_counter`'s clock [s]; in the past for a period of 0."""
+        """Time of step k on `time.perf_counter`'s clock [s]; in the past for a period of 0."""
         return self._start + (k - self._first) * self.period
 
     def sleep_until_due(self, k: int, interrupted: Callable[[], bool]) -> None:

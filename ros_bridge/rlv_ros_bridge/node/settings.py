@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from rlv_landing import Parameters
+from rlv_landing.effort import check_duration
 from rlv_landing.errors import LandingError
 from rlv_landing.presets import DEFAULT_PRESET
 
@@ -175,13 +176,21 @@ def make_settings(values: Mapping[str, Any], parameters: Parameters, origin: str
         origin: where they come from, if neither from a preset nor from a file.
 
     Raises:
-        LandingError: two settings contradict each other.
+        LandingError: two settings contradict each other, or the landing would take longer than 30
+            days.
     """
     step_ns = whole_nanoseconds(values["step_size"])
     if values["stop_time"] < values["step_size"]:
         raise LandingError(
             f"stop_time = {values['stop_time']:g} s is below the step of "
             f"{values['step_size']:g} s; land for longer"
+        )
+    if values["realtime_factor"]:
+        check_duration(
+            f"stop_time = {values['stop_time']:g} s at realtime_factor = "
+            f"{values['realtime_factor']:g}",
+            values["stop_time"] / values["realtime_factor"],
+            "land faster or shorter",
         )
     own = {t: max(1, round(t.period / values["step_size"])) for t in PUBLISHED}
     return Settings(

@@ -17,7 +17,7 @@ from rlv_landing.quantities import LEGS, MODES
 
 from ..messages.axes import to_ros
 from ..messages.columns import READINGS
-from ..messages.legs import around
+from ..messages.legs import leg_points
 from ..messages.message_types import message_class
 from ..messages.qos import Qos
 from ..messages.rclpy_qos import qos_profile
@@ -193,9 +193,9 @@ def mode_of(markers: Any) -> str:
     across = [p.y for p in markers.markers[1].points[::2]]
     radius = max(map(abs, across))
     for mode in MODES:
-        reach = max(abs(y) for _, y, _ in around(mode, 1.0, 0.0))
+        reach = max(abs(y) for _, y, _ in leg_points(mode, 1.0, 0.0))
         if np.allclose(
-            across, [y * radius / reach for _, y, _ in around(mode, 1.0, 0.0)], atol=1e-6
+            across, [y * radius / reach for _, y, _ in leg_points(mode, 1.0, 0.0)], atol=1e-6
         ):
             return mode
     joints = ", ".join(f"{y:.3g}" for y in across)

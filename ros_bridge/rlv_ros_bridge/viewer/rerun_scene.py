@@ -5,21 +5,20 @@ Needs rerun-sdk.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable, Mapping
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from types import TracebackType
-from typing import Any, NamedTuple
+from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from rlv_landing.errors import LandingError
 from rlv_landing.figures.plots import COLOURS
 from rlv_landing.quantities import LEGS, MODES
-from rlv_landing.text.durable import PART, temporary_name
+from rlv_landing.text.durable import whole_file, writing
 
 Array = NDArray[np.float64]
 TIMELINE = "sim_time"
@@ -236,39 +235,35 @@ class Scene:
 class SavedScene:
     """Writes a scene to `path`, whole or not at all.
 
+    Rerun hands its bytes over in the end, and has them in memory until then: where it writes a file
+    itself, a full disk stops it for ever.
+
     Raises:
         LandingError: it cannot be written.
     """
 
     def __init__(self, path: Path) -> None:
-        self._path, self._unfinished = path, temporary_name(path, f"{PART}{path.suffix}")
-        self._scene: Scene | None = None
+        self._path = path
+        self._whole = ExitStack()
+        self._file: BinaryIO | None = None
+        self._stream: Any = None
 
     def begin(self, scene: Scene) -> None:
-        """Writes what `scene` holds, and what is added to it from now on."""
-        self._scene = scene
-        with self._errors_as_landing_error():
-            scene.stream.save(self._unfinished, default_blueprint=scene.blueprint(live=False))
+        """Takes what `scene` holds, and what is added to it from now on."""
+        self._stream = rr.binary_stream(recording=scene.stream)
+        scene.stream.send_blueprint(scene.blueprint(live=False))
 
     def finish(self) -> None:
         """Completes the file, and gives it its name."""
-        assert self._scene is not None
-        with self._errors_as_landing_error():
-            self._scene.stream.flush()
-            self._scene.stream.disconnect()
-            self._unfinished.replace(self._path)
-
-    @contextmanager
-    def _errors_as_landing_error(self) -> Iterator[None]:
-        try:
-            yield
-        except (OSError, RuntimeError, ValueError) as e:
-            reason = " ".join(str(e).split())
-            raise LandingError(
-                f"{self._path} cannot be written: {reason}; make room, or name another file"
-            ) from None
+        assert self._file is not None
+        with writing(self._path):
+            # the parts of several reads are no recording
+            self._file.write(self._stream.read() or b"")
+            self._whole.close()
 
     def __enter__(self) -> SavedScene:
+        with writing(self._path):
+            self._file = self._whole.enter_context(whole_file(self._path))
         return self
 
     def __exit__(
@@ -277,8 +272,13 @@ class SavedScene:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        with suppress(OSError):
-            self._unfinished.unlink()
+        # a file that is not finished is not kept, whatever ends it
+        with suppress(_UnfinishedError):
+            self._whole.__exit__(_UnfinishedError, _UnfinishedError(), None)
+
+
+class _UnfinishedError(Exception):
+    pass
 
 
 def rgb(colour: str) -> tuple[int, ...]:

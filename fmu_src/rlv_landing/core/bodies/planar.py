@@ -12,6 +12,7 @@ from ..access import (
     DISSIPATED,
     ENERGY_OUTPUTS,
     INPUTS,
+    KINETIC,
     LEG,
     LEG_OUTPUTS,
     LEG_STATUS,
@@ -48,10 +49,10 @@ from ..records import (
 )
 from .planar_legs import footpad_kinetic_energy, footpad_moment
 from .planar_motion import PlanarMotion
-from .planar_status import is_phase, phase_of
+from .planar_status import is_phase, is_slow, phase_of
 
-# The energy balance may come to this part of what was dissipated, of which a step may use up a share
-# of what is left; whatever is left, it may grow by so much more a second [1/s]
+# The energy balance may come to this part of what was dissipated, of which a step may use up a
+# share of what is left; whatever is left, it may grow by so much more a second [1/s]
 MOST_LOST, STEP_SHARE, LOST_RATE = 4e-5, 0.25, 2e-5
 # of the energy at touchdown, so much counts as dissipated from the start on
 LEAST_TURNED = 0.1
@@ -60,16 +61,23 @@ ROUNDING = 4e-15
 
 
 class Planar(PlanarMotion):
-    """The planar body with its outputs: body, energies, status, then each leg group, in the order
-    of `rlv_landing.quantities`.
+    """The planar body with its outputs: body, energies, status, then each leg group.
 
-    Strut forces change sign here: the user's are negative in compression. Mirror images are made
-    where the names are made. `energy_start` [J] is the mechanical energy at the start, which the
-    energy balance is drawn up against; `rounding` [J] is how far rounding may put that off.
+    The order is that of `rlv_landing.quantities`. Strut forces change sign here: the user's are
+    negative in compression. Mirror images are made where the names are made.
+
+    Attributes:
+        energy_start: The mechanical energy at the start [J], against which the energy balance is
+            drawn up.
+        most_balance: The largest energy balance since then at a step's end [J].
+        rounding: How far rounding may put the balance off [J].
+        mass: The whole vehicle's [kg].
     """
 
     energy_start: float
+    most_balance: float
     rounding: float
+    mass: float
     _status: Records[LegStatus]
 
     def __init__(
@@ -82,8 +90,11 @@ class Planar(PlanarMotion):
     ) -> None:
         super().__init__(body, legs, places, scale, relative)
         self.energy_start = 0.0
+        self.most_balance = 0.0
         self.rounding = 0.0
+        self.mass = body.m_u
         for leg, place in zip(legs, places):
+            self.mass += place.legs * leg.m_d
             self.rounding += ROUNDING * place.legs * leg.B0 * (leg.V10 + leg.V20)
         self._status = room(self.groups, LEG_STATUS)
 
@@ -112,15 +123,24 @@ class Planar(PlanarMotion):
             self._put_leg(i, out, at + LEG_OUTPUTS * i)
 
     def may_rest(self, u: Doubles, rates: Doubles, outputs: Doubles) -> bool:
-        """Where it has settled, with loads and ground that do not change."""
-        status = status_outputs(outputs, BODY_OUTPUTS + ENERGY_OUTPUTS)
-        if not is_phase(status.phase, Phase.SETTLED):
+        """Whether it stands and is slow, with loads and ground that do not change.
+
+        Its acceleration does not count: an explicit method trembles.
+        """
+        phase = status_outputs(outputs, BODY_OUTPUTS + ENERGY_OUTPUTS).phase
+        if is_phase(phase, Phase.FALLING) or is_phase(phase, Phase.TOPPLED):
+            return False
+        if not is_slow(outputs[BODY_OUTPUTS + KINETIC], self.mass):
             return False
         for i in range(INPUTS):
             if rates[i] != 0.0:
                 return False
         now = inputs(u, 0)
         return now.heave_rate == 0.0 and now.tilt_rate == 0.0
+
+    def rests(self, outputs: Doubles) -> bool:
+        """Where it has settled."""
+        return is_phase(status_outputs(outputs, BODY_OUTPUTS + ENERGY_OUTPUTS).phase, Phase.SETTLED)
 
     def distance(self, shift: Doubles) -> float:
         """The way of the body, turns of which count a metre a radian, or of a footpad."""
@@ -131,11 +151,20 @@ class Planar(PlanarMotion):
             way = max(way, fabs(leg.r), fabs(leg.h))
         return way
 
+    def note(self, outputs: Doubles) -> None:
+        """Keep the largest energy balance."""
+        self.most_balance = max(self.most_balance, fabs(outputs[BODY_OUTPUTS + BALANCE]))
+
     def lost(self, before: Doubles, after: Doubles, h: float) -> float:
-        """The growth of the energy balance beyond rounding, in parts of what may be."""
+        """The growth of the energy balance beyond rounding, in parts of what may be.
+
+        Rounding comes and goes, and is allowed once: beyond the largest balance so far, all growth
+        counts.
+        """
         at = BODY_OUTPUTS + BALANCE
         was = fabs(before[at])
-        growth = fabs(after[at]) - was - self.rounding
+        most = max(was, self.rounding, self.most_balance)
+        growth = fabs(after[at]) - min(most, was + self.rounding)
         if growth <= 0.0:
             return 0.0
         least = LEAST_TURNED * self.scale[BODY + LEG * self.groups]
@@ -232,8 +261,10 @@ class Planar(PlanarMotion):
     def _put_status(
         self, y: Doubles, rates: Doubles, kinetic: float, out: Doubles, at: int
     ) -> None:
-        """The stability margin is the distance [m] from the whole vehicle's CG to the nearer of the
-        outermost footpads, negative beyond.
+        """Write the phase and the stability margin to `out[at:]`.
+
+        The margin is the distance [m] from the whole vehicle's CG to the nearer of the outermost
+        footpads, negative beyond.
         """
         body = body_state(y, 0)
         mass = body_model(self._body, 0).m_u

@@ -1,4 +1,4 @@
-"""How a leg of the planar body moves with it, and what it does to it, without small angles.
+"""Motion of a leg with the planar body, and its loads on it, without small angles.
 
 Eqs. (2)-(11), (29)-(37), as derived.
 """
@@ -59,8 +59,9 @@ def foot_motion(foot: FootPoint, u: Inputs, turn: Turn) -> FootMotion:
 def planar_loads(
     forces: LegForces, foot: FootPoint, depth: float, place: LegPlace, turn: Turn, weight: float
 ) -> PlanarLoads:
-    """The leg's `forces` on the footpad, along the leg's axes, and on the body, along the body's;
-    `weight` [N] of the footpad.
+    """Loads by the leg's `forces`: on the footpad in the leg's axes, on the body in its own.
+
+    `weight` is that of the footpad [N].
     """
     x = forces.f1 * turn.cos_a + forces.normal * turn.sin_a
     y = forces.normal * turn.cos_a - forces.f1 * turn.sin_a
@@ -85,8 +86,9 @@ def planar_loads(
 
 
 def transverse_height(h: float, p: BodyModel, leg: LegModel) -> float:
-    """Height [m] above the CG, body axes, where the auxiliary strut's transverse force acts on the
-    body: footpad or joint.
+    """Height above the CG at which the auxiliary strut's transverse force acts on the body [m].
+
+    It is along the body's axis, that of the footpad or of the joint.
     """
     return h + p.at_joint * (leg.Ld - h)
 
@@ -94,8 +96,9 @@ def transverse_height(h: float, p: BodyModel, leg: LegModel) -> float:
 def frame_acceleration(
     leg: LegState, place: LegPlace, rate: float, a: BodyAcceleration
 ) -> BodyAcceleration:
-    """Acceleration along the body's x and y of a footpad that is at rest in its leg's plane, less
-    what moves with vr, vh themselves.
+    """Acceleration along the body's x and y of a footpad at rest in its leg's plane.
+
+    What moves with vr, vh themselves is left out.
     """
     bx = leg.r * place.cos_g
     x = a.x + a.pitch * leg.h - rate * rate * bx + 2.0 * rate * leg.vh
@@ -127,8 +130,9 @@ def leg_rates(
 def footpad_kinetic_energy(
     vx: float, vy: float, rate: float, leg: LegState, place: LegPlace, m_d: float
 ) -> float:
-    """Twice the kinetic energy [J] of all footpads of the group; `vx`, `vy` [m/s] of the body along
-    its own axes, `rate` of the pitch.
+    """Twice the kinetic energy of all footpads of the group [J].
+
+    `vx`, `vy` [m/s] are those of the body along its own axes, `rate` that of its pitch [rad/s].
     """
     fx = vx + leg.vr * place.cos_g + rate * leg.h
     fy = vy + leg.vh - rate * leg.r * place.cos_g

@@ -1,4 +1,4 @@
-"""How the planar body moves on its leg groups: the vehicle of a symmetric landing."""
+"""Motion of the planar body on its leg groups: the vehicle of a symmetric landing."""
 
 from __future__ import annotations
 
@@ -59,9 +59,11 @@ from .planar_legs import (
 )
 from .system import System
 
-# Of a main strut's liquid, in parts: the excess that is left where it is, that a step may gather at
-# most, and the change that a step's error in one of the law's states may stand for
-CONSERVED, MOST_GATHERED, MOST_FOR_AN_ERROR = 8e-7, 1e-5, 1e-4
+# Of a main strut's liquid, in parts: the excess that is left where it is; what is left of a larger
+# one, next to as much, so that outputs do not jump where it becomes larger; the excess that a step
+# may gather at most, and the change that a step's error in one of the law's states may stand for
+CONSERVED, LEFT_OVER = 8e-7, 7.99e-7
+MOST_GATHERED, MOST_FOR_AN_ERROR = 1e-5, 1e-4
 
 
 class PlanarMotion(System):
@@ -121,8 +123,9 @@ class PlanarMotion(System):
         )
 
     def rhs(self, y: Doubles, u: Doubles, dy: Doubles) -> None:
-        """Write dy/dt at the state `y` and the inputs `u` to `dy`; keep the legs' forces and loads
-        and the body's attitude on the way.
+        """Write dy/dt at the state `y` and the inputs `u` to `dy`.
+
+        It keeps the legs' forces and loads and the body's attitude on the way.
         """
         p = body_model(self._body, 0)
         body = body_state(y, 0)
@@ -134,14 +137,21 @@ class PlanarMotion(System):
         keep(Attitude(turn.sin_p, turn.cos_p, a.y), self._attitude, 0)
         put(
             BodyState(
-                body.vx, body.vy, body.pitch_rate, a.x * turn.cos_p + a.y * turn.sin_p, a.y * turn.cos_p - a.x * turn.sin_p, a.pitch
-            ), dy, 0
-        )  # fmt: skip
+                x=body.vx,
+                y=body.vy,
+                pitch=body.pitch_rate,
+                vx=a.x * turn.cos_p + a.y * turn.sin_p,
+                vy=a.y * turn.cos_p - a.x * turn.sin_p,
+                pitch_rate=a.pitch,
+            ),
+            dy,
+            0,
+        )
         transverse = 0.0
         for i in range(self.groups):
             transverse += self._move(i, y, body.pitch_rate, a, dy)
         external = now.force_x * body.vx + now.force_y * body.vy + now.moment * body.pitch_rate
-        put(self._powers(external, transverse), dy, BODY + LEG * self.groups)
+        self._put_powers(external, transverse, dy)
 
     def _load(self, i: int, y: Doubles, body: BodyState, u: Inputs, turn: Turn) -> None:
         """Keep the forces and loads of leg group `i`."""
@@ -207,8 +217,10 @@ class PlanarMotion(System):
         )
 
     def _move(self, i: int, y: Doubles, rate: float, a: BodyAcceleration, dy: Doubles) -> float:
-        """Write the rates of leg group `i` to `dy`; return the power [W] that its transverse forces
-        create.
+        """Write the rates of leg group `i` to `dy`.
+
+        Returns:
+            The power that its transverse forces create [W].
         """
         leg = leg_state(y, BODY + LEG * i)
         place = leg_place(self._places, i)
@@ -224,9 +236,13 @@ class PlanarMotion(System):
         arm = leg.h - transverse_height(leg.h, body_model(self._body, 0), model)
         return place.legs * (-force * place.sin_g * rate * arm)
 
-    def _powers(self, external: float, transverse: float) -> Accounts:
-        """The powers [W] that the accounts gather; those from outside and of the transverse forces
-        are given.
+    def _put_powers(self, external: float, transverse: float, dy: Doubles) -> None:
+        """Write the powers that the accounts gather to `dy` [W].
+
+        Args:
+            external: Power of the external loads [W].
+            transverse: Power that the transverse forces create [W].
+            dy: The state's rate.
         """
         orifice = seal = stop = auxiliary = contact = friction = ground = 0.0
         for i in range(self.groups):
@@ -239,8 +255,12 @@ class PlanarMotion(System):
             contact += n * forces.contact
             friction += n * forces.friction
             ground += n * planar_loads_of(self._loads, i).ground
-        return Accounts(
-            orifice, seal, stop, auxiliary, contact, friction, external, ground, transverse
+        put(
+            Accounts(
+                orifice, seal, stop, auxiliary, contact, friction, external, ground, transverse
+            ),
+            dy,
+            BODY + LEG * self.groups,
         )
 
     def stiff(self, k: int) -> StiffPair:
@@ -261,8 +281,10 @@ class PlanarMotion(System):
             )
 
     def weigh(self, ceiling: Doubles) -> None:
-        """An error of a main strut law's state counts by what it changes of the liquid's mass,
-        where that is more than by its size.
+        """Write the ceiling of the error of each main strut law's state to `ceiling`.
+
+        The error counts by what it changes of the liquid's mass, where that is more than by its
+        size.
         """
         for i in range(self.groups):
             forces = leg_forces_of(self._forces, i)
@@ -281,6 +303,6 @@ class PlanarMotion(System):
             excess = fabs(liquid_excess(forces, model))
             if excess > CONSERVED:
                 leg = leg_state(y, BODY + LEG * i)
-                put(without_excess(leg, forces, model), y, BODY + LEG * i)
+                put(without_excess(leg, forces, model, LEFT_OVER), y, BODY + LEG * i)
                 farthest = max(farthest, excess)
         return farthest / MOST_GATHERED

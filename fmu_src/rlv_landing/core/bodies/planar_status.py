@@ -1,4 +1,4 @@
-"""How a planar landing stands: the margin to tipping over, and the phase."""
+"""The status of a planar landing: its phase."""
 
 from __future__ import annotations
 
@@ -17,21 +17,33 @@ REST_ACCELERATION = 0.05
 def phase_of(
     body: BodyState, rates: BodyState, margin: float, depth: float, kinetic: float, mass: float
 ) -> int:
-    """The `Phase`, from the stability `margin` [m], the `depth` [m] of the footpad that is deepest
-    in the ground, the `kinetic` energy [J] and the `mass` [kg] of the vehicle.
+    """The `Phase` of a landing.
 
     Settled: a footpad touches, the kinetic energy is that of 2 mm/s at most, and the body's
-        acceleration is below 0.05 m/s2.
+    acceleration is below 0.05 m/s2.
+
+    Args:
+        body: The body's state.
+        rates: Its rates.
+        margin: Stability margin [m].
+        depth: Penetration of the footpad that is deepest in the ground [m].
+        kinetic: Kinetic energy of the vehicle [J].
+        mass: Its mass [kg].
     """
     if margin < 0.0 or fabs(body.pitch) > TURNED_OVER:
         return Phase.TOPPLED
     if depth <= 0.0:
         return Phase.FALLING
-    if kinetic > 0.5 * mass * REST_SPEED * REST_SPEED:
+    if not is_slow(kinetic, mass):
         return Phase.CONTACT
     if fabs(rates.vx) + fabs(rates.vy) + fabs(rates.pitch_rate) > REST_ACCELERATION:
         return Phase.CONTACT
     return Phase.SETTLED
+
+
+def is_slow(kinetic: float, mass: float) -> bool:
+    """Whether a `mass` [kg] of this `kinetic` energy [J] is slower than 2 mm/s."""
+    return kinetic <= 0.5 * mass * REST_SPEED * REST_SPEED
 
 
 def is_phase(told: float, phase: int) -> bool:

@@ -1,4 +1,4 @@
-"""What a solver integrates."""
+"""The system that a solver integrates."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ class System:
     Bodies are subclasses.
 
     Attributes:
-        n: length of the state; the first `controlled` states count in a step's error, the others
-        are carried along. scale, relative: [n] a step's error in state i is measured by rtol times
-        scale_i, or by rtol times (scale_i + |y_i|) where
-            relative_i is 1.
-        inputs: how many inputs there are.
-        row: how many outputs there are.
-        stiff_pairs: how many pairs of states `stiff` tells of.
+        n: Length of the state.
+        controlled: How many states count in a step's error; they come first, the others are carried
+            along.
+        scale, relative: [n] A step's error in state i is measured by rtol times scale_i, or by rtol
+            times (scale_i + |y_i|) where relative_i is 1.
+        inputs: How many inputs there are.
+        row: How many outputs there are.
+        stiff_pairs: How many pairs of states `stiff` tells of.
     """
 
     n: int
@@ -46,16 +47,15 @@ class System:
         self._rates = array("d", bytes(8 * self.n))
 
     def inputs_after(self, u: Doubles, rates: Doubles, dt: float, now: Doubles) -> None:
-        """Write to `now` the inputs that are `u`, `dt` [s] ago, and have gone on at their `rates`
-        [unit/s].
-        """
+        """Write to `now` the inputs `dt` [s] after they were `u`, at their `rates` [unit/s]."""
 
     def rhs(self, y: Doubles, u: Doubles, dy: Doubles) -> None:
         """Write dy/dt at the state `y` and the inputs `u` to `dy`."""
 
     def stiff(self, k: int) -> StiffPair:
-        """The `k`-th pair of states whose difference decays fast, as it was where `rhs` was called
-        last.
+        """The `k`-th pair of states whose difference decays fast.
+
+        Its rates are those where `rhs` was called last.
         """
         return StiffPair(0, 0, 0.0, 0.0)
 
@@ -63,8 +63,9 @@ class System:
         """Bring the state at the end of a step back to where it may be."""
 
     def weigh(self, ceiling: Doubles) -> None:
-        """Write to `ceiling` [n] how large the error of a state may be at any tolerance, as it was
-        where `rhs` was called last; only where `relative` is 1.
+        """Write to `ceiling` [n] how large the error of a state may be at any tolerance.
+
+        It holds where `rhs` was called last, and only for states whose `relative` is 1.
         """
 
     def conserve(self, y: Doubles) -> float:
@@ -74,15 +75,20 @@ class System:
         """
         return 0.0
 
+    def note(self, outputs: Doubles) -> None:
+        """Take notice of the `outputs` at the end of a step."""
+
     def lost(self, before: Doubles, after: Doubles, h: float) -> float:
-        """What a step of `h` [s] has lost of what the system conserves, from the outputs `before`
-        and `after` it, in units of what it may lose.
+        """The loss, in a step of `h` [s], of what the system conserves.
+
+        It is found from the outputs `before` and `after` the step, in units of what it may lose.
         """
         return 0.0
 
     def outputs(self, y: Doubles, u: Doubles, out: Doubles, at: int) -> None:
-        """Write the outputs at the state `y` and the inputs `u` to `out[at:]`, with `y` brought
-        back to what the system conserves.
+        """Write the outputs at the state `y` and the inputs `u` to `out[at:]`.
+
+        It brings `y` back to what the system conserves.
         """
         rates = data(self._rates)
         self.rhs(y, u, rates)
@@ -91,9 +97,17 @@ class System:
         self.read(y, u, rates, out, at)
 
     def may_rest(self, u: Doubles, rates: Doubles, outputs: Doubles) -> bool:
-        """Whether the system may be at rest with these `outputs`, and the inputs `u` with their
-        `rates` stay what they are.
+        """Whether the system may be near a rest with these `outputs` at constant inputs.
+
+        Args:
+            u: The inputs.
+            rates: Their rates.
+            outputs: The outputs at the state.
         """
+        return False
+
+    def rests(self, outputs: Doubles) -> bool:
+        """Whether these `outputs` are those of a system at rest."""
         return False
 
     def distance(self, shift: Doubles) -> float:
@@ -101,6 +115,7 @@ class System:
         return inf
 
     def read(self, y: Doubles, u: Doubles, dy: Doubles, out: Doubles, at: int) -> None:
-        """Write the outputs to `out[at:]` at the state `y` and the inputs `u` where `rhs` was called
-        last, and gave the rates `dy`.
+        """Write the outputs to `out[at:]` at the state `y` and the inputs `u`.
+
+        `rhs` was called last there, and gave the rates `dy`.
         """

@@ -19,7 +19,7 @@ def friction(foot: FootMotion, Fn: float, q1: float, q2: float, p: LegModel) -> 
 
 
 def friction_bound(q1: float, q2: float, p: LegModel) -> FrictionBound:
-    """Where the friction law lets its states be at the end of a step."""
+    """The states that the friction law allows at the end of a step."""
     return chosen(FRICTION_LAWS, p.friction_kind).bound(q1, q2, p)
 
 

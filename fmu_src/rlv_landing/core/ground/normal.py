@@ -8,7 +8,7 @@ from ..records import LegModel, NormalForce
 
 
 def damping_ramp(d: float, p: LegModel) -> float:
-    """0 to 1, smooth, as the penetration `d` [m] grows from 0 to d_ramp. [closure]"""
+    """0 to 1, smooth, as the penetration `d` [m] grows from 0 to d_ramp (closure)."""
     q = d / p.d_ramp
     if q >= 1.0:
         return 1.0

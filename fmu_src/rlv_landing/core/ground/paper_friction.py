@@ -1,10 +1,9 @@
-"""The paper's friction: reset-integral with Stribeck effect, along each of the ground's directions
-by itself. Eqs. (16), (17).
+"""The paper's friction: a reset integral with Stribeck effect. Eqs. (16), (17).
 
-Its states q1, q2 are the friction displacements [m] along 1 and 2. The law is not passive: where
-the normal force or the direction of slip changes under a displacement, it may supply energy. So
-nothing is called held, and what is called dissipated is all that the law takes, which may be less
-than 0.
+It acts along each of the ground's directions by itself. Its states q1, q2 are the friction
+displacements [m] along 1 and 2. The law is not passive: where the normal force or the direction of
+slip changes under a displacement, it may supply energy. So nothing is called held, and what is
+called dissipated is all that the law takes, which may be less than 0.
 """
 
 from __future__ import annotations
@@ -60,8 +59,9 @@ def paper_friction(foot: FootMotion, Fn: float, q1: float, q2: float, p: LegMode
 
 
 def paper_friction_bound(q1: float, q2: float, p: LegModel) -> FrictionBound:
-    """The displacements within the slip limit: what a step gathers beyond it after sticking has
-    turned to slip is taken off.
+    """The displacements within the slip limit.
+
+    What a step gathers beyond it after sticking has turned to slip is taken off.
     """
     return FrictionBound(min(max(q1, -p.s_r0), p.s_r0), min(max(q2, -p.s_r0), p.s_r0))
 

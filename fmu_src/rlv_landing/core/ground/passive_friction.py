@@ -1,10 +1,10 @@
-"""Friction that cannot push: a spring of constant stiffness in the ground's plane, and a slider of
-Coulomb's kind that carries its other end. [closure]
+"""Friction that never supplies energy: a spring and a slider in the ground's plane (closure).
 
-Its states q1, q2 are the spring's displacement s [m] along 1 and 2. Up to |s| = s_lim the footpad
+The spring has a constant stiffness, and a slider of Coulomb's kind carries its other end. The
+states q1, q2 are the spring's displacement s [m] along 1 and 2. Up to |s| = s_lim the footpad
 sticks and nothing is lost; from there on the slider comes into motion within `zone`, smoothly. Of
 what friction takes from the motion, K |s|^2/2 is held, and the rest, which is never below 0, is
-dissipated: -F.v = held' + dissipated' whatever the normal force does. [derived]
+dissipated: -F.v = held' + dissipated' whatever the normal force does (derived).
 """
 
 from __future__ import annotations
@@ -17,8 +17,9 @@ from .normal import damping_ramp
 
 
 def stick_limit(foot: FootMotion, Fn: float, p: LegModel) -> float:
-    """Displacement [m] at which a footpad under the normal force `Fn` [N] starts to slip: that of
-    Coulomb's limit with the Stribeck excess.
+    """Displacement at which a footpad under the normal force `Fn` [N] starts to slip [m].
+
+    It is that of Coulomb's limit with the Stribeck excess.
     """
     speed = sqrt(foot.slip_1 * foot.slip_1 + foot.slip_2 * foot.slip_2)
     return p.mu * Fn * (1.0 + p.ar * exp(-speed / p.b_strib)) / p.K_t
@@ -35,8 +36,9 @@ def slider_share(past: float, p: LegModel) -> float:
 
 
 def sticking(foot: FootMotion, q1: float, q2: float, part: float, p: LegModel) -> FrictionForce:
-    """Below the limit, of which |s| is a `part`: s' = v, and the stick damping Cr, which fades in
-    with the contact and out towards the limit.
+    """Friction below the limit, of which |s| is a `part`: s' = v, and the stick damping.
+
+    The damping Cr fades in with the contact and out towards the limit.
     """
     v1 = foot.slip_1
     v2 = foot.slip_2
@@ -81,11 +83,10 @@ def slipping(
 def passive_friction(
     foot: FootMotion, Fn: float, q1: float, q2: float, p: LegModel
 ) -> FrictionForce:
-    """Friction on a footpad under the normal force `Fn` [N]: F = -K s min(1, s_lim/|s|), and the
-    stick damping.
+    """Friction on a footpad under the normal force `Fn` [N].
 
-    Out of contact s returns to 0 with time constant tau_sr. Where there is neither a displacement
-    nor a limit, as with mu = 0, s stays 0.
+    F = -K s min(1, s_lim/|s|), and the stick damping. Out of contact s returns to 0 with time
+    constant tau_sr. Where there is neither a displacement nor a limit, as with mu = 0, s stays 0.
     """
     square = q1 * q1 + q2 * q2
     if foot.depth <= 0.0:

@@ -1,4 +1,4 @@
-"""Where quantities turn, and where between three times a quantity is highest."""
+"""Turning points of quantities, and the highest point between three times."""
 
 from __future__ import annotations
 
@@ -40,12 +40,11 @@ def crest(b: Bend) -> Crest:
 
 
 def where_to_look(b: Bend, record: float, size: float, surprise: float) -> float:
-    """The time [s] to look at for a value in `b` above the `record`; -inf where a look would not
-    find much more, in parts of `size`.
+    """The time [s] to look at for a value in `b` above the `record`.
 
-    At the crest, away from the times that are known; amid the wider side where the parabola has
-    missed by a `surprise` at the last look; amid the steeper side where that is so steep that it may
-    hold a kink.
+    It is at the crest, away from the times that are known; amid the wider side where the parabola
+    has missed by a `surprise` at the last look; amid the steeper side where that is so steep that
+    it may hold a kink; -inf where a look would not find much more, in parts of `size`.
     """
     top = crest(b)
     enough = ENOUGH * size
@@ -77,15 +76,21 @@ def narrowed(b: Bend, t: float, v: float) -> Bend:
 
 def mark_turns(
     first: Doubles, middle: Doubles, following: Doubles, level: float, turns: Doubles, count: int
-) -> None:
-    """Write below 0 to `turns` for each of `count` quantities that turns in the `middle` of three
-    times, or comes to a level there.
+) -> int:
+    """Write below 0 to `turns` for each quantity that turns in the middle of three times.
 
-    Without branches and calls, so that the compiler takes several at once.
+    One that comes to a level there counts as well. There are neither branches nor calls, so that
+    the compiler takes several of the `count` quantities at once.
+
+    Returns:
+        The number of quantities that turn.
     """
+    found = 0
     for i in range(count):
         rise = middle[i] - first[i]
         turns[i] = rise * (following[i] - middle[i] - level * rise)
+        found += 1 if turns[i] < 0.0 else 0
+    return found
 
 
 def copy(source: Doubles, target: Doubles, count: int) -> None:

@@ -1,5 +1,6 @@
-"""Dormand-Prince 5(4), the paper's ode45: explicit, held by the stiffest chamber whatever the
-tolerance.
+"""Dormand-Prince 5(4), the paper's ode45.
+
+It is explicit, and held by the stiffest chamber whatever the tolerance.
 
 Coefficients: Dormand and Prince (1980); the fourth-order interpolant: Hairer, Norsett and Wanner,
 Solving Ordinary Differential Equations I, II.6.

@@ -1,15 +1,14 @@
-"""Runge-Kutta of fourth order in which stiff pairs of states even out exponentially: no pair holds
-the step, however stiff.
+"""Runge-Kutta of fourth order in which stiff pairs of states even out exponentially.
 
-A system tells of pairs of states whose difference decays at lambda = a1 + a2, far faster than all
-else changes: the pressures in the chambers of a damper, which its orifice evens out at 1e4 to 1e5
-1/s near zero flow, while all else in a landing changes at 1e3 to 5e3 1/s. That part of the pair's
-rates, (a1 x, -a2 x) with x the growth of the difference since the step's start and a1, a2 as they
-are there, is solved exactly within a step; the rest is taken by the classic Runge-Kutta scheme.
-That is exponential time differencing, ETDRK4-B of Krogstad, Generalized integrating factor methods
-for stiff PDEs, Journal of Computational Physics 203 (2005); here the stiff part is a matrix of rank
-one for each pair, so that its functions are scalars in closed form. Where nothing is stiff it is
-the classic scheme.
+No pair holds the step, however stiff. A system tells of pairs of states whose difference decays at
+lambda = a1 + a2, far faster than all else changes: the pressures in the chambers of a damper, which
+its orifice evens out at 1e4 to 1e5 1/s near zero flow, while all else in a landing changes at 1e3
+to 5e3 1/s. That part of the pair's rates, (a1 x, -a2 x) with x the growth of the difference since
+the step's start and a1, a2 as they are there, is solved exactly within a step; the rest is taken by
+the classic Runge-Kutta scheme. That is exponential time differencing, ETDRK4-B of Krogstad,
+Generalized integrating factor methods for stiff PDEs, Journal of Computational Physics 203 (2005);
+here the stiff part is a matrix of rank one for each pair, so that its functions are scalars in
+closed form. Where nothing is stiff it is the classic scheme.
 
 The step's error is that against a third-order companion whose last stage is the right-hand side at
 the step's end, which is the next step's first. Both see the step's end only; a part of the
@@ -61,8 +60,8 @@ class Exponential(Solver):
     def _freeze_linear_part(self) -> None:
         """Take each pair's a1, a2 and the rate of its difference at the step's start."""
         for k in range(self.system.stiff_pairs):
-            keep(self.system.stiff(k), self._pairs, k)
-            pair = stiff_pair_of(self._pairs, k)
+            pair = self.system.stiff(k)
+            keep(pair, self._pairs, k)
             self.driven[STAGES * k] = self.k1[pair.j] - self.k1[pair.i]
 
     def _weigh_pairs(self, h: float) -> None:
@@ -72,8 +71,9 @@ class Exponential(Solver):
             keep(phi_weights(h * (pair.a1 + pair.a2)), self._weights, k)
 
     def _nonlinear_rate(self, stage: int, s: Doubles, rates: Doubles) -> None:
-        """Keep the rate of each pair's difference at a stage, less the decay of its growth: from
-        the state `s` and the `rates` there.
+        """Keep the rate of each pair's difference at a stage, less the decay of its growth.
+
+        The state there is `s`, its rates are `rates`.
         """
         y = data(self.y)
         for k in range(self.system.stiff_pairs):
@@ -86,8 +86,9 @@ class Exponential(Solver):
     def _replace_linear_growth(
         self, pair: StiffPair, s: Doubles, growth: float, plain: float
     ) -> None:
-        """In `s`, put `growth` of the pair's difference in the place of the classic scheme's
-        `plain` one; what does not decay stays.
+        """In `s`, put `growth` of the pair's difference in the place of the `plain` one.
+
+        The plain growth is that of the classic scheme. What does not decay stays.
         """
         decay = pair.a1 + pair.a2
         if decay > 0.0:
@@ -96,8 +97,9 @@ class Exponential(Solver):
             s[pair.j] -= pair.a2 * shift
 
     def _stage(self, i: int, ahead: float, h: float, k: Doubles, k_next: Doubles) -> None:
-        """Stage `i` of a step of `h` [s], `ahead` [s] from its start: from the rates `k` of the
-        stage before to `k_next`.
+        """Compute stage `i` of a step of `h` [s], `ahead` [s] from its start.
+
+        `k` are the rates of the stage before, `k_next` becomes those of this stage.
         """
         y, s, d = data(self.y), data(self.y_stage), data(self.driven)
         for j in range(self.n):
@@ -111,8 +113,9 @@ class Exponential(Solver):
         self._nonlinear_rate(i, s, k_next)
 
     def _try_step(self, h: float) -> None:
-        """Write the stages and the new state of a step of `h` [s], the right-hand side there, and
-        the error.
+        """Write the stages and the new state of a step of `h` [s].
+
+        The right-hand side there and the error are written as well.
         """
         k1, k2, k3, k4 = data(self.k1), data(self.k2), data(self.k3), data(self.k4)
         self._weigh_pairs(h)
@@ -164,9 +167,10 @@ class Exponential(Solver):
             self._replace_linear_growth(
                 pair, e, h * w.b4 * (d[q + 3] - d[q + 4]), e[pair.j] - e[pair.i]
             )
+        # without branches, so that the compiler takes several states at once
         for i in range(self.n):
-            if relative[i] == 0.0:
-                e[i] = fabs(e[i]) + KINK * h * SIXTH * fabs(k1[i] - k2[i] - k3[i] + k4[i])
+            kink = KINK * h * SIXTH * fabs(k1[i] - k2[i] - k3[i] + k4[i])
+            e[i] = fabs(e[i]) + kink if relative[i] == 0.0 else e[i]
 
 
 def stage_weights(i: int, w: PhiWeights) -> tuple[float, float]:

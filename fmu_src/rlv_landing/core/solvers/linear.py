@@ -8,10 +8,12 @@ from ..memory import Doubles
 
 
 def solve(a: Doubles, b: Doubles, n: int) -> bool:
-    """Solve a x = b by Gauss' elimination with row pivots: `a` [n x n], row by row, is used up, `b`
-    [n] becomes x.
+    """Solve a x = b by Gauss' elimination with row pivots.
 
-    Returns False where the matrix is singular.
+    `a` [n x n], row by row, is used up, `b` [n] becomes x.
+
+    Returns:
+        False where the matrix is singular.
     """
     for k in range(n):
         p = _pivot(a, k, n)

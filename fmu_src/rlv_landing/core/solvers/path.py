@@ -1,4 +1,4 @@
-"""The way of a system: its last two internal steps, and what is read along them.
+"""The path of a system: its last two internal steps, and what is read along them.
 
 Interpolants: Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, II.6.
 """
@@ -71,8 +71,9 @@ class Path:
             self._interpolate(t, y)
 
     def _inside(self, at: int, t: float, start: float, end: float, y: Doubles) -> None:
-        """Write the state at time `t` [s] of the step from `start` to `end`, whose interpolant
-        begins at `at`.
+        """Write the state at time `t` [s] of the step from `start` to `end` to `y`.
+
+        Its interpolant begins at `at`.
         """
         n = self.n
         d = data(self.dense)
@@ -86,7 +87,7 @@ class Path:
             )
 
     def _other_dense(self) -> int:
-        """Where the interpolant of the step before the last begins."""
+        """The place in `dense` of the interpolant of the step before the last."""
         return PARTS * self.n - self.dense_at
 
     def _stand_still(self, y: Doubles) -> None:

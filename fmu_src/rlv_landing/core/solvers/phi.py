@@ -1,6 +1,4 @@
-"""The functions that exponential time differencing is made of, and the weights that Krogstad's
-scheme makes of them.
-"""
+"""The functions of exponential time differencing, and Krogstad's weights made of them."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
 """A system that has come to rest sleeps: time passes without steps until an input changes.
 
-An explicit method goes on at rest with the longest stable steps, a thousand a second, and its states
-tremble by a small part of the tolerance. Where the rest is, one implicit step tells that is longer
-than any motion that is left: backward Euler's, linear, of `FAR` seconds. It leads from the state y
-by the shift d, d/FAR - J d = f(y), to where all that decays has decayed. A creep shows in it as
-FAR times its speed.
+An explicit method goes on at rest with the longest stable steps, a thousand a second, and its
+states tremble by a small part of the tolerance. Where the rest is, one implicit step tells that is
+longer than any motion that is left: backward Euler's, linear, of `FAR` seconds. It leads from the
+state y by the shift d, d/FAR - J d = f(y), to where all that decays has decayed. A creep shows in
+it as FAR times its speed.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ from .watch import Watch
 
 # [s]: to where a probe looks
 FAR = 1000.0
-# steps at rest between two probes, each of which costs as much as six; a prime, so that a tremble that
-# repeats itself is met in all its states
+# steps at rest between two probes, each of which costs as much as six; a prime, so that a tremble
+# that repeats itself is met in all its states
 STEPS_BETWEEN = 197
-# a rest is that of the state where it is no further away than this [m] times rtol, a fifth of what the
-# tolerance allows a position: the methods' tremble at rest is less, but for loose tolerances and for
-# seals, on which an explicit method's tremble may hold the strokes; where so many probes found it no
-# nearer, by a part of the least distance, the rest is five times as far as the tolerance allows, at
-# most
+# a rest is that of the state where it is no further away than this [m] times rtol, a fifth of what
+# the tolerance allows a position: the methods' tremble at rest is less, but for loose tolerances
+# and for seals, on which an explicit method's tremble may hold the strokes; where so many probes
+# found it no nearer, by a part of the least distance, the rest is five times as far as the
+# tolerance allows, at most
 TREMBLE, MOST_TREMBLE = 0.02, 0.5
 NO_NEARER = 20
 NEARER = 0.99
@@ -93,11 +93,13 @@ class Rest(Watch):
             return False
         look = data(self._look)
         self._outputs_at(self.t, place, look, 0)
-        return self.system.may_rest(data(self.u), data(self.u_rate), look)
+        return self.system.rests(look)
 
     def _reach_rest(self, y: Doubles) -> bool:
-        """Bring the state `y` to its rest at the inputs at time `t`; False where that is none, or
-        too far away.
+        """Bring the state `y` to its rest at the inputs at time `t`.
+
+        Returns:
+            False where there is no rest, or it is too far away.
         """
         self._inputs_at(self.t)
         step = self._go_far(y)

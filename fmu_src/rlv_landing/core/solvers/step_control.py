@@ -1,4 +1,4 @@
-"""How long the next step is.
+"""The length of the next step.
 
 Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, II.4.
 """
@@ -22,11 +22,10 @@ HOPELESS_ERROR = 1e10
 
 
 def step_factor(error: float, previous: float, exponent: float) -> float:
-    """The next step's length, in parts of the length of a step with this `error`; `previous` is
-    that of the step before.
+    """The next step's length, in parts of the length of a step with this `error`.
 
     Errors are in units of the tolerance: a step with an error above 1 is taken again, shorter.
-        `exponent` is the method's.
+    `previous` is the error of the step before, `exponent` is the method's.
     """
     if error <= 1.0:
         factor = SAFETY * pow(previous, BETA) / pow(max(error, LEAST_ERROR), exponent)

@@ -74,15 +74,17 @@ class Watch(Path):
         self._y_look = array("d", bytes(8 * system.n))
 
     def extremes(self, t: float, found: Buffer) -> None:
-        """Write the extremes from the start to the time `t` [s], inside the last internal step, to
-        `found` [4 row].
+        """Write the extremes from the start to the time `t` [s] to `found` [4 row].
+
+        The time is inside the last internal step.
         """
         copy(data(self.kept), data(found), 4 * self.row)
         self._watch_until(t, data(found), self.t_start)
 
     def open_span(self, t: float) -> None:
-        """Keep extremes from time `t` [s] on, inside the last internal step, beside those from the
-        start; at the start they are the same.
+        """Keep extremes from time `t` [s] on, beside those from the start.
+
+        The time is inside the last internal step; at the start both are the same.
         """
         if t <= self.t_start:
             return
@@ -91,8 +93,9 @@ class Watch(Path):
         self._begin(data(self._now), t, data(self.span))
 
     def extremes_of_span(self, t: float, found: Buffer) -> None:
-        """Write the extremes from the time of `open_span` to `t` [s], inside the last internal
-        step, to `found` [4 row].
+        """Write the extremes from the time of `open_span` to `t` [s] to `found` [4 row].
+
+        The time is inside the last internal step.
         """
         if self.t_span < inf:
             copy(data(self.span), data(found), 4 * self.row)
@@ -111,7 +114,7 @@ class Watch(Path):
         self._outputs_at(t, y, row, 0)
 
     def _start_rows(self, y: Doubles, dy: Doubles) -> None:
-        """Begin at `t` with no step behind: at the state `y`, whose rates `dy` were just computed."""
+        """Begin at `t` with no step behind, at the state `y`, whose rates are `dy`."""
         self.seen = 1
         self.noted = True
         self.system.read(y, data(self.u_now), dy, data(self.last), 0)
@@ -122,9 +125,7 @@ class Watch(Path):
             self._begin(data(self.last), self.t, data(self.kept))
 
     def _read_end(self, y: Doubles, dy: Doubles) -> None:
-        """Read the outputs at the end of a step: at the state `y`, whose rates `dy` were just
-        computed.
-        """
+        """Read the outputs at the end of a step, at the state `y`, whose rates are `dy`."""
         self.system.read(y, data(self.u_now), dy, data(self._end), 0)
 
     def _next_row(self) -> None:
@@ -143,15 +144,19 @@ class Watch(Path):
             self._judge_middle(data(self.last), self.t, data(self.span), self.t_span)
 
     def _watch(self, t: float) -> None:
-        """Bring the extremes that are kept to the time `t` [s] inside the last step, where the path
-        ends or stays.
+        """Bring the extremes that are kept to the time `t` [s] inside the last step.
+
+        The path ends or stays there.
         """
         self._watch_until(t, data(self.kept), self.t_start)
         if self.t_span < inf:
             self._watch_until(t, data(self.span), self.t_span)
 
     def _watch_until(self, t: float, found: Doubles, since: float) -> None:
-        """Bring the extremes `found`, kept since a time, to the time `t` [s] inside the last step."""
+        """Bring the extremes `found`, kept since a time, to the time `t` [s].
+
+        It is inside the last step.
+        """
         half, now = data(self._half), data(self._now)
         if t > self.t_old:
             middle = 0.5 * (self.t_old + t)
@@ -166,8 +171,9 @@ class Watch(Path):
             self._note_row(data(self.middle), t, found, since)
 
     def _judge_middle(self, following: Doubles, t: float, found: Doubles, since: float) -> None:
-        """Judge the outputs at the last step's start, with those that are `following` at time `t`
-        [s] after it.
+        """Judge the outputs at the last step's start.
+
+        Those after it are `following`, at time `t` [s].
         """
         middle = data(self.middle)
         if self.seen > 2:
@@ -177,7 +183,7 @@ class Watch(Path):
         else:
             self._note_row(middle, self.t_old, found, since)
 
-    def _judge(
+    def _judge(  # noqa: PLR0913  three times with their outputs
         self,
         t0: float,
         first: Doubles,
@@ -188,29 +194,30 @@ class Watch(Path):
         found: Doubles,
         since: float,
     ) -> None:
-        """Take the outputs in `middle` that turn there, or near there, into the extremes `found`."""
+        """Take the outputs that turn in the `middle`, or near it, into the extremes `found`."""
         if t1 < since:
             return
         if t1 <= t0 or t2 <= t1:
             self._note_row(middle, t1, found, since)
             return
         turns = data(self._turns)
-        mark_turns(first, middle, following, LEVEL, turns, self.row)
+        if mark_turns(first, middle, following, LEVEL, turns, self.row) == 0:
+            return
         for i in range(self.row):
-            if turns[i] < 0.0:
-                b = Bend(t0, first[i], t1, middle[i], t2, following[i])
-                self._judge_bend(i, b, found, since)
+            if turns[i] < 0.0 and self._may_raise(i, first[i], middle[i], following[i], found):
+                sign = 1.0 if middle[i] > first[i] else -1.0
+                b = Bend(t0, sign * first[i], t1, sign * middle[i], t2, sign * following[i])
+                self._raise(i, sign, b, found, since)
 
-    def _judge_bend(self, i: int, b: Bend, found: Doubles, since: float) -> None:
-        """Take the output `i`, which turns amid `b`, into the extremes where it may be beyond them."""
-        reach = REACH * max(fabs(b.v1 - b.v0), fabs(b.v1 - b.v2))
-        if b.v1 > b.v0 and b.v1 + reach > found[2 * self.row + i]:
-            self._raise(i, 1.0, b, found, since)
-        elif b.v1 < b.v0 and b.v1 - reach < found[i]:
-            self._raise(i, -1.0, Bend(b.t0, -b.v0, b.t1, -b.v1, b.t2, -b.v2), found, since)
+    def _may_raise(self, i: int, v0: float, v1: float, v2: float, found: Doubles) -> bool:
+        """Whether the output `i` may be beyond the extremes `found` where it turns at `v1`."""
+        reach = REACH * max(fabs(v1 - v0), fabs(v1 - v2))
+        if v1 > v0:
+            return v1 + reach > found[2 * self.row + i]
+        return v1 - reach < found[i]
 
     def _raise(self, i: int, sign: float, b: Bend, found: Doubles, since: float) -> None:
-        """Look for the crest `b` of `sign` times the output `i`, as far as it is beyond the record."""
+        """Look for the crest `b` of `sign` times the output `i`, beyond the record."""
         at = (2 * self.row if sign > 0.0 else 0) + i
         look = data(self._look)
         self._put_higher(at, sign, b.t1, b.v1, found)
@@ -229,7 +236,10 @@ class Watch(Path):
             b = narrowed(b, t, value)
 
     def _put_higher(self, at: int, sign: float, t: float, value: float, found: Doubles) -> None:
-        """Put `value` at time `t` [s], `sign` times an output, where it is beyond that at `found[at]`."""
+        """Put `value` at time `t` [s], `sign` times an output, where it is a new extreme.
+
+        The record so far is `found[at]`.
+        """
         if value > sign * found[at]:
             found[at] = sign * value
             found[at + self.row] = t

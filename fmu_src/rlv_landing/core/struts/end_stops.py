@@ -1,4 +1,4 @@
-"""The end stops of a main strut, which every law of it may have. [closure]"""
+"""The end stops of a main strut, which every law of it may have (closure)."""
 
 from __future__ import annotations
 
@@ -6,11 +6,10 @@ from ..records import AxialForce, LegModel
 
 
 def stop_force(s: float, v: float, p: LegModel) -> AxialForce:
-    """The end stops at stroke `s` [m] and stroke rate `v` [m/s]; force positive where it pushes the
-    strut longer.
+    """The end stops at stroke `s` [m] and stroke rate `v` [m/s].
 
-    One-sided K e (1 + c e') with overlap `e` beyond full extension (s < 0) or full compression (s >
-    s_max), never pulling.
+    The force is positive where it pushes the strut longer: one-sided K e (1 + c e') with overlap
+    `e` beyond full extension (s < 0) or full compression (s > s_max), never pulling.
     """
     if s < 0.0:
         force = -p.K_stop * s * (1.0 - p.c_stop * v)

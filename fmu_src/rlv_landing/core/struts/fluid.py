@@ -1,4 +1,4 @@
-"""Liquid with entrapped air: one equation of state, and what follows from it. [closure]"""
+"""Liquid with entrapped air: one equation of state, and what follows from it (closure)."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ def pressure_slope(z: float) -> float:
 
 
 def fluid(z: float, x: float, n: float, B0: float, kB: float, Pa: float) -> FluidState:
-    """The mixture at the state `z` [Pa] of a chamber, with v the specific volume relative to that
-    at `Pa`.
+    """The mixture at the state `z` [Pa] of a chamber.
 
-    v = (1 - x) (1 + kB (P - Pa)/B0)^(-1/kB) + x (Pa/P)^(1/n); `x` air's volume fraction at `Pa`,
-    `n` its polytropic exponent, `B0`, `kB` the liquid's bulk modulus [Pa] and its slope. Density is
-    rho0/v and the effective bulk modulus -v/(dv/dP), so that liquid mass is conserved by
-    construction. h = integral of v dP from `Pa` [Pa] is the energy that a flow carries.
+    v = (1 - x) (1 + kB (P - Pa)/B0)^(-1/kB) + x (Pa/P)^(1/n) is the specific volume relative to
+    that at `Pa`; `x` air's volume fraction at `Pa`, `n` its polytropic exponent, `B0`, `kB` the
+    liquid's bulk modulus [Pa] and its slope. Density is rho0/v and the effective bulk modulus
+    -v/(dv/dP), so that liquid mass is conserved by construction. h = integral of v dP from `Pa`
+    [Pa] is the energy that a flow carries.
 
     P = z [Pa], absolute, from Pc = 10 Pa up; below, where the chamber is a cavity and the air makes
     all of its volume's change, P = Pc exp((z - Pc)/Pc). So any z is a state of the mixture, with P
@@ -51,7 +51,8 @@ def pressure(z: float) -> float:
 
 
 def strain_energy(f: FluidState, density: float, V: float, Pa: float) -> float:
-    """Energy [J] stored in volume `V` [m3] of the mixture `f`, of `density` 1/v: V (h/v - (P -
-    Pa)), zero at `Pa`.
+    """Energy stored in volume `V` [m3] of the mixture `f`, of `density` 1/v [J].
+
+    V (h/v - (P - Pa)), zero at `Pa`.
     """
     return V * (f.h * density - (f.P - Pa))

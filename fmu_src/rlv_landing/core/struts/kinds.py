@@ -19,7 +19,7 @@ def main_strut(s: float, v: float, z1: float, z2: float, p: LegModel) -> StrutFo
 
 
 def main_strut_status(s: float, z1: float, z2: float, p: LegModel) -> StrutStatus:
-    """What else is read of the main strut at stroke `s` [m] and its law's states."""
+    """Outputs of the main strut beside its force, at stroke `s` [m] and its law's states."""
     return chosen(MAIN_STRUTS, p.main_kind).status(s, z1, z2, p)
 
 

@@ -21,12 +21,11 @@ LAST_PART, DEAD_PART = 0.05, 0.025
 
 
 def chamber(V0: float, area: float, travel: float) -> Chamber:
-    """A chamber of `V0` [m3] whose piston has moved away by `travel` [m]: V0 + area travel, down to
-    5 % of V0. [closure]
+    """A chamber of `V0` [m3] whose piston has moved away by `travel` [m] (closure).
 
-    Below, V falls as exp(travel) towards 2.5 % of V0, with the same slope to begin with, so that
-    however far a soft stop lets the piston go, a chamber is left. The area that the pressure acts
-    on is dV/dtravel throughout.
+    V0 + area travel, down to 5 % of V0. Below, V falls as exp(travel) towards 2.5 % of V0, with the
+    same slope to begin with, so that however far a soft stop lets the piston go, a chamber is left.
+    The area that the pressure acts on is dV/dtravel throughout.
     """
     V = V0 + area * travel
     past = V - LAST_PART * V0
@@ -44,7 +43,7 @@ def mixture(z: float, p: LegModel) -> FluidState:
 
 
 def orifice_flow(dP: float, density_ratio: float, p: LegModel) -> float:
-    """Volume flow [m3/s] from the lower to the upper chamber under `dP` = P2 - P1 [Pa]. [closure]
+    """Volume flow [m3/s] from the lower to the upper chamber under `dP` = P2 - P1 [Pa] (closure).
 
     Cd Ao sqrt(2/rho) dP/(dP^2 + dP_lam^2)^(1/4): the square-root law with a laminar passage through
     zero. `density_ratio` is the mean of rho/rho0 in the two chambers. Compression and rebound have
@@ -69,8 +68,9 @@ def orifice_slope(dP: float, density_ratio: float, p: LegModel) -> float:
 
 
 def seal_friction(v: float, P1: float, P2: float, p: LegModel) -> float:
-    """Seal friction [N] against the stroke rate `v` [m/s]: Coulomb + pressure-proportional +
-    Stribeck, smoothed. [closure]
+    """Seal friction against the stroke rate `v` [m/s], in N (closure).
+
+    Coulomb + pressure-proportional + Stribeck, smoothed.
     """
     ratio = v / p.v_str
     level = p.Fc + p.kp * 0.5 * (fabs(P1 - p.Pa) + fabs(P2 - p.Pa)) + p.Fs * exp(-ratio * ratio)
@@ -118,7 +118,7 @@ def liquid_spring(s: float, v: float, z1: float, z2: float, p: LegModel) -> Stru
 
 
 def liquid_spring_status(s: float, z1: float, z2: float, p: LegModel) -> StrutStatus:
-    """What the end stops hold at stroke `s` [m], and the pressures."""
+    """The energy that the end stops hold at stroke `s` [m], and the pressures."""
     return StrutStatus(stop_energy(s, p), pressure(z1), pressure(z2))
 
 

@@ -1,8 +1,8 @@
-"""The elastic auxiliary strut with play in its joints: it bears only where its elongation has taken
-up the play, g_t in tension or g_c in compression. [closure]
+"""The elastic auxiliary strut with play in its joints (closure).
 
-The faces come to bear over a part of the play, smoothly, so that forces have slopes everywhere.
-What they would bear at elongation 0 is left out, so that a strut in free flight bears nothing.
+It bears only where its elongation has taken up the play, g_t in tension or g_c in compression. The
+faces come to bear over a part of the play, smoothly, so that forces have slopes everywhere. What
+they would bear at elongation 0 is left out, so that a strut in free flight bears nothing.
 """
 
 from __future__ import annotations
@@ -17,10 +17,9 @@ BEARING_PART = 0.03
 
 
 def bearing(x: float, p: LegModel) -> Bearing:
-    """The spring's elongation u where the joint has moved `x` [m] past one end of its play: 0 well
-    inside, x well past it.
+    """The spring's elongation u where the joint has moved `x` [m] past one end of its play.
 
-    u = (x + sqrt(x^2 + eps^2))/2, u' = u/sqrt(x^2 + eps^2).
+    u = (x + sqrt(x^2 + eps^2))/2, u' = u/sqrt(x^2 + eps^2): 0 well inside, x well past it.
     """
     eps = BEARING_PART * (p.g_t + p.g_c)
     root = sqrt(x * x + eps * eps)
@@ -29,9 +28,9 @@ def bearing(x: float, p: LegModel) -> Bearing:
 
 
 def elastic_with_play(s: float, v: float, p: LegModel) -> AxialForce:
-    """The strut at stroke `s` [m] and stroke rate `v` [m/s]; with the elongation e = -s, tension
-    positive,
+    """The strut at stroke `s` [m] and stroke rate `v` [m/s].
 
+    With the elongation e = -s, tension positive,
     F = T(e) - T(0) + k_play e + Ca e' [c_play + (1 - c_play) min(1, u+' + u-')],
     T(e) = Ka (u+^ek u+' - u-^ek u-'), u+ of e - g_t and u- of -e - g_c. The factor u' makes the
     spring's energy a closed form for every ek.
@@ -46,9 +45,10 @@ def elastic_with_play(s: float, v: float, p: LegModel) -> AxialForce:
 
 
 def elastic_with_play_energy(s: float, p: LegModel) -> float:
-    """Energy [J] that the spring holds at stroke `s` [m], with the elongation e = -s:
-    H(e) - H(0) - T(0) e + k_play e^2/2, H = Ka/(ek + 1) (u+^(ek + 1) + u-^(ek + 1)).
+    """Energy that the spring holds at stroke `s` [m], in J.
 
+    With the elongation e = -s,
+    H(e) - H(0) - T(0) e + k_play e^2/2, H = Ka/(ek + 1) (u+^(ek + 1) + u-^(ek + 1)).
     H is convex and its slope is T, so that it is never negative; rounding near e = 0 is cut off.
     """
     n = p.ek + 1.0

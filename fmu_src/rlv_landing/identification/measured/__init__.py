@@ -1,1 +1,1 @@
-"""What a user measured of landings: scalars and curves, as targets of an identification."""
+"""Scalars and curves that a user measured of landings, as targets of an identification."""

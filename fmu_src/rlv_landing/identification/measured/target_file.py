@@ -154,20 +154,25 @@ def _scale(row: dict[str, str], q: Quantity) -> float:
 
 
 def _unit(row: dict[str, str], field: str, q: Quantity) -> str:
-    """The unit of a row's value: behind the number, in its column, or in the heading.
+    """The unit of a row's value: behind the number, in the heading, or in the column `unit`.
+
+    The column is that of the value; a scale has it where nothing else says its unit.
 
     Raises:
-        LandingError: There is none, and the quantity has a unit.
+        LandingError: There is none, and the quantity has a unit, or there are two.
     """
     try:
         behind = split(row[field])[1]
     except UnitError:
         # the value's own reader says why
         behind = ""
-    given = row.get("unit", "") or row.get(f"{field} unit", "")
-    if behind and given and behind != given:
-        raise LandingError(f"{field} = {row[field]!r} has a unit, and {given} beside it; leave one")
-    unit = behind or given
+    heading, column = row.get(f"{field} unit", ""), row.get("unit", "")
+    given = [u for u in (behind, heading, column if field == "value" else "") if u]
+    if len(set(given)) > 1:
+        raise LandingError(
+            f"{field} = {row[field]!r} has the units {' and '.join(given)}; leave one"
+        )
+    unit = given[0] if given else column
     if not unit and q.unit and field == "value":
         raise LandingError(
             f"no unit of {q.name}; write it in a column unit, or in the heading: "
@@ -184,10 +189,10 @@ def _rows(path: Path) -> Iterable[tuple[int, dict[str, str]]]:
     for line, row in read_csv(path, "targets", missing):
         cells = [cell.strip() for cell in row]
         if names:
-            if len(cells) > len(names):
+            if len(cells) != len(names):
                 raise LandingError(
-                    f"{path}, line {line}: {len(cells)} cells for {len(names)} columns; "
-                    "write numbers with a point and no comma in them"
+                    f"{path}, line {line}: {len(cells)} cells for {len(names)} columns; give every "
+                    "column a cell, which may be empty, and write numbers with a point"
                 )
             yield line, {**units, **dict(zip(names, cells))}
         else:

@@ -11,10 +11,13 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
+from ...quantities import shown
 from ...text.durable import text_of, whole_file, write_durably
+from ..limits import LIMITS
 from ..outcome import SEVERITY
 from .judged_landing import FAILED, JudgedLanding
 from .search import Critical, Envelope, Family
+from .study import CRITERIA, EnvelopeStudy
 
 NAMES = (*SEVERITY, FAILED)
 COLUMNS = ("condition", "outcome", "outcome_time", "leg", "limit", "limit_leg", "limit_time")
@@ -45,6 +48,17 @@ def verdict(family: Family, criterion: str) -> str:
         if all(landing.lost(criterion) for _, _, landing in family.landings)
         else "all stable"
     )
+
+
+def lost_text(study: EnvelopeStudy) -> str:
+    """What counts as lost in words, with the limits if the criterion is to pass one."""
+    if study.criterion != "limit":
+        return CRITERIA[study.criterion]
+    limits = []
+    for name, value in study.limits.items():
+        unit, size = shown(LIMITS[name])
+        limits.append(f"{name} {value / size:g} {unit}".rstrip())
+    return f"{CRITERIA['limit']} ({', '.join(limits)})"
 
 
 def record(envelope: Envelope) -> dict[str, Any]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import zlib
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -18,6 +20,8 @@ from .judged_landing import JudgedLanding
 from .study import EnvelopeStudy
 
 ANOTHER = "name another folder by --work"
+# of a line
+KEYS = {"family", "i", "j", "landed", "check"}
 
 
 class Store:
@@ -91,6 +95,8 @@ class Store:
             landing = JudgedLanding.from_record(record["landed"])
             if not _same(self.found.setdefault(key, landing), landing):
                 raise ValueError("it contradicts a line before it")
+            if record["check"] != _check_sum(record):
+                raise ValueError("its check sum is another")
         except (ValueError, RecursionError) as e:
             reason = str(e).split(": line")[0]
             raise LandingError(
@@ -104,7 +110,7 @@ class Store:
         Raises:
             ValueError: They are not in the line, or not in the study.
         """
-        if not isinstance(record, dict) or record.keys() != {"family", "i", "j", "landed"}:
+        if not isinstance(record, dict) or record.keys() != KEYS:
             raise ValueError("it is no landing")
         family, i, j = (record[key] for key in ("family", "i", "j"))
         width, height = self._study.lattice.size
@@ -124,7 +130,9 @@ class Store:
             OSError: The disk refuses; the file holds the landings before.
         """
         if self._file >= 0:
-            record = {"family": family, "i": point[0], "j": point[1], "landed": asdict(landing)}
+            record: dict[str, Any] = {"family": family, "i": point[0], "j": point[1]}
+            record["landed"] = asdict(landing)
+            record["check"] = _check_sum(record)
             self._append((json.dumps(record) + "\n").encode())
         self.found[family, point] = landing
 
@@ -145,6 +153,12 @@ class Store:
             self._file = -1
         if self._lock is not None:
             self._lock.release()
+
+
+def _check_sum(record: Mapping[str, Any]) -> int:
+    """The CRC-32 of a line's other keys: a changed digit would be another number."""
+    kept = {key: value for key, value in record.items() if key != "check"}
+    return zlib.crc32(json.dumps(kept, sort_keys=True).encode())
 
 
 def _same(one: JudgedLanding, other: JudgedLanding) -> bool:

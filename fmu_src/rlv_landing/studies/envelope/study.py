@@ -159,6 +159,11 @@ class EnvelopeStudy:
 
         return Lattice(self.cells, self.levels, (steps(self.x), steps(self.y)))
 
+    @property
+    def fewest_landings(self) -> int:
+        """The number of landings at the corners of all coarse cells, which all are made."""
+        return len(self.families) * (self.cells + 1) ** 2
+
     def values_at(self, x: float, y: float) -> tuple[float, float]:
         """The values (x, y) [SI] of a point of the fine lattice."""
         width, height = self.lattice.size

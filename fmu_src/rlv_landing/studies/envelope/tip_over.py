@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import atan2, cos, hypot, sin, sqrt
 
-from ...parameters import Parameters, azimuth
-from ...quantities import MODES
+from ...parameters import Parameters
+from ...quantities import MODES, azimuth
 from ...touchdown import footpad_at_rest
 
 # the model in that limit: struts locked by their orifices and damped by their seals, feet that

@@ -13,7 +13,7 @@ from typing import Any
 from ... import __version__
 from ...errors import LandingError
 from .extras import dask
-from .scheduler import ask_scheduler, no_scheduler, silence
+from .scheduler import ask_scheduler, disable_dask_logs, no_scheduler
 from .sweep import Engine, LostError, Rows
 from .sweep_row import Plan, sweep_rows
 
@@ -148,7 +148,7 @@ def cluster(plan: Plan, address: str, timeout: float) -> Iterator[Engine]:
             another version of it.
     """
     distributed = dask()
-    silence()
+    disable_dask_logs()
     ask_scheduler(address, timeout)
     try:
         client = distributed.Client(address, timeout=timeout, set_as_default=False)

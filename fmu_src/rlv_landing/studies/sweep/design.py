@@ -67,13 +67,9 @@ def grid(factors: Sequence[Factor]) -> Design:
         LandingError: A factor has no levels, or there are too many points.
     """
     count = prod(f.level_count() for f in factors)
-    if count > LARGEST:
-        least = duration_text(count * LEAST_SECONDS)
-        raise LandingError(
-            f"this grid has {count:.12g} points, more than {LARGEST}, which would take {least} on "
-            'one core at least; take fewer levels, or method = "sobol" or "lhs"'
-        )
-    _check_memory(count, len(factors))
+    check_points(
+        count, len(factors), "this grid", 'take fewer levels, or method = "sobol" or "lhs"'
+    )
     levels = [f.levels() for f in factors]
     indices = (
         np.unravel_index(np.arange(count), [len(values) for values in levels]) if levels else ()
@@ -81,11 +77,27 @@ def grid(factors: Sequence[Factor]) -> Design:
     return Design({f.name: values[i] for f, values, i in zip(factors, levels, indices)}, count)
 
 
-def _check_memory(count: int, columns: int) -> None:
+def check_points(
+    count: int, columns: int, what: str, remedy: str = "take fewer samples or levels"
+) -> None:
+    """Refuse more points than a study may have, or than fit into memory.
+
+    Args:
+        count: The number of points.
+        columns: The values of each.
+        what: What has them, for the error.
+        remedy: What to do.
+
+    Raises:
+        LandingError: They are too many.
+    """
+    if count > LARGEST:
+        raise LandingError(
+            f"{what} has {count:.12g} points, more than {LARGEST}, which would take "
+            f"{duration_text(count * LEAST_SECONDS)} on one core at least; {remedy}"
+        )
     check_memory(
-        f"a study of {count} points in {columns} columns",
-        BYTES_PER_VALUE * count * columns,
-        "take fewer samples or levels",
+        f"a study of {count} points in {columns} columns", BYTES_PER_VALUE * count * columns, remedy
     )
 
 
@@ -95,7 +107,7 @@ def drawn(factors: Sequence[Factor], method: str, count: int, seed: int) -> Desi
     Raises:
         LandingError: They need more memory than is free.
     """
-    _check_memory(count, len(factors))
+    check_points(count, len(factors), "this study")
     points = unit_points(method, count, len(factors), seed)
     return Design({f.name: f.quantiles(points[:, i]) for i, f in enumerate(factors)}, count)
 

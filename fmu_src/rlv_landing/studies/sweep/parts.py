@@ -75,12 +75,15 @@ def remove_unfinished(folder: Path) -> None:
                 path.unlink()
 
 
-def check_part(path: Path, fingerprint: str, count: int, after: int) -> tuple[int, int]:
+def check_part(
+    path: Path, fingerprint: str, schema: Any, count: int, after: int
+) -> tuple[int, int]:
     """The range of the indices of a part's rows.
 
     Args:
         path: The part.
         fingerprint: The study's fingerprint.
+        schema: The study's columns.
         count: The number of the study's landings.
         after: The index after the last row of the part before it.
 
@@ -90,7 +93,7 @@ def check_part(path: Path, fingerprint: str, count: int, after: int) -> tuple[in
     """
     first = int(path.stem)
     with opened(path) as file:
-        _check_study(path, file, fingerprint)
+        _check_study(path, file, fingerprint, schema)
         rows = file.metadata.num_rows
         if not rows:
             raise LandingError(f"{path} has no rows; {ANEW}")
@@ -110,20 +113,22 @@ def check_part(path: Path, fingerprint: str, count: int, after: int) -> tuple[in
     return first, first + rows
 
 
-def check_results(path: Path, fingerprint: str, count: int) -> None:
-    """Check that the results file is whole and of this study.
+def check_results(path: Path, fingerprint: str, schema: Any, count: int) -> None:
+    """Check that the results file is whole, to its last byte of data, and of this study.
 
     Raises:
         LandingError: It is not.
     """
     with opened(path) as file:
-        _check_study(path, file, fingerprint)
+        _check_study(path, file, fingerprint, schema)
         rows = file.metadata.num_rows
+        for group in range(file.num_row_groups):
+            file.read_row_group(group)
     if rows != count:
         raise LandingError(f"{path} has {rows} rows, and the study has {count} landings; {ANEW}")
 
 
-def _check_study(path: Path, file: Any, fingerprint: str) -> None:
+def _check_study(path: Path, file: Any, fingerprint: str, schema: Any) -> None:
     metadata = file.schema_arrow.metadata or {}
     try:
         own = json.loads(metadata.get(b"study.json", b"{}"))["fingerprint"]
@@ -131,3 +136,11 @@ def _check_study(path: Path, file: Any, fingerprint: str) -> None:
         own = None
     if own != fingerprint:
         raise LandingError(f"{path} has rows of another study; move it out of the folder")
+    # no checksum covers what a Parquet file says of its columns
+    if _columns(file.schema_arrow) != _columns(schema):
+        raise LandingError(f"{path} is damaged (its columns are not the study's); {ANEW}")
+
+
+def _columns(schema: Any) -> list[tuple[str, str, bytes]]:
+    """Name, type and unit of every column."""
+    return [(f.name, str(f.type), (f.metadata or {}).get(b"unit", b"")) for f in schema]

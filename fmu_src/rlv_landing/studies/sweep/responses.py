@@ -7,8 +7,8 @@ from functools import cache
 from typing import Any
 
 from ...errors import LandingError, unknown
-from ...extremes import Extreme
 from ...history import History
+from ...outputs import Extreme
 from ...quantities import LEG_QUANTITIES, LEGS, MODES, OUTPUT_QUANTITIES, Quantity
 from ...validation.measures import first_push, leg_work
 from ..outcome import TOPPLED, Outcome, judged

@@ -161,7 +161,9 @@ class Results:
         """The ranges of indices that are done already; a new study's files are written."""
         parts = self.folder / PARTS
         if (self.folder / RESULTS).exists():
-            check_results(self.folder / RESULTS, self._about["fingerprint"], self.count)
+            check_results(
+                self.folder / RESULTS, self._about["fingerprint"], self._schema(), self.count
+            )
             self._remove_parts()
             return [(0, self.count)]
         if not (self.folder / STUDY).exists():
@@ -172,7 +174,9 @@ class Results:
         ranges: list[tuple[int, int]] = []
         for path in part_files(parts):
             after = ranges[-1][1] if ranges else 0
-            ranges.append(check_part(path, self._about["fingerprint"], self.count, after))
+            ranges.append(
+                check_part(path, self._about["fingerprint"], self._schema(), self.count, after)
+            )
         return ranges
 
     @property
@@ -256,7 +260,7 @@ class Results:
         self.flush()
         with (
             whole_file(path) as file,
-            self._parquet.ParquetWriter(file, self._schema()) as writer,
+            self._parquet.ParquetWriter(file, self._schema(), write_page_checksum=True) as writer,
         ):
             for table in self._groups():
                 writer.write_table(table, row_group_size=GROUP_ROWS)

@@ -19,7 +19,7 @@ from .extras import dask
 ADDRESS = re.compile(r"([a-z]+://)?(\[[0-9a-fA-F:.%\w]+\]|[\w.-]+):[0-9]{1,5}")
 
 
-def silence() -> None:
+def disable_dask_logs() -> None:
     """Have Dask log nothing: the caller reports an error of the cluster once, in one line."""
     for name in ("distributed", "tornado", "asyncio"):
         for own in [

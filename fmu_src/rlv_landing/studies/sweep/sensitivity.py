@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import LandingError, unknown
-from .design import Design, unit_points
+from .design import Design, check_points, unit_points
 from .factors import Array
 from .parts import opened
 from .responses import known_responses
@@ -27,6 +27,8 @@ RESAMPLES = 999
 LEAST_WHOLE = 0.9
 # an index lies between 0 and 1: an interval wider than half of that decides nothing
 WIDEST = 0.5
+# samples that are drawn at once for the bootstrap; their number changes no result
+BATCH = 1_000_000
 # a response that varies by less than this part of its largest value varies by round-off
 ROUND_OFF = 1e-12
 
@@ -59,7 +61,7 @@ class Indices:
 
     @property
     def reason(self) -> str:
-        """Why there are no indices; empty where there are."""
+        """Reason why there are no indices; empty where there are."""
         if not np.isnan(self.total).any():
             return ""
         if self.used < LEAST_WHOLE * self.samples:
@@ -105,8 +107,8 @@ def sobol_design(study: Study) -> Design:
     The blocks are A, then B, then for each factor A with B's column of it.
 
     Raises:
-        LandingError: The study is a table, has fewer than two factors, or its samples are no power
-            of 2.
+        LandingError: The study is a table, has fewer than two factors, its samples are no power of
+            2, or there are too many points.
     """
     if study.method == "table":
         raise LandingError(
@@ -124,12 +126,13 @@ def sobol_design(study: Study) -> Design:
             "Sobol indices need samples = a power of 2, for example 256 or 1024, "
             f'with method = "sobol" or "lhs"; {found}'
         )
+    blocks = len(study.factors) + 2
+    check_points(n * blocks, len(study.factors), "this study")
     points = unit_points("sobol", n, 2 * len(study.factors), study.seed)
     a, b = (
         [f.quantiles(half[:, i]) for i, f in enumerate(study.factors)]
         for half in np.hsplit(points, 2)
     )
-    blocks = len(study.factors) + 2
     columns = {}
     for i, f in enumerate(study.factors):
         parts = [a[i]] * blocks
@@ -180,6 +183,7 @@ def sobol_indices(
         method="percentile",
         confidence_level=level,
         n_resamples=resamples,
+        batch=max(1, BATCH // n),
         random_state=np.random.default_rng(seed),
     )
     interval = resampled.confidence_interval

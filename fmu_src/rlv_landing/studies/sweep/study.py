@@ -159,7 +159,9 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
     toml_keys.refuse_unknown(document, TABLES, "table")
     keys = toml_keys.table(document, "study")
     toml_keys.refuse_unknown(keys, KEYS, "key of [study]")
-    method = toml_keys.text(keys, "method", "table" if "table" in keys else "none")
+    if not {"method", "table"} & keys.keys():
+        raise LandingError(f"[study] has no method; write one of {', '.join(METHODS)}")
+    method = toml_keys.text(keys, "method", "table")
     if method not in METHODS:
         raise unknown("method", method, METHODS)
     fixed = toml_keys.values(toml_keys.table(document, "set"), VARIABLES, "quantity in [set]")

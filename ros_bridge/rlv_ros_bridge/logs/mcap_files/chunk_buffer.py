@@ -104,7 +104,7 @@ class ChunkBuffer:
         """Writes what was gathered as a chunk, and hands it to the operating system."""
         data = b"".join(self._parts)
         if self._builder is not None and self._statistics is not None:
-            self._hand_over(data)
+            self._add_messages(data)
         else:
             for record in split_records(data):
                 m = decode_record(record[0], record[RECORD_HEAD.size :])
@@ -112,7 +112,7 @@ class ChunkBuffer:
         self._mcap.flush()
         self._clear()
 
-    def _hand_over(self, data: bytes) -> None:
+    def _add_messages(self, data: bytes) -> None:
         """Does for all messages at once what `add_message` does for each."""
         if not data:
             return

@@ -1,4 +1,4 @@
-"""A solver goes on in stints, between which Python looks at signals.
+"""A solver goes on in short calls, between which Python handles signals.
 
 So Ctrl-C also ends a step that takes hours.
 """
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from numpy import float64
     from numpy.typing import NDArray
 
-# tries of a step in a stint: some 20 ms
-STINT = 10_000
+# tries of a step in a call: some 20 ms
+TRIES = 10_000
 # the parameter that limits the steps
 LIMIT = "solver.max_steps_per_second"
 
@@ -46,7 +46,7 @@ def advance(solver: Solver, time: float) -> None:
         IntegrationError: The solver cannot go on.
     """
     check_going(solver)
-    while not solver.advance_some(time, STINT):
+    while not solver.advance_some(time, TRIES):
         check_going(solver)
 
 
@@ -60,4 +60,4 @@ def record(
     """
     while first < last:
         check_going(solver)
-        first = solver.record_some(start, every, first, last, rows, STINT)
+        first = solver.record_some(start, every, first, last, rows, TRIES)

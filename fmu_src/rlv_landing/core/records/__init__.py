@@ -1,0 +1,75 @@
+"""The only layout: what kernels take, give and keep, a record each.
+
+In the compiled core a record is a C struct made from the text here.
+
+Frames. Inertial: x forward, y up, z to the right; the origin is that of the ground. Body: the same
+axes turned by the pitch, which is clockwise positive; the origin is the body's centre of gravity
+(CG). Leg: r radially out and h up from the CG in a plane fixed in the body, t across it. Ground: n
+out of the ground, 1 and 2 along it, 1 down the slope and 2 along inertial z.
+
+All fields are numbers. Compiled, a record that stands in an array is handed on by its address, one
+that was just made by value.
+"""
+
+from .laws import (
+    AxialForce,
+    Bearing,
+    Chamber,
+    FluidState,
+    FootMotion,
+    Friction,
+    FrictionBound,
+    FrictionForce,
+    GroundForce,
+    NormalForce,
+    StrutForce,
+    StrutMotion,
+    StrutStatus,
+)
+from .legs import LegForces, LegStatus
+from .models import BodyModel, LegModel, LegPlace
+from .outputs import BodyOutputs, EnergyOutputs, LegOutputs, StatusOutputs
+from .planar import Attitude, BodyAcceleration, FootPoint, HeldEnergy, PlanarLoads, Turn
+from .state import Accounts, BodyState, Fault, Inputs, LegState, Phase
+from .steps import Bend, Crest, PhiWeights, StiffPair
+
+__all__ = [
+    "Accounts",
+    "Attitude",
+    "AxialForce",
+    "Bearing",
+    "Bend",
+    "BodyAcceleration",
+    "BodyModel",
+    "BodyOutputs",
+    "BodyState",
+    "Chamber",
+    "Crest",
+    "EnergyOutputs",
+    "Fault",
+    "FluidState",
+    "FootMotion",
+    "FootPoint",
+    "Friction",
+    "FrictionBound",
+    "FrictionForce",
+    "GroundForce",
+    "HeldEnergy",
+    "Inputs",
+    "LegForces",
+    "LegModel",
+    "LegOutputs",
+    "LegPlace",
+    "LegState",
+    "LegStatus",
+    "NormalForce",
+    "Phase",
+    "PhiWeights",
+    "PlanarLoads",
+    "StatusOutputs",
+    "StiffPair",
+    "StrutForce",
+    "StrutMotion",
+    "StrutStatus",
+    "Turn",
+]

@@ -1,0 +1,53 @@
+"""Forces and outputs of one leg."""
+
+from typing import NamedTuple
+
+
+class LegForces(NamedTuple):
+    """All that one leg does: forces, rates of its laws' states, and powers [W].
+
+    Strut forces are in the leg's plane, the ground's force is in the ground's axes.
+    """
+
+    stroke: float  # main strut [m]
+    stroke_rate: float  # [m/s]
+    main: float  # its force [N] compression positive
+    auxiliary_stroke: float  # [m]
+    auxiliary_rate: float  # [m/s]
+    auxiliary: float  # its force [N] compression positive
+    main_r: float  # main strut's force on the footpad along r [N]
+    main_h: float  # along h [N]
+    auxiliary_r: float  # auxiliary strut's force on the footpad along r [N]
+    auxiliary_h: float  # along h [N]
+    # of the struts on the body about the CG, in the leg's plane, from h towards r positive [N m]
+    moment: float
+    normal: float  # the ground's force on the footpad along n [N]
+    f1: float  # along 1 [N]
+    f2: float  # along 2 [N]
+    dz1: float
+    dz2: float
+    dq1: float  # [m/s]
+    dq2: float  # [m/s]
+    a1: float  # see StrutForce [1/s]
+    a2: float  # [1/s]
+    orifice: float
+    seal: float
+    stop: float
+    auxiliary_dissipated: float
+    contact: float  # dissipated by the ground's normal damping
+    friction: float  # dissipated by friction
+    held: float  # energy held by the main strut's medium [J]
+    liquid_mass: float  # [kg]
+    mass_1: float  # see StrutForce
+    mass_2: float
+
+
+class LegStatus(NamedTuple):
+    """Outputs of a leg beside its forces: energies held [J], and the main strut's chambers."""
+
+    stop: float
+    auxiliary: float
+    contact: float
+    friction: float
+    pressure_upper: float  # [Pa]
+    pressure_lower: float  # [Pa]

@@ -1,0 +1,81 @@
+"""The state of a vehicle: the body, each leg group, then the accounts; and its inputs."""
+
+from enum import IntEnum
+from typing import NamedTuple
+
+
+class Phase(IntEnum):
+    """The phase of a landing.
+
+    Toppled: the whole vehicle's CG is beyond the outermost footpad, or the body has turned over.
+    """
+
+    FALLING = 0
+    CONTACT = 1
+    SETTLED = 2
+    TOPPLED = 3
+
+
+class Fault(IntEnum):
+    """The reason why a solver cannot go on."""
+
+    NONE = 0
+    COLLAPSED = 1
+    TOO_MANY_STEPS = 2
+
+
+class BodyState(NamedTuple):
+    """The body in the inertial frame. As rates, the same a second."""
+
+    x: float  # CG [m]
+    y: float  # CG [m]
+    pitch: float  # [rad]
+    vx: float  # [m/s]
+    vy: float  # [m/s]
+    pitch_rate: float  # [rad/s]
+
+
+class LegState(NamedTuple):
+    """One leg: its footpad in the leg's plane, and what its laws keep.
+
+    As rates, the same a second.
+    """
+
+    r: float  # [m]
+    h: float  # [m]
+    vr: float  # [m/s]
+    vh: float  # [m/s]
+    # the main strut law's own; of a liquid spring its chambers' states [Pa], see `struts.fluid`
+    z1: float  # of the upper chamber
+    z2: float  # of the lower chamber
+    q1: float  # the friction law's displacement along 1 [m]
+    q2: float  # the friction law's displacement along 2 [m]
+
+
+class Accounts(NamedTuple):
+    """Energy [J] dissipated so far, in six ways, and supplied so far, in three, by all legs.
+
+    As rates, powers [W].
+    """
+
+    orifice: float
+    seal: float
+    stop: float
+    auxiliary: float
+    contact: float
+    friction: float
+    external: float
+    ground: float
+    transverse: float
+
+
+class Inputs(NamedTuple):
+    """Load on the body at its CG, and motion of the ground, in the inertial frame."""
+
+    force_x: float  # [N]
+    force_y: float  # [N]
+    moment: float  # clockwise positive [N m]
+    heave: float  # lift of the ground [m]
+    heave_rate: float  # [m/s]
+    tilt: float  # about the inertial origin, on top of the slope, clockwise positive [rad]
+    tilt_rate: float  # [rad/s]

@@ -1,0 +1,184 @@
+"""A step that is tried: its stages and its end, its error, and what it loses.
+
+What a step must not lose is what the system conserves: energy, and the liquid of dampers.
+"""
+
+from __future__ import annotations
+
+from array import array
+from math import fabs, inf, sqrt
+
+from ..bodies.system import System
+from ..memory import Buffer, Doubles, data
+from .rest import Rest
+
+# [s]: what a shorter step loses is not judged, for it is at a force that jumps, and loses next to
+# nothing
+SHORTEST_JUDGED = 1e-10
+# part of the size of a step's ends that its interpolant may leave them by unseen
+BULGE = 0.1
+# at looser tolerances the inside of every step is judged
+LOOSE = 1e-4
+
+
+class Trial(Rest):
+    """A path along which steps are tried.
+
+    A method computes a step from the state `y` and its rates `k1`: its stages, whose rates are `k2`
+    to `k4`, the new state `y_new`, the rates `k_end` there, and the step's `deviation` from its
+    companion. All are [n].
+
+    Attributes:
+        rhs_calls: Calls of the right-hand side so far.
+        ceiling: [n] how large the error of each state may be at any tolerance.
+    """
+
+    rhs_calls: float
+    y: Buffer
+    y_new: Buffer
+    y_stage: Buffer
+    k1: Buffer
+    k2: Buffer
+    k3: Buffer
+    k4: Buffer
+    k_end: Buffer
+    deviation: Buffer
+    ceiling: Buffer
+
+    def __init__(self, system: System, rtol: float) -> None:
+        super().__init__(system, rtol)
+        n = system.n
+        self.rhs_calls = 0.0
+        self.y = array("d", bytes(8 * n))
+        self.y_new = array("d", bytes(8 * n))
+        self.y_stage = array("d", bytes(8 * n))
+        self.k1 = array("d", bytes(8 * n))
+        self.k2 = array("d", bytes(8 * n))
+        self.k3 = array("d", bytes(8 * n))
+        self.k4 = array("d", bytes(8 * n))
+        self.k_end = array("d", bytes(8 * n))
+        self.deviation = array("d", bytes(8 * n))
+        self.ceiling = array("d", [inf] * n)
+
+    def derivatives(self, t: float, y: Buffer, dy: Buffer) -> None:
+        """Write dy/dt at time `t` [s] and state `y` [n] to `dy` [n], for other solvers."""
+        self._derivatives(t, data(y), data(dy))
+
+    def _derivatives(self, t: float, y: Doubles, dy: Doubles) -> None:
+        self._inputs_at(t)
+        self.system.rhs(y, data(self.u_now), dy)
+        self.rhs_calls += 1.0
+
+    def _dense_correction(self, h: float, at: int) -> None:
+        """Write the fourth-order part of a step's interpolant to `dense[at:]`.
+
+        Only a method that has one does so.
+        """
+
+    def _error(self) -> float:
+        """Error of the step just computed, in units of the tolerance.
+
+        It is the root mean square over the controlled states.
+        """
+        y, end, deviation = data(self.y), data(self.y_new), data(self.deviation)
+        scale, relative = data(self.system.scale), data(self.system.relative)
+        ceiling = data(self.ceiling)
+        self.system.weigh(ceiling)
+        total = 0.0
+        m = self.system.controlled
+        for i in range(m):
+            limit = self.rtol * scale[i]
+            if relative[i] > 0.0:
+                limit = min(self.rtol * (scale[i] + max(fabs(y[i]), fabs(end[i]))), ceiling[i])
+            e = deviation[i] / limit
+            total += e * e
+        return sqrt(total / m)
+
+    def _loses(self, h: float) -> bool:
+        """Whether a step of `h` [s] loses more than it may of what the system conserves.
+
+        The loss is judged before the step's end is brought back to what is conserved, and after.
+        This brings it back, reads it, and writes the step's interpolant.
+        """
+        end, k_end = data(self.y_new), data(self.k_end)
+        self._read_end(end, k_end)
+        lost = self.system.lost(data(self.last), data(self._end), h)
+        away = self.system.conserve(end)
+        if away > 0.0:
+            self._derivatives(self.t + h, end, k_end)
+            self._read_end(end, k_end)
+            lost = max(lost, self.system.lost(data(self.last), data(self._end), h))
+        self._write_dense(h)
+        if h < SHORTEST_JUDGED:
+            return False
+        if max(lost, away) > 1.0:
+            return True
+        return self._loses_inside(h)
+
+    def _write_dense(self, h: float) -> None:
+        """Write the interpolant of the step of `h` [s] just computed.
+
+        It takes the place of that of the step before the last.
+        """
+        n = self.n
+        d, y, end, k1, k_end = (
+            data(self.dense),
+            data(self.y),
+            data(self.y_new),
+            data(self.k1),
+            data(self.k_end),
+        )
+        at = self._other_dense()
+        for i in range(n):
+            j = at + i
+            change = end[i] - y[i]
+            bend = h * k1[i] - change
+            d[j] = y[i]
+            d[n + j] = change
+            d[2 * n + j] = bend
+            d[3 * n + j] = change - h * k_end[i] - bend
+        self._dense_correction(h, at + 4 * n)
+
+    def _loses_inside(self, h: float) -> bool:
+        """Whether the step loses more than it may at its quarters.
+
+        They are judged where the step's interpolant leaves its ends far behind, or the tolerance is
+        loose. They are read as outputs are, brought back.
+        """
+        if self.rtol <= LOOSE and not self._bulges():
+            return False
+        inside = data(self.y_stage)
+        most = 0.0
+        for i in range(3):
+            ahead = 0.25 * (i + 1) * h
+            t = self.t + ahead
+            self._inside(self._other_dense(), t, self.t, self.t + h, inside)
+            self._derivatives(t, inside, data(self.k_end))
+            if self.system.conserve(inside) > 0.0:
+                self._derivatives(t, inside, data(self.k_end))
+            self.system.read(inside, data(self.u_now), data(self.k_end), data(self._half), 0)
+            most = max(most, self.system.lost(data(self.last), data(self._half), ahead))
+        self._derivatives(self.t + h, data(self.y_new), data(self.k_end))
+        return most > 1.0
+
+    def _bulges(self) -> bool:
+        """Whether the interpolant just written leaves its ends far behind at a quarter.
+
+        Only states whose error is relative to their size count.
+        """
+        n = self.n
+        d, relative = data(self.dense), data(self.system.relative)
+        y, end = data(self.y), data(self.y_new)
+        at = self._other_dense()
+        for i in range(self.system.controlled):
+            if relative[i] > 0.0:
+                j = at + i
+                change = d[n + j]
+                # 3/16 of these are the interpolant's distances from the straight line
+                bend = d[2 * n + j] + 0.1875 * d[4 * n + j]
+                first = bend + 0.25 * d[3 * n + j]
+                second = bend + 0.75 * d[3 * n + j]
+                out = 0.1875 * max(fabs(first), fabs(second))
+                if out > fabs(change) + BULGE * (fabs(y[i]) + fabs(end[i])):
+                    return True
+        return False

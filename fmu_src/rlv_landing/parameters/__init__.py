@@ -1,0 +1,24 @@
+"""The vehicle, its ground and its drop: annotated values, checked on construction.
+
+The defaults are the preset `yue2022-figures`. The source of each separates the paper's own values
+from identified ones. Lengths down from the CG are positive depths, as in the paper's Table 1.
+"""
+
+from .drop import Drop, Integration
+from .ground import Ground
+from .parameters import Parameters
+from .table import GROUPS, PARAMETER_QUANTITIES, check_value
+from .vehicle import AuxiliaryStrut, MainStrut, Vehicle
+
+__all__ = [
+    "GROUPS",
+    "PARAMETER_QUANTITIES",
+    "AuxiliaryStrut",
+    "Drop",
+    "Ground",
+    "Integration",
+    "MainStrut",
+    "Parameters",
+    "Vehicle",
+    "check_value",
+]

@@ -1,0 +1,169 @@
+"""`Parameters`: all values of a landing, checked on construction."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from ..errors import LandingError, unknown
+from ..quantities import MODES
+from .drop import Drop, Integration
+from .ground import Ground
+from .table import FIELDS, GROUPS, PARAMETER_QUANTITIES, check_value
+from .vehicle import AuxiliaryStrut, MainStrut, Vehicle
+
+# sources of values by name; of values that belong to one mode by (mode, name)
+Sources = Mapping[str | tuple[str, str], str]
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """All parameters of a landing.
+
+    Attributes:
+        vehicle: The body and its footpads.
+        main_strut: The main strut.
+        auxiliary_strut: The auxiliary strut.
+        ground: The ground and its contact.
+        drop: The state at first contact.
+        solver: What the integrator may spend.
+        by_mode: Values that belong to one landing mode only: mode -> name -> value.
+        sources: Sources of values that are not the table's defaults, by name; of values that belong
+            to one mode by (mode, name).
+    """
+
+    vehicle: Vehicle = field(default_factory=Vehicle)
+    main_strut: MainStrut = field(default_factory=MainStrut)
+    auxiliary_strut: AuxiliaryStrut = field(default_factory=AuxiliaryStrut)
+    ground: Ground = field(default_factory=Ground)
+    drop: Drop = field(default_factory=Drop)
+    solver: Integration = field(default_factory=Integration)
+    by_mode: Mapping[str, Mapping[str, float | str]] = field(default_factory=dict)
+    sources: Sources = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        groups = {group: vars(getattr(self, group)) for group in GROUPS}
+        for name, (group, what) in FIELDS.items():
+            check_value(PARAMETER_QUANTITIES[name], groups[group][what])
+        self._check_together()
+
+    def items(self) -> Iterator[tuple[str, float | str]]:
+        """Every (name, value), in the table's order."""
+        for name in PARAMETER_QUANTITIES:
+            yield name, self[name]
+
+    def __getitem__(self, name: str) -> float | str:
+        if name not in FIELDS:
+            raise unknown("parameter", name, PARAMETER_QUANTITIES)
+        group, what = FIELDS[name]
+        value: float | str = getattr(getattr(self, group), what)
+        return value
+
+    def source(self, name: str, mode: str | None = None) -> str:
+        """The source of the value of `name`; with a `mode`, of its value for that mode."""
+        own = self.sources.get(name, PARAMETER_QUANTITIES[name].source)
+        return own if mode is None else self.sources.get((mode, name), own)
+
+    def with_values(
+        self, values: Mapping[str, Any], source: str | Mapping[str, str] = "user"
+    ) -> Parameters:
+        """A copy with `values` by name, each checked; they are valid in every mode.
+
+        Args:
+            values: Values in SI by name.
+            source: Their source: one for all, or by name (default `user`).
+
+        Raises:
+            LandingError: An unknown name or a bad value.
+        """
+        changed = self._replaced(values, {name: _source(name, source) for name in values})
+        by_mode = {
+            mode: {n: v for n, v in own.items() if n not in values}
+            for mode, own in self.by_mode.items()
+        }
+        sources = {
+            key: s
+            for key, s in changed.sources.items()
+            if isinstance(key, str) or key[1] not in values
+        }
+        return replace(changed, by_mode=by_mode, sources=sources)
+
+    def with_mode_values(
+        self, values: Mapping[str, Mapping[str, Any]], source: str | Mapping[str, str] = "user"
+    ) -> Parameters:
+        """A copy with `values` that belong to one mode each; `for_mode` applies them.
+
+        Args:
+            values: Values in SI: mode -> name -> value.
+            source: Their source: one for all, or by name (default `user`).
+
+        Raises:
+            LandingError: An unknown mode or name, or a bad value.
+        """
+        by_mode = {mode: dict(own) for mode, own in self.by_mode.items()}
+        sources = dict(self.sources)
+        for mode, own in values.items():
+            self.for_mode(mode)._replaced(own, {})
+            by_mode.setdefault(mode, {}).update(own)
+            sources.update({(mode, name): _source(name, source) for name in own})
+        return replace(self, by_mode=by_mode, sources=sources)
+
+    def for_mode(self, mode: str) -> Parameters:
+        """A copy for the landing `mode`, with the values that belong to that mode.
+
+        Raises:
+            LandingError: The mode is unknown.
+        """
+        if mode not in MODES:
+            raise unknown("landing mode", mode, MODES)
+        own = self.by_mode.get(mode, {})
+        sources: Sources = {name: self.source(name, mode) for name in own}
+        return self._replaced({**own, "drop.mode": mode}, sources)
+
+    def _replaced(self, values: Mapping[str, Any], sources: Sources) -> Parameters:
+        grouped: dict[str, dict[str, float | str]] = {}
+        for name, value in values.items():
+            if name not in FIELDS:
+                raise unknown("parameter", name, PARAMETER_QUANTITIES)
+            group, what = FIELDS[name]
+            grouped.setdefault(group, {})[what] = check_value(PARAMETER_QUANTITIES[name], value)
+        parts: dict[str, Any] = {
+            group: replace(getattr(self, group), **changed) for group, changed in grouped.items()
+        }
+        return replace(self, **parts, sources={**self.sources, **sources})
+
+    def _check_together(self) -> None:
+        m, a = self.main_strut, self.auxiliary_strut
+        swept = m.area_lower * m.stroke_max
+        if swept >= 0.95 * m.volume_lower:
+            raise LandingError(
+                f"main_strut.stroke_max = {m.stroke_max:g} m sweeps {swept:g} m3 of "
+                f"main_strut.volume_lower = {m.volume_lower:g} m3; "
+                "at most 95 % may be swept: shorten the stroke or enlarge the volume"
+            )
+        softest = m.bulk_modulus / m.bulk_modulus_slope
+        if m.ambient_pressure >= 0.9 * softest:
+            raise LandingError(
+                f"main_strut.ambient_pressure = {m.ambient_pressure:g} Pa leaves a liquid of "
+                f"main_strut.bulk_modulus = {m.bulk_modulus:g} Pa no stiffness at 0 Pa; "
+                f"stay below 0.9 bulk_modulus/bulk_modulus_slope = {0.9 * softest:g} Pa"
+            )
+        if m.area_upper > m.area_lower:
+            raise LandingError(
+                f"main_strut.area_upper = {m.area_upper:g} m2 (annulus) is above "
+                f"main_strut.area_lower = {m.area_lower:g} m2 (bore)"
+            )
+        apart = (
+            (m.joint_radius - a.joint_radius) ** 2 + (m.joint_depth - a.joint_depth) ** 2
+        ) ** 0.5
+        if not abs(m.length - a.length) < apart < m.length + a.length:
+            raise LandingError(
+                f"main_strut.length = {m.length:g} m and auxiliary_strut.length = {a.length:g} m "
+                f"do not meet at a footpad: their joints are {apart:g} m apart; "
+                "check lengths, joint radii and depths"
+            )
+
+
+def _source(name: str, source: str | Mapping[str, str]) -> str:
+    return source if isinstance(source, str) else source.get(name, "user")

@@ -1,0 +1,78 @@
+"""The table of parameters by name, made from the groups' declarations, and the check of values."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from math import isfinite, isinf
+from typing import Any, Literal, get_args, get_type_hints
+
+from ..errors import LandingError
+from ..quantities import Quantity
+from .drop import Drop, Integration
+from .ground import Ground
+from .vehicle import AuxiliaryStrut, MainStrut, Vehicle
+
+GROUPS: dict[str, type] = {
+    "vehicle": Vehicle,
+    "main_strut": MainStrut,
+    "auxiliary_strut": AuxiliaryStrut,
+    "ground": Ground,
+    "drop": Drop,
+    "solver": Integration,
+}
+
+
+def _table() -> dict[str, Quantity]:
+    table: dict[str, Quantity] = {}
+    for group, owner in GROUPS.items():
+        hints = get_type_hints(owner, include_extras=True)
+        for f in fields(owner):
+            _, meaning, q = get_args(hints[f.name])
+            name = f"{group}.{f.name}"
+            default: Any = f.default
+            kind: Literal["string", "real"] = "string" if q.choices else "real"
+            table[name] = replace(q, meaning=meaning, name=name, default=default, kind=kind)
+    return table
+
+
+PARAMETER_QUANTITIES: dict[str, Quantity] = _table()
+# name -> (group, field of the group)
+FIELDS: dict[str, tuple[str, str]] = {
+    name: (name.split(".")[0], name.split(".")[1]) for name in PARAMETER_QUANTITIES
+}
+
+
+def check_value(q: Quantity, value: Any) -> float | str:
+    """The value as the quantity `q` takes it.
+
+    Raises:
+        LandingError: The type is wrong, or the value is not finite or out of bounds; the message
+            names quantity, value, unit and limit.
+    """
+    if q.choices:
+        if not isinstance(value, str) or value not in q.choices:
+            raise LandingError(f"{q.name} = {value!r} is not one of {', '.join(q.choices)}")
+        return value
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise LandingError(
+            f"{q.name} = {value!r} is not a number; give it in {q.unit or 'plain numbers'}"
+        )
+    number = _to_float(q, value)
+    if not (q.lo <= number <= q.hi and isfinite(number)):
+        bounds = f"is outside [{q.lo:g}, {q.hi:g}] {q.unit}".rstrip()
+        unbounded = isinf(q.lo) and isinf(q.hi)
+        raise LandingError(
+            f"{q.name} = {number:g} {q.unit}".rstrip()
+            + (" must be finite" if unbounded else f" {bounds}")
+        )
+    return number
+
+
+def _to_float(q: Quantity, value: float) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        raise LandingError(
+            f"{q.name} is beyond the largest number, 1.8e308; it is outside "
+            + f"[{q.lo:g}, {q.hi:g}] {q.unit}".rstrip()
+        ) from None

@@ -1,0 +1,48 @@
+"""The table of quantities: the model's inputs and outputs with unit, meaning, bounds and source.
+
+Everything that names a quantity is made from this table or from the annotated parameters in
+`parameters`: the FMU's variables, the TOML reader, `--set`, the columns of a history and the
+reference pages.
+"""
+
+from .inputs import INPUT_NAMES, INPUT_QUANTITIES
+from .legs import LEGS, MIRRORED, MODES, LegGroup, azimuth
+from .outputs import (
+    BODY_QUANTITIES,
+    ENERGY_QUANTITIES,
+    LEG_QUANTITIES,
+    OUTPUT_NAMES,
+    OUTPUT_QUANTITIES,
+    SHARED_QUANTITIES,
+    STATUS_QUANTITIES,
+)
+from .peaks import PEAK_QUANTITIES, PEAKS, Peak
+from .quantity import BASE_UNITS, DISPLAY_UNITS, NOMINALS, Quantity, flat_name, shown
+from .statistics import STATISTIC_QUANTITIES
+
+__all__ = [
+    "BASE_UNITS",
+    "BODY_QUANTITIES",
+    "DISPLAY_UNITS",
+    "ENERGY_QUANTITIES",
+    "INPUT_NAMES",
+    "INPUT_QUANTITIES",
+    "LEGS",
+    "LEG_QUANTITIES",
+    "MIRRORED",
+    "MODES",
+    "NOMINALS",
+    "OUTPUT_NAMES",
+    "OUTPUT_QUANTITIES",
+    "PEAKS",
+    "PEAK_QUANTITIES",
+    "SHARED_QUANTITIES",
+    "STATISTIC_QUANTITIES",
+    "STATUS_QUANTITIES",
+    "LegGroup",
+    "Peak",
+    "Quantity",
+    "azimuth",
+    "flat_name",
+    "shown",
+]

@@ -1,0 +1,63 @@
+"""The extremes that the FMU gives; `Landing.extremes` has those of every output."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from .legs import LEGS
+from .outputs import OUTPUT_QUANTITIES
+from .quantity import Quantity
+
+
+@dataclass(frozen=True)
+class Peak:
+    """One extreme of an output since the start, and when it first was.
+
+    Attributes:
+        output: The output's name.
+        side: `min` or `max`.
+        value: The quantity `peak.OUTPUT.SIDE`.
+        time: The quantity `peak.OUTPUT.SIDE_time` [s].
+    """
+
+    output: str
+    side: Literal["min", "max"]
+    value: Quantity
+    time: Quantity
+
+
+def _peak(q: Quantity, side: Literal["min", "max"]) -> Peak:
+    words = {"min": "least", "max": "greatest"}[side]
+    name = f"peak.{q.name}.{side}"
+    value = Quantity(
+        q.unit,
+        f"{words} value since the start, between steps too: {q.meaning}",
+        q.lo,
+        q.hi,
+        name=name,
+        display_unit=q.display_unit,
+    )
+    time = Quantity("s", f"time at which {name} was first so", name=f"{name}_time")
+    return Peak(q.name, side, value, time)
+
+
+PEAKS_OF_A_LEG: tuple[tuple[str, tuple[Literal["min", "max"], ...]], ...] = (
+    ("main_strut.force", ("min", "max")),
+    ("main_strut.stroke", ("max",)),
+    ("main_strut.pressure_lower", ("max",)),
+    ("auxiliary_strut.force", ("min", "max")),
+    ("contact.force", ("max",)),
+)
+_BY_NAME = {q.name: q for q in OUTPUT_QUANTITIES}
+PEAKS: tuple[Peak, ...] = (
+    _peak(_BY_NAME["body.top_axial_acceleration"], "max"),
+    _peak(_BY_NAME["status.stability_margin"], "min"),
+    *(
+        _peak(_BY_NAME[f"leg[{leg}].{name}"], side)
+        for leg in LEGS
+        for name, sides in PEAKS_OF_A_LEG
+        for side in sides
+    ),
+)
+PEAK_QUANTITIES: tuple[Quantity, ...] = tuple(q for p in PEAKS for q in (p.value, p.time))

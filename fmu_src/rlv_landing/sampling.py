@@ -1,0 +1,39 @@
+"""The samples of a run: how many there are, and whether this machine can take them."""
+
+from __future__ import annotations
+
+from math import inf
+
+from .effort import SECONDS_PER_SAMPLE, SECONDS_PER_SECOND, check_duration, check_memory
+from .errors import LandingError
+from .state import LATEST
+
+
+def sample_count(start: float, until: float, every: float, numbers: int) -> int:
+    """The number of samples from `start` until `until` [s], one every `every` [s].
+
+    Args:
+        start: Time of the first sample [s].
+        until: Time that no sample is behind [s].
+        every: Time between two samples [s].
+        numbers: Numbers that are held for each sample at once.
+
+    Raises:
+        LandingError: `every` is not above 0, `until` is not ahead, the samples need more memory
+            than is free, or the landing would take longer than 30 days.
+    """
+    if not 0.0 < every < inf:
+        raise LandingError(f"every = {every:g} s must be finite and above 0 s")
+    if not start < until <= LATEST:
+        raise LandingError(
+            f"until = {until:g} s must be finite, after the present time, {start:g} s, "
+            f"and at most {LATEST:g} s"
+        )
+    span = f"a landing until {until:g} s in samples of {every:g} s"
+    remedy = "land shorter, or sample more seldom"
+    count = (until - start) / every
+    check_memory(span, 8.0 * numbers * count, remedy)
+    seconds = SECONDS_PER_SECOND * (until - start) + SECONDS_PER_SAMPLE * count
+    check_duration(span, seconds, remedy)
+    # a rounding of the quotient takes no sample away
+    return int(count * (1.0 + 1e-12) + 1e-9) + 1
