@@ -3,6 +3,9 @@
 Without them the package runs the same files uncompiled, slowly. From Python 3.11 on the binary uses
 the limited API, so one serves all later versions, in the FMU as well. The limited API of 3.10 has
 no buffers, so a binary compiled there serves 3.10 alone.
+
+A wheel also carries what the FMU's build needs: the sources of slave and front, and the compiled
+front, where FMPy, which has FMI's headers, pythonfmu and a C compiler are installed.
 """
 
 import os
@@ -12,6 +15,7 @@ import sysconfig
 from pathlib import Path
 
 from setuptools import Extension, setup
+from setuptools.command.build_py import build_py
 
 ROOT = Path(__file__).parent
 LIMITED = sys.version_info >= (3, 11) and not sysconfig.get_config_var("Py_GIL_DISABLED")
@@ -61,7 +65,28 @@ def extensions() -> list[Extension]:
     ]
 
 
+class BuildWithFmuSources(build_py):
+    """Builds the packages, and carries into `fmu_build` what stands outside of them."""
+
+    def run(self) -> None:
+        """Build; an editable install finds the files where they are."""
+        super().run()
+        if not self.editable_mode:
+            from fmu_build.sources import carry
+
+            package = Path(self.build_lib) / "fmu_build"
+            carry(package)
+            try:
+                from fmu_build.fronts.neutral import compile_neutral
+
+                made = ", ".join(compile_neutral(package / "fronts" / "compiled"))
+            except (ImportError, SystemExit) as e:
+                made = f"none: `rlv-landing fmu build` will need a C compiler ({e})"
+            print(f"compiled fronts of the FMU: {made}")
+
+
 setup(
+    cmdclass={"build_py": BuildWithFmuSources},
     ext_modules=extensions(),
     options={"bdist_wheel": {"py_limited_api": "cp311"}} if LIMITED else {},
 )

@@ -14,6 +14,7 @@ import math
 import sys
 from collections.abc import Callable
 from functools import wraps
+from pathlib import Path
 from typing import Any
 
 from pythonfmu import (
@@ -32,7 +33,7 @@ from pythonfmu.enums import Fmi2Status
 from rlv_landing import LandingError, __version__
 from rlv_landing.core import COMPILED
 from rlv_landing.hosted import HostedLanding
-from rlv_landing.landing import DEFAULT_RTOL
+from rlv_landing.landing import DEFAULT_RTOL, LOOSEST_RTOL
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.quantities import (
     INPUT_QUANTITIES,
@@ -47,6 +48,9 @@ RATES = 2_000_000
 LARGEST_INTEGER = 2**31 - 1
 # steps refused in a row from which on a refusal is an error
 MOST_REFUSALS = 10
+# start values of the vehicle that the FMU was built for; there is no file for the default vehicle
+VEHICLE = Path(__file__).with_name("vehicle.json")
+STARTS: dict[str, Any] = json.loads(VEHICLE.read_text()) if VEHICLE.is_file() else {}
 KINDS = {"real": Real, "integer": Integer, "boolean": Boolean, "string": String}
 
 
@@ -92,13 +96,17 @@ class RlvLanding(Fmi2Slave):
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
-        self._hosted = HostedLanding()
+        self._hosted = HostedLanding(STARTS)
         self._values: list[Any] = []
         # steps that were refused since the last one that was made
         self._refusals = 0
         for q in PARAMETER_QUANTITIES.values():
             self._register(
-                q, q.default, Fmi2Causality.parameter, Fmi2Variability.fixed, Fmi2Initial.exact
+                q,
+                STARTS.get(q.name, q.default),
+                Fmi2Causality.parameter,
+                Fmi2Variability.fixed,
+                Fmi2Initial.exact,
             )
         for q in INPUT_QUANTITIES:
             self._register(q, 0.0, Fmi2Causality.input, Fmi2Variability.continuous, None)
@@ -136,8 +144,19 @@ class RlvLanding(Fmi2Slave):
     def setup_experiment(
         self, start_time: float, stop_time: float | None, tolerance: float | None
     ) -> None:
-        """Set the start time [s] and the integrator's relative tolerance; `stop_time` is unused."""
-        self._hosted.set_up(start_time, DEFAULT_RTOL if tolerance is None else tolerance)
+        """Set the start time [s] and the integrator's relative tolerance; `stop_time` is unused.
+
+        A tolerance above LOOSEST_RTOL is a Warning, and LOOSEST_RTOL is taken.
+        """
+        rtol = DEFAULT_RTOL if tolerance is None else tolerance
+        if rtol > LOOSEST_RTOL:
+            rtol = LOOSEST_RTOL
+            self.log(
+                f"tolerance = {tolerance:g} makes peak forces and strokes wrong by more than 1 %; "
+                f"{LOOSEST_RTOL:g} is taken instead: set at most that, or none",
+                Fmi2Status.warning,
+            )
+        self._hosted.set_up(start_time, rtol)
 
     @log_exceptions
     def enter_initialization_mode(self) -> None:

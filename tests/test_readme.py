@@ -11,6 +11,8 @@ from click.testing import CliRunner
 from rlv_landing.cli import cli
 
 ROOT = Path(__file__).resolve().parent.parent
+# commands that are groups of commands
+GROUPS = ("log", "fmu")
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 SNIPPETS = re.findall(r"```python\n(.*?)```", README, re.S)
 COMMANDS = re.findall(r"\.venv/bin/rlv-landing ([^\n#]+)", README)
@@ -26,7 +28,7 @@ def test_python_snippets_run(snippet, fmu):
 @pytest.mark.parametrize("line", COMMANDS)
 def test_every_command_and_option_that_is_shown_exists(line):
     words = line.split(">")[0].split()
-    path = [w for w in words[:2] if re.fullmatch("[a-z]+", w)] if words[0] == "log" else words[:1]
+    path = [w for w in words[:2] if re.fullmatch("[a-z]+", w)] if words[0] in GROUPS else words[:1]
     shown = CliRunner().invoke(cli, [*path, "--help"])
     assert shown.exit_code == 0, shown.output
     for option in (w.split("=")[0] for w in words if w.startswith("--")):

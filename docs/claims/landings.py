@@ -14,7 +14,10 @@ from rlv_landing.history import History
 from rlv_landing.identification.conditions import CONDITIONS
 from rlv_landing.identification.free_numbers import FreeNumbers
 from rlv_landing.identification.targets import Fit, fit_of, paper_targets, targets_of_tests
-from rlv_landing.quantities import LEGS, MODES
+from rlv_landing.landing import DEFAULT_RTOL
+from rlv_landing.outputs import Extreme
+from rlv_landing.presets import preset_names
+from rlv_landing.quantities import LEGS, MODES, PEAKS
 from rlv_landing.studies.envelope.tip_over import RigidBlock
 from rlv_landing.touchdown import footpad_at_rest
 from rlv_landing.validation.paper import LEVELS, paper_counts_against_test, printed_scalars
@@ -231,3 +234,43 @@ def height(which: str) -> float:
     """Height of the CG above the feet, of the whole vehicle or of the body alone [m]."""
     p = load_preset(FIGURES)
     return RigidBlock.of(p).height if which == "whole" else -footpad_at_rest(p)[1]
+
+
+@quick
+def loosened(column: str, rtol: str) -> float:
+    """How far a leg's curve at the tolerance `rtol` is from that at the default [SI], at most.
+
+    Over both drop tests of the figures' preset.
+    """
+    far = 0.0
+    for mode in MODES:
+        usual, loose = (
+            Landing(load_preset(FIGURES, mode), rtol=tolerance).run(1.0, 1e-3)
+            for tolerance in (DEFAULT_RTOL, float(rtol))
+        )
+        for leg in LEGS:
+            name = f"leg[{leg}].{column}"
+            far = max(far, float(np.abs(loose[name] - usual[name]).max()))
+    return far
+
+
+@quick
+def peaks_off(rtol: str) -> float:
+    """The largest error of a peak at the tolerance `rtol` [%], of all presets and modes."""
+    return max(
+        100.0
+        * max(abs(found.minimum - exact.minimum), abs(found.maximum - exact.maximum))
+        / max(abs(exact.minimum), abs(exact.maximum))
+        for preset in preset_names()
+        for mode in MODES
+        for exact, found in zip(extremes(preset, mode, 1e-8), extremes(preset, mode, float(rtol)))
+    )
+
+
+@lru_cache
+def extremes(preset: str, mode: str, rtol: float) -> list[Extreme]:
+    """The extremes of forces, strokes, pressures and accelerations at a tolerance."""
+    landing = Landing(load_preset(preset, mode), rtol=rtol)
+    landing.advance_to(1.0)
+    outputs = dict.fromkeys(p.output for p in PEAKS if p.output != "status.stability_margin")
+    return [landing.extremes()[output] for output in outputs]

@@ -1,25 +1,27 @@
-"""Compiles the FMU's front (`fmu_front/`), the binary that hosts load.
+"""Puts the front (`fmu_front/`), the binary that hosts load, into the FMU.
 
-For Linux, and for Windows if there is a compiler for it. pythonfmu's own binaries are left out.
+For Linux, and for Windows if there is a compiler for it: compiled, or one that the installed
+package has. pythonfmu's own binaries are left out.
 """
 
 from __future__ import annotations
 
+import hashlib
 import shutil
-import subprocess
-import sys
 import sysconfig
 import tempfile
+from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 from xml.etree import ElementTree
 
-import fmpy
+from .compilers import Compiler, for_linux, for_windows, run
+from .fronts import prebuilt
+from .fronts.header import FRONT, front_identity, neutral_header, variables_header
 
-from .compilers import Compiler, environment, for_linux, for_windows
-
-FRONT = Path(__file__).parent.parent / "fmu_front"
-HEADERS = Path(fmpy.__file__).parent / "c-code"
-CAUSALITIES = {"parameter": "p", "input": "i", "output": "o"}
+# FMI's C headers, which FMPy has; it takes long to import
+_FMPY = find_spec("fmpy")
+HEADERS = Path((_FMPY.origin if _FMPY else None) or "fmpy").parent / "c-code"
 FLAGS = ["-std=c11", "-O2", "-fvisibility=hidden", "-Wall", "-Wextra", "-g0", "-s", "-shared"]
 
 
@@ -27,6 +29,18 @@ def compilers() -> dict[str, Compiler]:
     """The compiler for each of FMI's platforms that there is one for."""
     windows = for_windows()
     return {"linux64": for_linux(), **({"win64": windows} if windows else {})}
+
+
+def makers(root: ElementTree.Element) -> dict[str, str]:
+    """What makes the front for each platform: the compiler with its options, or what it made.
+
+    Args:
+        root: Root of the FMU's modelDescription.xml.
+    """
+    ready = prebuilt.fronts(made_of(root))
+    if ready:
+        return {f.platform: hashlib.sha256(f.content).hexdigest() for f in ready}
+    return {platform: repr((c.name, c.flags, FLAGS)) for platform, c in compilers().items()}
 
 
 def front_sources() -> list[Path]:
@@ -49,20 +63,67 @@ def replace_binaries(files: Path) -> dict[str, str]:
     root = ElementTree.parse(files / "modelDescription.xml").getroot()
     simulation = root.find("CoSimulation")
     assert simulation is not None
+    name = simulation.attrib["modelIdentifier"]
     module = (files / "resources" / "slavemodule.txt").read_text().strip()
     shutil.rmtree(files / "binaries")
+    ready = prebuilt.fronts(made_of(root))
+    if ready:
+        identity = front_identity(root, module)
+        for front in ready:
+            target = _place(files, front.platform, name)
+            target.write_bytes(prebuilt.identified(front.content, identity))
+        return {front.platform: front.compiler for front in ready}
+    return compile_fronts(
+        variables_header(root, module), lambda platform: _place(files, platform, name)
+    )
+
+
+def _place(files: Path, platform: str, name: str) -> Path:
+    """The front's file for a platform, in its folder, which is made."""
+    target = files / "binaries" / platform / f"{name}{suffix(platform)}"
+    target.parent.mkdir(parents=True)
+    return target
+
+
+def suffix(platform: str) -> str:
+    """The ending of a shared library of one of FMI's platforms."""
+    return ".dll" if platform.startswith("win") else ".so"
+
+
+def made_of(root: ElementTree.Element) -> bytes:
+    """What a front without an identity is made of: all that must be equal for it to fit.
+
+    Args:
+        root: Root of the FMU's modelDescription.xml.
+    """
+    texts = {p.name: p.read_bytes() for p in front_sources()}
+    texts["variables.h"] = neutral_header(root).encode()
+    return b"".join(
+        f"{name}\0{len(texts[name])}\0".encode() + texts[name] for name in sorted(texts)
+    )
+
+
+def compile_fronts(header: str, place: Callable[[str], Path]) -> dict[str, str]:
+    """Compile the front for each platform that there is a compiler for.
+
+    Args:
+        header: Text of `variables.h`.
+        place: The library's file for a platform.
+
+    Returns:
+        The compiler for each platform.
+
+    Raises:
+        SystemExit: The front does not compile.
+    """
     used = {}
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         folder = Path(name)
-        (folder / "variables.h").write_text(variables_header(root, module))
+        (folder / "variables.h").write_text(header)
         for platform, compiler in compilers().items():
-            suffix = ".dll" if platform == "win64" else ".so"
-            target = (
-                files / "binaries" / platform / f"{simulation.attrib['modelIdentifier']}{suffix}"
-            )
-            target.parent.mkdir(parents=True)
-            compile_front(folder / target.name, folder, compiler)
-            shutil.copy(folder / target.name, target)
+            made = folder / f"front{suffix(platform)}"
+            compile_front(made, folder, compiler)
+            shutil.copy(made, place(platform))
             used[platform] = compiler.name
     return used
 
@@ -93,71 +154,16 @@ def compile_front(target: Path, include: Path, compiler: Compiler) -> None:
         *(str(p) for p in front_sources() if p.suffix == ".c" and p.name != other_system),
         *([] if windows else ["-fPIC", "-ldl"]),
     ]
-    try:
-        done = subprocess.run(
-            command, capture_output=True, text=True, check=False, env=environment(), cwd=include
-        )
-    except FileNotFoundError:
+    if not (HEADERS / "fmi2Functions.h").is_file():
         raise SystemExit(
-            f"error: there is no C compiler {compiler.command[0]} for the FMU's front; "
-            "pip install ziglang, or name one by CC"
-        ) from None
+            "error: FMI's C headers are missing, which FMPy brings; "
+            'install it with pip install "rlv-landing[fmu]"'
+        )
+    done = run(command, include)
     if done.returncode != 0:
         raise SystemExit(
             f"error: the FMU's front does not compile: {' '.join(command)}\n{done.stderr}"
         )
-
-
-def variables_header(root: ElementTree.Element, module: str) -> str:
-    """C header with what the front knows of its FMU.
-
-    The description's variables, log categories and GUID, the slave's script, and the Python text
-    that makes the slave.
-
-    Args:
-        root: Root of the FMU's modelDescription.xml.
-        module: Name of the slave's script, without `.py`.
-
-    Raises:
-        SystemExit: The value references are not 0, 1, 2, ... in order.
-    """
-    lines = [
-        "/* Made by fmu_build/binary.py from modelDescription.xml. */",
-        "struct variable { char kind, causality; const char *name; };",
-        "static const struct variable VARIABLES[] __attribute__((unused)) = {",
-    ]
-    for i, variable in enumerate(root.findall("ModelVariables/ScalarVariable")):
-        if int(variable.attrib["valueReference"]) != i:
-            raise SystemExit(
-                f"error: value reference of {variable.attrib['name']} is not {i}; "
-                "the front needs them in order"
-            )
-        causality = CAUSALITIES.get(variable.attrib["causality"], "-")
-        lines.append(
-            f"    {{'{variable[0].tag[0]}', '{causality}', {quoted(variable.attrib['name'])}}},"
-        )
-    lines += ["};", "enum { VARIABLE_COUNT = sizeof VARIABLES / sizeof *VARIABLES };"]
-    lines += ["static const char *const CATEGORIES[] __attribute__((unused)) = {"]
-    lines += [
-        f"    {quoted(category.attrib['name'])},"
-        for category in root.findall("LogCategories/Category")
-    ]
-    text = (FRONT / "create_slave.py").read_text()
-    lines += [
-        "};",
-        f"#define GUID {quoted(root.attrib['guid'])}",
-        f"#define SLAVE_MODULE {quoted(module)}",
-        f"#define BUILD_PYTHON_MINOR {sys.version_info.minor}",
-        "#define CREATE_SLAVE \\",
-        *(f"    {quoted(line + chr(10))} \\" for line in text.splitlines()),
-        '    ""',
-    ]
-    return "\n".join(lines) + "\n"
-
-
-def quoted(text: str) -> str:
-    """`text` as a C string."""
-    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
 
 
 def record_libpython(files: Path) -> None:

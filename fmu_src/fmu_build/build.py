@@ -1,4 +1,4 @@
-"""Builds `build/RlvLanding.fmu`; run by `build_fmu.sh`.
+"""Builds the FMU; run by `rlv-landing fmu build`, and by `build_fmu.sh`.
 
 pythonfmu builds an FMU of the slave and its own copy of the package. This unpacks it, completes its
 description, adds the documentation, gives it an identity of its own, puts the front in place of
@@ -10,22 +10,26 @@ from __future__ import annotations
 
 import argparse
 import re
-import shutil
+import sys
 import tempfile
 import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 from xml.etree import ElementTree
 
-import fmpy
-from fmpy.validation import validate_fmu
 from pythonfmu.builder import FmuBuilder
+
+from rlv_landing.text.durable import write_durably, writing
 
 from .binary import record_libpython, replace_binaries
 from .description import describe
-from .documentation import write_documentation
 from .identity import NO_GUID, identify
+from .pages.documentation import write_documentation
 from .sources import ROOT, compiled_cores, copy_sources, source_date
+from .trial import check, expected
+from .wanted import MODEL_NAME, Wanted
 
 # pythonfmu's command line, CSV tool and builder, which no slave needs
 NOT_NEEDED = ("__main__.py", "csvbuilder.py", "deploy.py", "builder.py", "osutil.py")
@@ -37,12 +41,12 @@ IMPORTS_BUILDER = "from .builder import FmuBuilder\n"
 IMPORTS_OF_SLAVE = "import datetime\n"
 
 
-def build_with_pythonfmu(folder: Path, *, pure: bool) -> tuple[Path, Path, str]:
+def build_with_pythonfmu(folder: Path, wanted: Wanted) -> tuple[Path, Path, str]:
     """Build an FMU of slave and package by pythonfmu, and unpack it.
 
     Args:
         folder: Empty folder to work in.
-        pure: Whether to leave the compiled core out.
+        wanted: The FMU that is wanted.
 
     Returns:
         Folder of the FMU's files; in it the package; name of the script that imports it.
@@ -50,16 +54,31 @@ def build_with_pythonfmu(folder: Path, *, pure: bool) -> tuple[Path, Path, str]:
     Raises:
         SystemExit: pythonfmu is of a version whose files differ.
     """
-    script, package = copy_sources(folder, pure=pure)
-    built = FmuBuilder.build_FMU(
-        script, dest=folder / "out" / "RlvLanding.fmu", project_files=[package]
-    )
+    script, package = copy_sources(folder, wanted)
+    with _forgotten(folder, script.stem, package.name):
+        built = FmuBuilder.build_FMU(
+            script, dest=folder / "out" / "RlvLanding.fmu", project_files=[package]
+        )
     files = folder / "files"
     with zipfile.ZipFile(built) as archive:
         archive.extractall(files)
     package = files / "resources" / package.name
     take_pythonfmu(files / "resources" / "pythonfmu", package)
     return files, package, script.stem
+
+
+@contextmanager
+def _forgotten(folder: Path, *names: str) -> Iterator[None]:
+    """Forget afterwards the modules of these `names` that pythonfmu imports from `folder`.
+
+    Another build in this process has modules of the same names, with other start values.
+    """
+    try:
+        yield
+    finally:
+        sys.path[:] = [path for path in sys.path if str(path) != str(folder)]
+        for module in [m for m in sys.modules if m.split(".")[0] in names]:
+            del sys.modules[module]
 
 
 def take_pythonfmu(own: Path, package: Path) -> None:
@@ -85,13 +104,13 @@ def take_pythonfmu(own: Path, package: Path) -> None:
     slave.write_text(re.sub(r"^from pythonfmu", "from .pythonfmu", slave.read_text(), flags=re.M))
 
 
-def write_description(files: Path, date: datetime) -> ElementTree.Element:
+def write_description(files: Path, date: datetime, wanted: Wanted) -> ElementTree.Element:
     """Complete pythonfmu's modelDescription.xml in `files`; return its root."""
     path = files / "modelDescription.xml"
     tree = ElementTree.parse(path)
     root = tree.getroot()
     root.set("guid", NO_GUID)
-    describe(root, date.strftime("%Y-%m-%dT%H:%M:%SZ"))
+    describe(root, date.strftime("%Y-%m-%dT%H:%M:%SZ"), wanted)
     ElementTree.indent(tree, "\t")
     tree.write(path, encoding="UTF-8", xml_declaration=True)
     return root
@@ -110,75 +129,58 @@ def pack(files: Path, target: Path, date: datetime) -> None:
             archive.writestr(entry, (files / name).read_bytes())
 
 
-def check(fmu: Path) -> str:
-    """Validate the FMU's description and simulate one landing; return a line with the results.
-
-    Raises:
-        SystemExit: The description is not valid, or the landing's numbers are not plausible.
-    """
-    problems = validate_fmu(str(fmu))
-    if problems:
-        raise SystemExit("error: the FMU is not valid: " + "; ".join(problems))
-    result = fmpy.simulate_fmu(
-        str(fmu),
-        stop_time=0.2,
-        output_interval=1e-3,
-        output=["leg[1].main_strut.force", "energy.balance"],
-    )
-    force, balance = result["leg[1].main_strut.force"].min(), abs(result["energy.balance"]).max()
-    if not (force < -1000.0 and balance < 1e-3):
-        raise SystemExit(
-            f"error: the FMU's trial landing is not plausible: strut force {force:g} N, "
-            f"energy balance {balance:g} J"
-        )
-    return (
-        f"valid; trial landing: main strut 1 down to {force:.0f} N, "
-        f"energy balance within {balance:.1e} J"
-    )
-
-
-def build(target: Path, *, pure: bool) -> None:
-    """Build and check the FMU, then put it at `target` in one step; print what was done.
+def build(target: Path, wanted: Wanted) -> list[str]:
+    """Build and check the FMU, then put it at `target` in one step.
 
     Args:
         target: The FMU's file.
-        pure: Whether to leave the compiled core out.
+        wanted: The FMU that is wanted.
+
+    Returns:
+        Lines on what was done.
+
+    Raises:
+        LandingError: The vehicle cannot land, or `target` cannot be written.
+        SystemExit: The FMU cannot be built; the message is the error.
     """
-    target.parent.mkdir(parents=True, exist_ok=True)
+    ends = expected(wanted)
     date = source_date()
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         folder = Path(name)
-        files, package, script = build_with_pythonfmu(folder, pure=pure)
+        files, package, script = build_with_pythonfmu(folder, wanted)
         record_libpython(files)
-        root = write_description(files, date)
-        write_documentation(files, root)
+        root = write_description(files, date, wanted)
+        write_documentation(files, root, wanted)
         identify(files, package.name, script)
         compilers = replace_binaries(files)
-        made = folder / "RlvLanding.fmu"
+        made = folder / "made.fmu"
         pack(files, made, date)
-        found = check(made)
-        shutil.copy(made, target.with_suffix(".part"))
-        target.with_suffix(".part").replace(target)
-    for platform, compiler in compilers.items():
-        print(f"{platform}: front compiled by {compiler}")
-    cores = [] if pure else [file.name for file in compiled_cores()]
-    print(f"core: {', '.join(cores) or 'not compiled, as --pure asks for'}")
-    print(f"{target}: {found}")
+        found = check(made, wanted, ends)
+        with writing(target):
+            target.parent.mkdir(parents=True, exist_ok=True)
+            write_durably(target, made.read_bytes())
+    cores = [] if wanted.pure else [file.name for file in compiled_cores()]
+    return [
+        *(f"{platform}: front compiled by {compiler}" for platform, compiler in compilers.items()),
+        f"core: {', '.join(cores) or 'not compiled, as --pure asks for'}",
+        f"{target}: {found}",
+    ]
 
 
 def main() -> None:
-    """Build the FMU that the command line asks for."""
+    """Build the FMU of the default vehicle that the command line asks for."""
     parser = argparse.ArgumentParser(
         prog="build_fmu.sh",
         description="Builds the FMU and checks it: FMPy validates it and simulates one landing.",
         epilog="The front is compiled by ziglang where it is installed, else by gcc, or by the "
-        "compiler that CC names. The same sources and compilers give the same bytes.",
+        "compiler that CC names. The same sources and compilers give the same bytes. "
+        "`rlv-landing fmu build` builds the FMU of another vehicle.",
     )
     parser.add_argument(
         "file",
         nargs="?",
         type=Path,
-        default=ROOT / "build" / "RlvLanding.fmu",
+        default=ROOT / "build" / f"{MODEL_NAME}.fmu",
         help="the FMU's file [default: build/RlvLanding.fmu]",
     )
     parser.add_argument(
@@ -187,7 +189,8 @@ def main() -> None:
         help="leave the compiled core out: the same digits, ten times as slow",
     )
     arguments = parser.parse_args()
-    build(arguments.file, pure=arguments.pure)
+    for line in build(arguments.file, Wanted(pure=arguments.pure)):
+        print(line)
 
 
 if __name__ == "__main__":

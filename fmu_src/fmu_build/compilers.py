@@ -14,6 +14,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.util import find_spec
@@ -50,9 +51,26 @@ class Compiler:
         return _first_line((*self.command, "--version"))
 
 
+def run(command: Sequence[str], folder: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Run a compiler, in `folder` if one is given.
+
+    Raises:
+        SystemExit: There is no such program.
+    """
+    try:
+        return subprocess.run(
+            command, capture_output=True, text=True, check=False, env=environment(), cwd=folder
+        )
+    except OSError as e:
+        raise SystemExit(
+            f"error: there is no C compiler {command[0]} for the FMU's front "
+            f"({e.strerror or e}); pip install ziglang, or name one by CC"
+        ) from None
+
+
 @cache
 def _first_line(command: tuple[str, ...]) -> str:
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment())
+    done = run(command)
     return (done.stdout.splitlines() or [f"{command[0]} of unknown version"])[0]
 
 

@@ -19,9 +19,11 @@ from rlv_landing.quantities import (
     PEAK_QUANTITIES,
     STATISTIC_QUANTITIES,
     Quantity,
+    flat_name,
 )
 
 from .dependencies import inputs_of, known_at_start
+from .wanted import Wanted
 
 DIMENSIONLESS = "1"
 # SI unit -> physical kind, FMI's `quantity`
@@ -69,29 +71,43 @@ QUANTITIES = {
 }
 
 
-def describe(root: Element, date: str) -> None:
+def describe(root: Element, date: str, wanted: Wanted) -> None:
     """Complete pythonfmu's description in place.
 
     Args:
         root: Root of modelDescription.xml.
         date: Value of `generationDateAndTime`, ISO 8601 in UTC.
+        wanted: Vehicle, and names of model and variables.
     """
     root.set("generationTool", f"rlv-landing {__version__} with {root.get('generationTool')}")
     root.set("generationDateAndTime", date)
-    simulation, variables, structure = (
-        root.find(name) for name in ("CoSimulation", "ModelVariables", "ModelStructure")
+    simulation, experiment, variables, structure = (
+        root.find(name)
+        for name in ("CoSimulation", "DefaultExperiment", "ModelVariables", "ModelStructure")
     )
     assert simulation is not None
+    assert experiment is not None
     assert variables is not None
     assert structure is not None
     for capability, can in CAPABILITIES.items():
         simulation.set(capability, str(can).lower())
     root.insert(1, unit_definitions())
     root.insert(2, type_definitions())
-    for variable in variables:
-        complete(variable, QUANTITIES[variable.attrib["name"]])
+    names = [v.attrib["name"] for v in variables]
+    for name, variable in zip(names, variables):
+        complete(variable, QUANTITIES[name], wanted.values.get(name))
+        if wanted.flat_names:
+            variable.set("name", flat_name(name))
     structure.clear()
-    structure.extend(unknowns([v.attrib["name"] for v in variables]))
+    structure.extend(unknowns(names))
+    root.set("modelName", wanted.name)
+    simulation.set("modelIdentifier", wanted.name)
+    experiment.set("stopTime", str(wanted.stop_time))
+    if wanted.values:
+        source = f" ({wanted.source})" if wanted.source else ""
+        root.set("description", f"{root.get('description')}: {wanted.vehicle}{source}")
+    if wanted.flat_names:
+        root.set("variableNamingConvention", "flat")
 
 
 def type_name(q: Quantity) -> str:
@@ -124,18 +140,23 @@ def type_definitions() -> Element:
     return node
 
 
-def complete(variable: Element, q: Quantity) -> None:
+def complete(variable: Element, q: Quantity, start: float | str | None = None) -> None:
     """Set type, unit, bounds, nominal value and start of the `variable` of the quantity `q`.
 
     The unit is set here as well as in the type, for importers that read no types. Start values
     have all digits.
+
+    Args:
+        variable: The variable.
+        q: The quantity.
+        start: The start value; None: the quantity's default.
     """
     typed = variable[0]
     if q.kind == "real":
         typed.set("declaredType", type_name(q))
         _set_units(typed, q)
         if "start" in typed.attrib:
-            typed.set("start", repr(float(q.default)))
+            typed.set("start", repr(float(q.default if start is None else start)))
         if variable.get("causality") != "parameter":
             typed.set("nominal", repr(q.nominal))
     if q.kind in ("real", "integer"):

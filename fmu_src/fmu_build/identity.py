@@ -2,7 +2,7 @@
 
 All modules of a process share `sys.modules`, so two FMUs with modules of equal names would compute
 with the code of the one that was loaded first. Both come from a hash of all that the FMU carries.
-The front is compiled with the GUID, so what it is made of is hashed in its place.
+The front contains the GUID, so what it is made of is hashed in its place.
 """
 
 from __future__ import annotations
@@ -10,8 +10,9 @@ from __future__ import annotations
 import hashlib
 import uuid
 from pathlib import Path
+from xml.etree import ElementTree
 
-from .binary import FLAGS, compilers, front_sources
+from .binary import made_of, makers
 
 # what stands in the files until the GUID is known
 NO_GUID = "00000000-0000-0000-0000-000000000000"
@@ -24,9 +25,9 @@ def digest(files: Path) -> bytes:
     Args:
         files: Folder of the unpacked FMU, with NO_GUID for the GUID.
     """
-    made_from = {f"front/{p.name}": p.read_bytes() for p in front_sources()} | {
-        f"compiler/{platform}": repr((c.name, c.flags, FLAGS)).encode()
-        for platform, c in compilers().items()
+    root = ElementTree.parse(files / "modelDescription.xml").getroot()
+    made_from = {"front": made_of(root)} | {
+        f"compiler/{platform}": text.encode() for platform, text in makers(root).items()
     }
     carried = {
         p.relative_to(files).as_posix(): p.read_bytes()

@@ -33,7 +33,7 @@ static void send_message(const struct instance *c, enum status status, const cha
     if (is_logged(&c->host, category))
         c->host.send(&c->host, c->name, status, category, text);
     else if (status >= STATUS_ERROR)
-        fprintf(stderr, "RlvLanding (%s): %s\n", c->name, text);
+        fprintf(stderr, "%s (%s): %s\n", MODEL_NAME, c->name, text);
 }
 
 void log_message(const struct instance *c, enum status status, const char *format, ...)

@@ -3,6 +3,7 @@
 #include "variables.h"
 #include "visit.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 #define METHODS(X) \
@@ -113,12 +114,21 @@ static enum answer do_call(struct slave *s, enum method method)
     return end_call(&v, s, method);
 }
 
+enum { KEY_SIZE = 64 };
+
+/* Write the key under which this FMU keeps `what` in a Python. */
+static const char *own_key(const char *what, char key[KEY_SIZE])
+{
+    snprintf(key, KEY_SIZE, "rlv_landing %s %s", what, GUID);
+    return key;
+}
+
 /* The function of create_slave.py (borrowed), compiled once in each Python. */
 static PyObject *creator(void)
 {
-    static const char key[] = "rlv_landing create " GUID;
+    char key[KEY_SIZE];
     PyObject *kept = py.PyInterpreterState_GetDict(py.PyInterpreterState_Get());
-    PyObject *known = kept ? py.PyDict_GetItemString(kept, key) : NULL;
+    PyObject *known = kept ? py.PyDict_GetItemString(kept, own_key("create", key)) : NULL;
     if (known || !kept)
         return known;
     enum { FILE_INPUT = 257 }; /* Py_file_input */
@@ -161,9 +171,9 @@ static void release_methods(struct slave *s)
  */
 static bool core_is_spent(const char *resources)
 {
-    static const char key[] = "rlv_landing core " GUID;
+    char key[KEY_SIZE];
     PyObject *kept = py.PyInterpreterState_GetDict(py.PyInterpreterState_Get());
-    if (!kept || py.PyDict_GetItemString(kept, key))
+    if (!kept || py.PyDict_GetItemString(kept, own_key("core", key)))
         return false;
     bool loaded = library_is_loaded_below(resources);
     PyObject *mark = py.PyBool_FromLong(1);

@@ -186,7 +186,8 @@ enum status instance_serialize(struct instance *c, const struct function *f, voi
         return STATUS_ERROR;
     const struct state *from = state;
     struct header header = {
-        .guid = GUID, .size = length, .last_time = from->last_time, .phase = from->phase};
+        .size = length, .last_time = from->last_time, .phase = from->phase};
+    memcpy(header.guid, GUID, sizeof header.guid);
     const size_t needed = sizeof header + length;
     if (size < needed) {
         log_message(c, STATUS_ERROR, "%s: size = %zu bytes is too small, %zu are needed", f->name,

@@ -101,6 +101,7 @@ def cli() -> None:
     rlv-landing sweep study.toml                   many landings: factors in, rows of responses out
     rlv-landing sensitivity study.toml             Sobol indices of the responses
     rlv-landing envelope examples/envelope.toml    the boundary between stable and lost landings
+    rlv-landing fmu build --parameters mine.toml   the FMU of your own vehicle; fmu info, simulate
     rlv-landing node --mode 2-2                    the ROS 2 node: steps the FMU, publishes, records
     rlv-landing log info logs/NAME                 the contents of a log
     rlv-landing view logs/NAME                     a log, or the live topics, in a browser

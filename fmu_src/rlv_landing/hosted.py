@@ -20,12 +20,17 @@ class HostedLanding:
     A parameter that is set later begins it anew. Inputs act when outputs are read, or at the next
     step, which refuses those that are out of bounds.
 
+    Args:
+        starts: Parameters by name, in SI units, that hold until others are set; the rest are the
+            defaults.
+
     Attributes:
         start_time: The host's time at the start of the landing [s].
         failure: The reason why the landing has ended; empty while it runs.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, starts: Mapping[str, Any] | None = None) -> None:
+        self._vehicle = Parameters().with_values(starts or {})
         self.start_time = 0.0
         self.failure = ""
         self._rtol = DEFAULT_RTOL
@@ -173,7 +178,7 @@ class HostedLanding:
         if state["landing"] is not None:
             landing = self._landing
             if landing is None or parameters != self._parameters or rtol != self._rtol:
-                landing = new_landing(parameters, rtol, first_inputs, first_rates)
+                landing = new_landing(self._vehicle, parameters, rtol, first_inputs, first_rates)
             landing.restore(array("d", state["landing"]))
         self._landing, self._outputs = landing, []
         self.start_time, self._rtol, self.failure = start_time, rtol, failure
@@ -186,7 +191,7 @@ class HostedLanding:
             raise LandingError(self.failure)
         if self._landing is None:
             first = dict(self._inputs), dict(self._rates)
-            self._landing = new_landing(self._parameters, self._rtol, *first)
+            self._landing = new_landing(self._vehicle, self._parameters, self._rtol, *first)
             self._first = first
             self._outputs = []
         return self._landing
@@ -204,14 +209,16 @@ class HostedLanding:
 
 
 def new_landing(
+    vehicle: Parameters,
     values: Mapping[str, Any],
     rtol: float,
     inputs: Mapping[str, float],
     rates: Mapping[str, float],
 ) -> Landing:
-    """A landing with some parameters set, in SI units, and defaults for the others.
+    """A landing of a vehicle with some parameters set anew, in SI units.
 
     Args:
+        vehicle: The parameters that hold where none is set anew.
         values: Parameter values by name.
         rtol: Relative tolerance of the integrator.
         inputs: Inputs at the start by name; the others are 0.
@@ -222,4 +229,4 @@ def new_landing(
             would pass below the ground.
     """
     checked = {name: check_value(PARAMETER_QUANTITIES[name], v) for name, v in values.items()}
-    return Landing(Parameters().with_values(checked), rtol=rtol, inputs=inputs, rates=rates)
+    return Landing(vehicle.with_values(checked), rtol=rtol, inputs=inputs, rates=rates)

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from .history import History
 
 DEFAULT_RTOL = 1e-5
+# the loosest that keeps peak forces and strokes to 1 %, which the FMU takes at most
+LOOSEST_RTOL = 1e-4
 # the integration methods: see `rlv_landing.core.solvers`
 METHODS: dict[str, type[Solver]] = {"exponential": Exponential, "dormand-prince": DormandPrince}
 # samples between two calls of `progress` in a run

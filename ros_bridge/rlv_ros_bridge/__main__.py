@@ -1,4 +1,4 @@
-"""`python -m rlv_ros_bridge node|replay|log|animate|view`: the bridge's commands alone."""
+"""`python -m rlv_ros_bridge node|replay|log|animate|view|fmu`: the bridge's commands alone."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import click
 from rlv_landing.cli import run as run_group
 
 from .commands.animate import animate
+from .commands.fmu import fmu
 from .commands.log import log
 from .commands.node import node
 from .commands.replay import replay
@@ -25,6 +26,7 @@ main.add_command(replay)
 main.add_command(log)
 main.add_command(animate)
 main.add_command(view)
+main.add_command(fmu)
 
 
 def run() -> int:

@@ -152,6 +152,10 @@ def test_a_disk_that_fills_ends_an_identification_with_a_code_of_its_own(folder)
         ("log", "export", "{}", "l.csv"),
         ("log", "recover", "{}"),
         ("replay", "{}"),
+        ("fmu", "build", "-o", "{}.fmu"),
+        ("fmu", "build", "--parameters", "{}.toml"),
+        ("fmu", "info", "{}"),
+        ("fmu", "simulate", "{}"),
     ],
 )
 def test_names_of_300_characters_are_refused_in_one_line(folder, arguments):

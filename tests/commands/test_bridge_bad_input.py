@@ -108,15 +108,15 @@ def test_node_refuses_what_is_not_our_fmu(fmu: Path, tmp_path: Path) -> None:
     with zipfile.ZipFile(fmu) as source, zipfile.ZipFile(foreign, "w") as z:
         z.writestr(
             "modelDescription.xml",
-            source.read("modelDescription.xml").replace(
-                b'modelName="RlvLanding"', b'modelName="Pendulum"'
-            ),
+            source.read("modelDescription.xml")
+            .replace(b'modelName="RlvLanding"', b'modelName="Pendulum"')
+            .replace(b'generationTool="rlv-landing', b'generationTool="pendulums'),
         )
     for path, message in (
         (tmp_path / "missing.fmu", "there is no FMU"),
         (text, "is not an FMU"),
         (archive, "is not an FMU"),
-        (foreign, "holds the model 'Pendulum', not 'RlvLanding'"),
+        (foreign, "holds the model 'Pendulum', which is not of rlv-landing"),
     ):
         done = run("node", "--fmu", path, "--record", tmp_path / "log")
         line = one_error_line(done)

@@ -8,9 +8,13 @@ from ctypes import byref, c_double
 import pytest
 from fmpy import fmi2
 from fmpy.fmi1 import FMICallException
-from fmu_instance import ERROR, assert_lands_like_landing, reals, refs
+from fmu_instance import ERROR, OK, WARNING, assert_lands_like_landing, reals, refs
 
-from rlv_landing import Landing
+from rlv_landing import Landing, Parameters, load_preset
+from rlv_landing.landing import LOOSEST_RTOL
+from rlv_landing.outputs import Extreme
+from rlv_landing.presets import preset_names
+from rlv_landing.quantities import MODES, PEAKS
 
 BAD_PARAMETERS = [
     ("ground.friction", -1.0, "ground.friction = -1 is outside [0, 3]"),
@@ -123,8 +127,48 @@ def test_the_importers_tolerance_is_the_integrators(instance):
     ]
 
 
-def test_a_tolerance_that_the_integrator_does_not_know_is_an_error(instance):
-    instance.slave.setupExperiment(startTime=0.0, tolerance=0.5)
+@pytest.mark.parametrize("tolerance", [0.0, 1e-13, math.nan])
+def test_a_tolerance_that_the_integrator_does_not_know_is_an_error(instance, tolerance):
+    instance.slave.setupExperiment(startTime=0.0, tolerance=tolerance)
     instance.slave.enterInitializationMode()
     assert instance.status("fmi2ExitInitializationMode") == ERROR
-    assert "rtol = 0.5 is outside [1e-12, 1e-2]" in instance.reason()
+    assert f"rtol = {tolerance:g} is outside [1e-12, 1e-2]" in instance.reason()
+
+
+@pytest.mark.parametrize("tolerance", [LOOSEST_RTOL, 2e-4, 0.5, math.inf])
+def test_a_tolerance_that_makes_peaks_wrong_is_a_warning_and_the_loosest_is_taken(
+    instance, tolerance
+):
+    status = instance.status(
+        "fmi2SetupExperiment", 1, c_double(tolerance), c_double(0.0), 0, c_double(0.0)
+    )
+    if tolerance > LOOSEST_RTOL:
+        assert status == WARNING
+        assert f"tolerance = {tolerance:g} makes peak forces" in instance.reason()
+    else:
+        assert status == OK
+    instance.slave.enterInitializationMode()
+    instance.slave.exitInitializationMode()
+    instance.steps(0, 300)
+    landing = Landing(rtol=LOOSEST_RTOL)
+    landing.advance_to(299e-3 + 1e-3)
+    assert instance.get("body.x") == landing.get("body.x")
+
+
+@pytest.mark.parametrize("mode", list(MODES))
+@pytest.mark.parametrize("preset", preset_names())
+def test_peaks_are_right_to_1_percent_at_the_loosest_tolerance(preset, mode):
+    exact, loose = (_extremes(load_preset(preset, mode), rtol) for rtol in (1e-8, LOOSEST_RTOL))
+    for peak in PEAKS:
+        if peak.output == "status.stability_margin":
+            continue
+        right, found = exact[peak.output], loose[peak.output]
+        scale = max(abs(right.minimum), abs(right.maximum))
+        assert abs(found.minimum - right.minimum) < 0.01 * scale, peak.output
+        assert abs(found.maximum - right.maximum) < 0.01 * scale, peak.output
+
+
+def _extremes(parameters: Parameters, rtol: float) -> dict[str, Extreme]:
+    landing = Landing(parameters, rtol=rtol)
+    landing.advance_to(1.0)
+    return landing.extremes()

@@ -17,7 +17,7 @@ from .outputs import (
     STATUS_QUANTITIES,
 )
 from .peaks import PEAK_QUANTITIES, PEAKS, Peak
-from .quantity import BASE_UNITS, DISPLAY_UNITS, NOMINALS, Quantity, shown
+from .quantity import BASE_UNITS, DISPLAY_UNITS, NOMINALS, Quantity, flat_name, shown
 from .statistics import STATISTIC_QUANTITIES
 
 __all__ = [
@@ -43,5 +43,6 @@ __all__ = [
     "Peak",
     "Quantity",
     "azimuth",
+    "flat_name",
     "shown",
 ]

@@ -46,6 +46,14 @@ class Quantity:
         return NOMINALS.get(self.display_unit or self.unit, 1.0)
 
 
+def flat_name(name: str) -> str:
+    """A quantity's name without dots and brackets: `leg1_main_strut_force`.
+
+    For hosts in which `a.b` is a part of a bus, or `a[1]` an element of an array.
+    """
+    return name.replace("[", "").replace("]", "").replace(".", "_")
+
+
 # display unit -> (SI unit, factor): value_SI = factor * value_display
 DISPLAY_UNITS = {
     "deg": ("rad", 0.017453292519943295),

@@ -26,7 +26,11 @@ EXIT_RECORDING_FAILED = 1
 @click.option(
     "--mode", metavar="2-2|1-2-1", help="Landing mode. Default: the parameters' own (2-2)."
 )
-@click.option("--preset", metavar="NAME", help="Preset of parameters. Default: yue2022-figures.")
+@click.option(
+    "--preset",
+    metavar="NAME",
+    help="Preset of parameters. Default: the FMU's own vehicle, else yue2022-figures.",
+)
 @click.option(
     "--parameters",
     "parameters_file",
@@ -109,6 +113,7 @@ def node(
     Examples:
       rlv-landing node --mode 2-2 --report
       rlv-landing node --preset yue2022-table2 --set vehicle.mass=200 --set "drop.tilt=-2 deg"
+      rlv-landing node --fmu MyStage.fmu
       rlv-landing node --realtime-factor 0 --record /data/run1
       rlv-landing node --no-record --ros-args --log-level warn
       rlv-landing node --managed --ros-args --params-file landing.yaml

@@ -24,7 +24,7 @@ from rlv_landing.quantities import (
 )
 from rlv_landing.text.durable import writing
 
-from .description import MODEL_NAME, read_description
+from .description import MODEL_NAME, read_description, references
 from .folder import FmuFolder
 
 # fmi2Status.
@@ -33,6 +33,7 @@ WARNING, FATAL = 1, 4
 DO_STEP = (ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int)
 FMI_TRUE = 1
 GET = (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
+SET_RATES = (*GET, ctypes.c_void_p)
 
 
 class FmuRunner:
@@ -64,26 +65,13 @@ class FmuRunner:
         self.guid: str = description.guid
         self.version: str = description.version or ""
         self.made_by: str = description.generationTool or ""
-        references = {v.name: v.valueReference for v in description.modelVariables}
-        needed = (
-            *OUTPUT_NAMES,
-            *INPUT_NAMES,
-            *PARAMETER_QUANTITIES,
-            *(q.name for q in (*STATISTIC_QUANTITIES, *PEAK_QUANTITIES)),
-        )
-        missing = [n for n in needed if n not in references]
-        if missing:
-            raise LandingError(
-                f"{self.path} (version {self.version}) has no variable {missing[0]!r}; "
-                "build it again with ./build_fmu.sh"
-            )
+        self._references = references(description, self.path)
         for name in values:
             if name not in PARAMETER_QUANTITIES:
                 raise unknown("parameter", name, PARAMETER_QUANTITIES)
-        self._references = references
         try:
             self._instantiate(description, values)
-            self._prepare_outputs(references)
+            self._prepare_outputs(self._references)
         except BaseException:
             self.close()
             raise
@@ -208,9 +196,16 @@ class FmuRunner:
         Raises:
             LandingError: the FMU refuses the step (with its reason).
         """
-        now = k * h
+        self.advance(k * h, (k + 1) * h)
+
+    def advance(self, now: float, end: float) -> None:
+        """Goes from the present time `now` to `end` [s].
+
+        Raises:
+            LandingError: the FMU refuses the step (with its reason).
+        """
         self._messages.clear()
-        status = self._do_step(self._component, now, (k + 1) * h - now, FMI_TRUE)
+        status = self._do_step(self._component, now, end - now, FMI_TRUE)
         if status > WARNING:
             self._fail("doStep", status)
 
@@ -252,16 +247,34 @@ class FmuRunner:
         """Whether the FMU computes with its compiled core."""
         return bool(self._slave.getBoolean([self._references["solver.compiled"]])[0])
 
-    def set_inputs(self, inputs: Mapping[str, float]) -> None:
+    def set_inputs(
+        self, inputs: Mapping[str, float], rates: Mapping[str, float] | None = None
+    ) -> None:
         """Sets inputs by name, SI, from the current time on; others keep their values.
+
+        Args:
+            inputs: their values.
+            rates: their rates, per second; the others are constant.
 
         Raises:
             LandingError: an unknown name, or the FMU refuses a value.
         """
-        for name in inputs:
+        for name in (*inputs, *(rates or {})):
             if name not in INPUT_NAMES:
                 raise unknown("input", name, INPUT_NAMES)
         self._call("setReal", [self._references[name] for name in inputs], list(inputs.values()))
+        if rates:
+            self._set_rates(rates)
+
+    def _set_rates(self, rates: Mapping[str, float]) -> None:
+        # FMPy's own call of it takes nine inputs, neither more nor fewer
+        name, count = "fmi2SetRealInputDerivatives", len(rates)
+        wanted = (ctypes.c_uint * count)(*(self._references[n] for n in rates))
+        orders = (ctypes.c_int * count)(*[1] * count)
+        values = (ctypes.c_double * count)(*rates.values())
+        status = self._function(name, SET_RATES)(self._component, wanted, count, orders, values)
+        if status > WARNING:
+            self._fail(name, status)
 
     def close(self) -> None:
         """Terminates and frees the instance, and removes its folder; may be called again."""

@@ -14,10 +14,11 @@ import numpy as np
 from rlv_landing.errors import LandingError
 from rlv_landing.history import History
 
+from ..fmu.peaks import known_extremes
 from ..messages.columns import READINGS
 from ..messages.topics import RECORDED, resolve
 from .bag_reader import open_log
-from .peaks import log_extremes, read_peaks
+from .peaks import read_peaks
 from .reader import Decoder, LogReader
 
 TYPES = {t.name: t.type_name for t in RECORDED}
@@ -73,7 +74,7 @@ def read_history(reader: LogReader, topics: Sequence[str] = ()) -> tuple[History
     history = History(times, names, data, reader.parameters())
     if reader.peaks:
         found, _ = read_peaks(reader.peaks, str(reader.path))
-        history.extremes = log_extremes(found, history)
+        history.extremes = known_extremes(found, history)
     return history, _notes(reader, chosen, len(rows) - len(complete))
 
 

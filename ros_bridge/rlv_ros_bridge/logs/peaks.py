@@ -9,18 +9,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from math import isfinite, nan
+from math import isfinite
 
 from rlv_landing import Landing
 from rlv_landing.errors import LandingError
-from rlv_landing.history import History
-from rlv_landing.outputs import Extreme
 from rlv_landing.quantities import PEAKS
+
+from ..fmu.peaks import Found
 
 RECORD = "rlv_landing_peaks"
 UNTIL = "until"
-# value [SI] and time [s]
-Found = tuple[float, float]
 
 
 def peak_texts(found: Mapping[str, Found], until: float) -> dict[str, str]:
@@ -81,18 +79,3 @@ def _finite(number: float) -> float:
     if not isfinite(number):
         raise ValueError
     return float(number)
-
-
-def log_extremes(found: Mapping[str, Found], history: History) -> dict[str, Extreme]:
-    """The extremes of the outputs that have a recorded peak, by output.
-
-    The side that is not recorded is that of the samples; NaN for an output without a column.
-    """
-    extremes: dict[str, Extreme] = {}
-    for output in dict.fromkeys(p.output for p in PEAKS):
-        low, high = found.get(f"{output}.min"), found.get(f"{output}.max")
-        if low is None and high is None:
-            continue
-        sampled = history.extreme(output) if output in history else Extreme(nan, nan, nan, nan)
-        extremes[output] = Extreme(*(low or sampled[:2]), *(high or sampled[2:]))
-    return extremes

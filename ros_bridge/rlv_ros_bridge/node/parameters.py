@@ -6,7 +6,8 @@ a text with a unit, such as "-2 deg".
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 from rcl_interfaces.msg import (
@@ -24,6 +25,7 @@ from rlv_landing.errors import LandingError, unknown
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.text.values import parse_value
 
+from ..fmu.description import own_vehicle
 from ..ros.rclpy_internals import parameter_overrides
 from .settings import SETTINGS, Settings, check_setting, make_settings
 
@@ -63,16 +65,12 @@ class NodeParameters:
         self._values = {
             name: check_setting(name, given.get(name, s.default)) for name, s in SETTINGS.items()
         }
-        self.parameters: Parameters = choose_parameters(
-            self._values["preset"] or None,
-            self._values["parameters_file"] or None,
-            self._values["mode"] or None,
-            {
-                n: parse_value(PARAMETER_QUANTITIES[n], v)
-                for n, v in given.items()
-                if n in PARAMETER_QUANTITIES
-            },
-        )
+        changes = {
+            n: parse_value(PARAMETER_QUANTITIES[n], v)
+            for n, v in given.items()
+            if n in PARAMETER_QUANTITIES
+        }
+        self.parameters, self._origin = _vehicle(self._values, changes)
         self._values["mode"] = self.parameters.drop.mode
         self.settings()
         self._is_running = is_running
@@ -92,7 +90,7 @@ class NodeParameters:
         Raises:
             LandingError: two settings contradict each other.
         """
-        return make_settings(self._values, self.parameters)
+        return make_settings(self._values, self.parameters, self._origin)
 
     def _declare(self, node: Node) -> None:
         for name, s in SETTINGS.items():
@@ -185,12 +183,31 @@ class NodeParameters:
         physical = self.parameters.with_values(
             {p.name: p.value for p in parameters if p.name in PARAMETER_QUANTITIES}
         )
-        make_settings(values, physical)
+        make_settings(values, physical, self._origin)
         return values, physical
 
     def _post_set(self, parameters: list[Parameter[Any]]) -> None:
         self._values, self.parameters = self._merged(parameters)
         self._on_change({p.name: p.value for p in parameters})
+
+
+def _vehicle(values: Mapping[str, Any], changes: Mapping[str, Any]) -> tuple[Parameters, str]:
+    """The vehicle, and where it comes from; empty for a preset or a file.
+
+    It is that of the preset or file; without one, of an FMU that was built for its own vehicle.
+
+    Args:
+        values: The settings.
+        changes: Quantities that are given one by one, by name [SI].
+
+    Raises:
+        LandingError: There is no such preset, file or mode.
+    """
+    preset, file, mode = (values[n] or None for n in ("preset", "parameters_file", "mode"))
+    own = own_vehicle(Path(values["fmu"])) if preset is None and file is None else None
+    if own is None:
+        return choose_parameters(preset, file, mode, changes), ""
+    return own.for_mode(mode or own.drop.mode).with_values(changes), values["fmu"]
 
 
 def _constraints(choices: tuple[str, ...], when: str) -> str:

@@ -49,7 +49,11 @@ def downsampling_setting(topic: Topic) -> str:
 PUBLISHED: tuple[Topic, ...] = (*SAMPLED, *OCCASIONAL, CLOCK)
 SETTINGS: dict[str, Setting] = {
     "fmu": Setting("build/RlvLanding.fmu", "the FMU to step"),
-    "preset": Setting("", f"preset of parameters; empty: {DEFAULT_PRESET}", when="start"),
+    "preset": Setting(
+        "",
+        f"preset of parameters; empty: the FMU's own vehicle, else {DEFAULT_PRESET}",
+        when="start",
+    ),
     "mode": Setting("", "landing mode 2-2 or 1-2-1; empty: the parameters' own", when="start"),
     "parameters_file": Setting("", "TOML file of parameters, instead of a preset", when="start"),
     "realtime_factor": Setting(
@@ -163,12 +167,13 @@ def unused_folder(folder: Path) -> Path:
     return next(f for f in names if not f.exists())
 
 
-def make_settings(values: Mapping[str, Any], parameters: Parameters) -> Settings:
+def make_settings(values: Mapping[str, Any], parameters: Parameters, origin: str = "") -> Settings:
     """Makes the settings of a landing.
 
     Args:
         values: settings by name, each checked.
         parameters: vehicle, ground and drop.
+        origin: where they come from, if neither from a preset nor from a file.
 
     Raises:
         LandingError: two settings contradict each other, or the landing would take longer than 30
@@ -191,7 +196,7 @@ def make_settings(values: Mapping[str, Any], parameters: Parameters) -> Settings
     return Settings(
         fmu=Path(values["fmu"]),
         parameters=parameters,
-        preset=values["parameters_file"] or values["preset"] or DEFAULT_PRESET,
+        preset=origin or values["parameters_file"] or values["preset"] or DEFAULT_PRESET,
         realtime_factor=values["realtime_factor"],
         step_size=values["step_size"],
         step_ns=step_ns,

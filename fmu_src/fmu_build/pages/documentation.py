@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import shutil
 from collections.abc import Iterable
+from dataclasses import replace
 from importlib.metadata import distribution
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,9 @@ from latex2mathml.converter import convert
 from markupsafe import Markup
 
 from rlv_landing import Parameters, __version__
+from rlv_landing.errors import one_line
 from rlv_landing.figures.plots import inline_svg
+from rlv_landing.landing import LOOSEST_RTOL
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.quantities import (
     INPUT_QUANTITIES,
@@ -23,34 +26,37 @@ from rlv_landing.quantities import (
     PEAK_QUANTITIES,
     STATISTIC_QUANTITIES,
     Quantity,
+    flat_name,
 )
 
-from .dependencies import inputs_of
+from ..dependencies import inputs_of
+from ..sources import source
+from ..wanted import Wanted
 from .drawing import vehicle_figure
 
-ROOT = Path(__file__).parents[2]
 TEMPLATE = Path(__file__).with_name("documentation.html.j2")
 LICENCE_OF = "pythonfmu"
 DOTS_PER_INCH = 100
 
 
-def write_documentation(files: Path, description: Element) -> None:
+def write_documentation(files: Path, description: Element, wanted: Wanted) -> None:
     """Write documentation, licences, changelog and icon.
 
     Args:
         files: Folder of the unpacked FMU.
         description: Root of its modelDescription.xml.
+        wanted: The vehicle, and the names of its variables.
     """
     documentation = files / "documentation"
     licences = documentation / "licenses"
     licences.mkdir(parents=True)
-    vehicle_figure(Parameters()).savefig(
+    vehicle_figure(wanted.parameters).savefig(
         files / "model.png", dpi=DOTS_PER_INCH, metadata={"Software": None}
     )
-    shutil.copyfile(ROOT / "CHANGELOG.md", documentation / "CHANGELOG.md")
-    shutil.copyfile(ROOT / "LICENSE", licences / "LICENSE")
+    shutil.copyfile(source("CHANGELOG.md"), documentation / "CHANGELOG.md")
+    shutil.copyfile(source("LICENSE"), licences / "LICENSE")
     (licences / f"{LICENCE_OF}-LICENSE").write_text(licence_text(LICENCE_OF), encoding="utf-8")
-    (documentation / "index.html").write_text(render(files, description), encoding="utf-8")
+    (documentation / "index.html").write_text(render(files, description, wanted), encoding="utf-8")
 
 
 def licence_text(package: str) -> str:
@@ -68,7 +74,7 @@ def licence_text(package: str) -> str:
     )
 
 
-def render(files: Path, description: Element) -> str:
+def render(files: Path, description: Element, wanted: Wanted) -> str:
     """The documentation page: self-contained HTML that is well-formed XML, too."""
     environment = Environment(
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
@@ -78,15 +84,22 @@ def render(files: Path, description: Element) -> str:
     simulation = description.find("CoSimulation")
     assert experiment is not None
     assert simulation is not None
+    named = flat_name if wanted.flat_names else str
+    leg = named("leg[1]")
     return environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
         version=__version__,
+        wanted=wanted,
+        named=named,
+        loosest=LOOSEST_RTOL,
         model=description.attrib,
         experiment=experiment.attrib,
         capabilities=simulation.attrib,
         cores=sorted(p.name for p in files.glob("resources/*/core/compiled.*")),
         drawing=Markup(
             inline_svg(
-                vehicle_figure(Parameters(), named=True), "vehicle", "The vehicle on its four legs"
+                vehicle_figure(wanted.parameters, named=True),
+                "vehicle",
+                "The vehicle on its four legs",
             )
         ),
         pythonfmu=distribution("pythonfmu").version,
@@ -95,13 +108,13 @@ def render(files: Path, description: Element) -> str:
                 "parameters",
                 "Parameters",
                 "fixed; set them before or in initialization mode",
-                rows(PARAMETER_QUANTITIES.values()),
+                rows(starts_of(wanted.parameters)),
             ),
             ("inputs", "Inputs", "continuous; 0 by default", rows(INPUT_QUANTITIES)),
             (
                 "outputs",
                 "Outputs",
-                "calculated; leg[1] stands for every leg, numbered as drawn",
+                f"calculated; {leg} stands for every leg, numbered as drawn",
                 rows(of_one_leg(OUTPUT_QUANTITIES)),
             ),
             (
@@ -113,11 +126,19 @@ def render(files: Path, description: Element) -> str:
             (
                 "peaks",
                 "Peaks",
-                "local; extremes since the start, between steps too; leg[1] stands for every leg",
+                f"local; extremes since the start, between steps too; {leg} stands for every leg",
                 rows(of_one_leg(PEAK_QUANTITIES, "peak.")),
             ),
         ],
     )
+
+
+def starts_of(parameters: Parameters) -> list[Quantity]:
+    """The parameters' quantities with the vehicle's values for defaults, and their sources."""
+    return [
+        replace(q, default=parameters[name], source=one_line(parameters.source(name)))
+        for name, q in PARAMETER_QUANTITIES.items()
+    ]
 
 
 def of_one_leg(quantities: Iterable[Quantity], before: str = "") -> list[Quantity]:

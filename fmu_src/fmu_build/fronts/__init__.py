@@ -1,0 +1,1 @@
+"""The front of an FMU: its identity in C, and fronts that were compiled before."""

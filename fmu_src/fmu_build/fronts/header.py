@@ -1,0 +1,145 @@
+"""The header `variables.h`, by which the front's sources know of their FMU.
+
+The identity in it (names, GUID, variables) is data of the binary, with a mark before it. So it can
+be written into a front that was compiled before, for another FMU of as many variables.
+"""
+
+from __future__ import annotations
+
+import sys
+from xml.etree.ElementTree import Element
+
+from ..sources import source
+
+FRONT = source("fmu_src/fmu_front")
+CAUSALITIES = {"parameter": "p", "input": "i", "output": "o"}
+MARK = b"rlv-landing: identity"
+# sizes of the identity's texts, a zero at the end of each included; the GUID's also in state.c
+MARK_SIZE, GUID_SIZE, TEXT_SIZE, NAME_SIZE = 24, 40, 72, 62
+
+
+def variables_header(root: Element, module: str) -> str:
+    """C header with what the front knows of its FMU.
+
+    The description's variables, log categories and GUID, the slave's script, and the Python text
+    that makes the slave.
+
+    Args:
+        root: Root of the FMU's modelDescription.xml.
+        module: Name of the slave's script, without `.py`.
+
+    Raises:
+        SystemExit: The value references are not 0, 1, 2, ... in order, or a name is too long.
+    """
+    identity = front_identity(root, module)
+    return _header(len(_variables(root)), categories(root), identity)
+
+
+def neutral_header(root: Element) -> str:
+    """The header of a front that gets its identity later; the same for all FMUs that it fits."""
+    count = len(_variables(root))
+    return _header(count, categories(root), _identity("", "", "", 0, [("-", "-", "")] * count))
+
+
+def front_identity(root: Element, module: str) -> bytes:
+    """The identity of an FMU's front, from the mark on, as it stands in the binary.
+
+    Args:
+        root: Root of the FMU's modelDescription.xml.
+        module: Name of the slave's script, without `.py`.
+
+    Raises:
+        SystemExit: The value references are not 0, 1, 2, ... in order, or a name is too long.
+    """
+    rows = []
+    for i, variable in enumerate(_variables(root)):
+        name = variable.attrib["name"]
+        if int(variable.attrib["valueReference"]) != i:
+            raise SystemExit(
+                f"error: value reference of {name} is not {i}; the front needs them in order"
+            )
+        causality = CAUSALITIES.get(variable.attrib["causality"], "-")
+        rows.append((variable[0].tag[0], causality, name))
+    return _identity(
+        root.attrib["guid"], root.attrib["modelName"], module, sys.version_info.minor, rows
+    )
+
+
+def categories(root: Element) -> list[str]:
+    """The names of the description's log categories, in order."""
+    return [c.attrib["name"] for c in root.findall("LogCategories/Category")]
+
+
+def _variables(root: Element) -> list[Element]:
+    return root.findall("ModelVariables/ScalarVariable")
+
+
+def _identity(
+    guid: str, model: str, module: str, minor: int, variables: list[tuple[str, str, str]]
+) -> bytes:
+    found = MARK.ljust(MARK_SIZE, b"\0") + _text(guid, GUID_SIZE)
+    found += _text(model, TEXT_SIZE) + _text(module, TEXT_SIZE) + bytes([minor])
+    for kind, causality, name in variables:
+        found += kind.encode() + causality.encode() + _text(name, NAME_SIZE)
+    return found
+
+
+def _text(text: str, size: int) -> bytes:
+    encoded = text.encode()
+    if len(encoded) >= size:
+        raise SystemExit(
+            f"error: {text!r} has {len(encoded)} bytes; the FMU's front takes {size - 1}"
+        )
+    return encoded.ljust(size, b"\0")
+
+
+def _header(count: int, log_categories: list[str], identity: bytes) -> str:
+    lines = [
+        "/* Made by fmu_build/fronts/header.py from modelDescription.xml. */",
+        f"struct variable {{ char kind, causality, name[{NAME_SIZE}]; }};",
+        f"enum {{ VARIABLE_COUNT = {count} }};",
+        "struct identity {",
+        f"    char mark[{MARK_SIZE}], guid[{GUID_SIZE}];",
+        f"    char model[{TEXT_SIZE}], module[{TEXT_SIZE}], python_minor;",
+        "    struct variable variables[VARIABLE_COUNT];",
+        "};",
+        "extern const struct identity IDENTITY;",
+        "#define VARIABLES IDENTITY.variables",
+        "#define GUID IDENTITY.guid",
+        "#define MODEL_NAME IDENTITY.model",
+        "#define SLAVE_MODULE IDENTITY.module",
+        "#define BUILD_PYTHON_MINOR IDENTITY.python_minor",
+        "static const char *const CATEGORIES[] __attribute__((unused)) = {",
+        *(f"    {quoted(name)}," for name in log_categories),
+        "};",
+        "#define CREATE_SLAVE \\",
+        *(
+            f"    {quoted(line + chr(10))} \\"
+            for line in (FRONT / "create_slave.py").read_text().splitlines()
+        ),
+        '    ""',
+        "#define IDENTITY_VALUES \\",
+        *(f"    {line} \\" for line in _values(identity)),
+        "    }",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _values(identity: bytes) -> list[str]:
+    """C's values of the members of a `struct identity`, without the last brace."""
+    texts, at = [], 0
+    for size in (MARK_SIZE, GUID_SIZE, TEXT_SIZE, TEXT_SIZE):
+        texts.append(quoted(identity[at : at + size].rstrip(b"\0").decode()) + ",")
+        at += size
+    lines = [*texts, f"{identity[at]},", "{"]
+    at += 1
+    for row in range(at, len(identity), NAME_SIZE + 2):
+        kind, causality = identity[row : row + 2].decode()
+        name = identity[row + 2 : row + 2 + NAME_SIZE].rstrip(b"\0").decode()
+        lines.append(f"{{'{kind}', '{causality}', {quoted(name)}}},")
+    return lines
+
+
+def quoted(text: str) -> str:
+    """`text` as a C string."""
+    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'

@@ -1,0 +1,300 @@
+"""The commands `rlv-landing fmu`: build, info, simulate. They need no ROS 2."""
+
+from __future__ import annotations
+
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from rlv_landing.choices import parse_pairs
+from rlv_landing.commands.number_types import Number
+from rlv_landing.commands.options import (
+    HELP_NAMES,
+    check_writable,
+    chosen_parameters,
+    parameter_options,
+)
+from rlv_landing.commands.printing import json_text, print_warning
+from rlv_landing.errors import LandingError
+from rlv_landing.text.durable import writing
+from rlv_landing.text.files import shown_name
+
+if TYPE_CHECKING:
+    from rlv_landing.history import History
+    from rlv_landing.parameters import Parameters
+
+    from ..fmu.input_table import Setting
+
+FILE = click.argument("file", type=click.Path(path_type=Path))
+# what the build imports, of the extra `fmu`
+NEEDED = ("pythonfmu", "fmpy", "latex2mathml")
+
+
+@click.group(context_settings=HELP_NAMES)
+def fmu() -> None:
+    """Build the FMU of your own vehicle, look into an FMU, land one. Needs no ROS 2.
+
+    \b
+    rlv-landing fmu build --parameters mine.toml --name MyStage -o MyStage.fmu
+    rlv-landing fmu info MyStage.fmu
+    rlv-landing fmu simulate MyStage.fmu --input gusts.csv --plot landing.png
+    """
+
+
+@fmu.command(context_settings=HELP_NAMES)
+@parameter_options
+@click.option(
+    "--name",
+    metavar="NAME",
+    default="RlvLanding",
+    show_default=True,
+    help="Name of the model and of its binary: letters, digits and underscores.",
+)
+@click.option(
+    "--flat-names",
+    is_flag=True,
+    help="Variables without dots and brackets: leg1_main_strut_force. For hosts that make buses "
+    "or arrays of them (Simulink, Hopsan).",
+)
+@click.option("--fmi", metavar="VERSION", default="2", show_default=True, help="Version of FMI.")
+@click.option(
+    "--pure", is_flag=True, help="Leave the compiled core out: the same digits, ten times as slow."
+)
+@click.option(
+    "-o",
+    "--output",
+    metavar="FILE.fmu",
+    type=click.Path(path_type=Path),
+    help="The FMU [default: NAME.fmu].",
+)
+@click.option("--force", is_flag=True, help="Overwrite a file that exists.")
+def build(
+    *,
+    output: Path | None,
+    force: bool,
+    preset: str | None,
+    file: str | None,
+    mode: str | None,
+    pairs: tuple[str, ...],
+    **wishes: Any,
+) -> None:
+    """Build an FMU of your vehicle: its start values, description, drawing and documentation.
+
+    FMPy validates it and lands it once, and the landing is compared with that of this package,
+    before the file gets its name. Equal vehicles, names and versions give equal bytes; every other
+    FMU has another GUID, and computes by itself beside the others.
+
+    \b
+    Examples:
+      rlv-landing parameters --toml > mine.toml     (edit it)
+      rlv-landing fmu build --parameters mine.toml --name MyStage
+      rlv-landing fmu build --preset yue2022-tests --mode 1-2-1 -o tests.fmu
+      rlv-landing fmu build --set vehicle.mass="190 kg" --flat-names -o for_simulink.fmu
+
+    Exit codes: 0 built, 1 the build failed, 2 bad input or a file that cannot be written,
+    130 interrupted.
+    """
+    require_build()
+    from fmu_build.wanted import Wanted
+
+    parameters = chosen_parameters(preset, file, mode, pairs)
+    wishes["fmi"] = wishes["fmi"].removesuffix(".0")
+    wanted = Wanted(parameters, _source(preset, file, pairs), **wishes)
+    target = output or Path(f"{wanted.name}.fmu")
+    check_writable(target, ".fmu", force=force)
+    from fmu_build.build import build as build_fmu
+
+    click.echo("\n".join(build_fmu(target, wanted)))
+
+
+def require_build() -> None:
+    """Check that what the build needs is installed.
+
+    Raises:
+        LandingError: It is not.
+    """
+    for module in NEEDED:
+        if find_spec(module) is None:
+            raise LandingError(
+                f"building an FMU needs {module}, which is missing; "
+                'install it with pip install "rlv-landing[fmu]"'
+            )
+
+
+def _source(preset: str | None, file: str | None, pairs: tuple[str, ...]) -> str:
+    """Where the vehicle comes from, for the FMU's description."""
+    name = shown_name(Path(file)) if file is not None else preset or ""
+    return ", ".join([*([name] if name else []), *pairs])
+
+
+@fmu.command(context_settings=HELP_NAMES)
+@FILE
+@click.option("--json", "as_json", is_flag=True, help="As JSON; starts in the unit given.")
+def info(file: Path, *, as_json: bool) -> None:
+    """Show what is in an FMU: model, platforms, GUID, and every variable with unit and start.
+
+    Of ours also the vehicle and its touchdown, and whether the core is compiled. FILE may be any
+    FMU that FMPy reads.
+
+    \b
+    Examples:
+      rlv-landing fmu info mine.fmu
+      rlv-landing fmu info other.fmu --json
+
+    Exit codes: 0 shown, 2 no such file, or no FMU.
+    """
+    from ..fmu.info import fmu_info
+
+    found = fmu_info(file)
+    click.echo(json_text(found.as_dict()) if as_json else found.text(), nl=as_json)
+
+
+@fmu.command(context_settings=HELP_NAMES)
+@FILE
+@click.option(
+    "--input",
+    "inputs",
+    metavar="FILE.csv|NAME=VALUE",
+    multiple=True,
+    help="Inputs over time: columns time [s], external.force_x [kN], ...; linear between rows. "
+    "Or a constant one; repeat.",
+)
+@click.option(
+    "--set",
+    "pairs",
+    metavar="NAME=VALUE",
+    multiple=True,
+    help='Set one parameter, SI or with a unit: drop.tilt="-2 deg". Repeat.',
+)
+@click.option(
+    "--until", type=Number("s"), metavar="S", help="End time [s] [default: the FMU's own]."
+)
+@click.option(
+    "--every",
+    type=Number("s"),
+    default=1e-3,
+    show_default=True,
+    metavar="S",
+    help="Time between samples [s].",
+)
+@click.option(
+    "--output",
+    metavar="FILE.csv|.parquet",
+    type=click.Path(path_type=Path),
+    help="Write every output at every sample (SI units).",
+)
+@click.option(
+    "--plot",
+    metavar="FILE.png",
+    type=click.Path(path_type=Path),
+    help="Draw forces, strokes and acceleration.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print outcome and peaks as JSON.")
+@click.option("--force", is_flag=True, help="Overwrite files that exist.")
+def simulate(
+    file: Path,
+    *,
+    output: Path | None,
+    plot: Path | None,
+    as_json: bool,
+    force: bool,
+    **options: Any,
+) -> None:
+    """Land one of our FMUs once through FMPy; print outcome and peaks.
+
+    The result is that of `rlv-landing simulate` with the same parameters and inputs.
+
+    \b
+    Examples:
+      rlv-landing fmu simulate mine.fmu --plot landing.png
+      rlv-landing fmu simulate mine.fmu --input gusts.csv --output landing.csv
+      rlv-landing fmu simulate mine.fmu --set drop.tilt="-2 deg" --input external.force_x="2 kN"
+
+    Exit codes: 0 landed, 1 a file could not be written, 2 bad input or the FMU refuses,
+    130 interrupted.
+    """
+    from rlv_landing.audit.transverse import warning_of
+    from rlv_landing.summary import summarise
+    from rlv_landing.tables.landing import summary_table
+
+    from ..logs.export import ENDINGS
+
+    if output is not None and output.suffix not in ENDINGS:
+        raise LandingError(f"{output} must end in {' or '.join(ENDINGS)}")
+    for path, ending in ((output, output.suffix if output else ""), (plot, ".png")):
+        check_writable(path, ending, force=force)
+    history, name = _landed(file, options)
+    print_warning(warning_of(history))
+    assert history.parameters is not None
+    title = f"{name}: {history.parameters.drop.mode} landing"
+    printed = json_text(summarise(history)) + "\n" if as_json else summary_table(history, title)
+    _write(history, output, plot, title)
+    click.echo(printed, nl=False)
+
+
+def _write(history: History, output: Path | None, plot: Path | None, title: str) -> None:
+    if output is not None:
+        from ..logs.export import write_history
+
+        write_history(history, output)
+    if plot is not None:
+        from rlv_landing.figures.plots import save_overview
+
+        with writing(plot):
+            save_overview(history, plot, title)
+
+
+def _landed(file: Path, options: dict[str, Any]) -> tuple[History, str]:
+    """The landing that the options choose, with progress on a terminal; the model's name."""
+    from tqdm import tqdm
+
+    from rlv_landing.parameters import PARAMETER_QUANTITIES
+
+    from ..fmu.description import read_description, vehicle_of
+    from ..fmu.landing import land_fmu
+
+    description = read_description(file)
+    values = parse_pairs(options["pairs"], PARAMETER_QUANTITIES, "parameter")
+    parameters: Parameters = vehicle_of(description, values)
+    inputs = _inputs(options["inputs"])
+    until = options["until"]
+    if until is None:
+        until = float(description.defaultExperiment.stopTime)
+    with tqdm(
+        total=until,
+        unit="s",
+        desc="landing",
+        disable=not sys.stderr.isatty(),
+        bar_format="{l_bar}{bar}| {n:.2f}/{total:.2f} s",
+    ) as bar:
+        history = land_fmu(
+            file, parameters, inputs, until, options["every"], lambda t: bar.update(t - bar.n)
+        )
+    return history, description.modelName
+
+
+def _inputs(given: tuple[str, ...]) -> list[Setting]:
+    """What is set: a table, and constant inputs beside it.
+
+    Raises:
+        LandingError: There are two tables, an input is in both, or one of them is wrong.
+    """
+    from rlv_landing.quantities import INPUT_QUANTITIES
+
+    from ..fmu.input_table import constants, read_inputs
+
+    files = [text for text in given if "=" not in text]
+    if len(files) > 1:
+        raise LandingError(f"give one table of inputs, not {len(files)}; join them")
+    quantities = {q.name: q for q in INPUT_QUANTITIES}
+    values = parse_pairs([text for text in given if "=" in text], quantities, "input")
+    if not files:
+        return constants(values) if values else []
+    table = read_inputs(Path(files[0]))
+    for name in values:
+        if name in table.columns:
+            raise LandingError(f"{name} is given as a constant and by {files[0]}; leave one")
+    return [*(constants(values) if values else []), *table.settings()]

@@ -1,0 +1,146 @@
+"""Inputs of a landing over time, from a CSV file.
+
+The first row has headings: `time`, and names of inputs with their units in brackets (default SI),
+`external.force_x [kN]`. Times ascend. An input is linear between its rows; before the first it has
+the first one's value, after the last the last one's. Two rows of one time are a jump. Where the
+ground's rates have no columns, they are the slopes of its positions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import inf, isfinite
+from pathlib import Path
+from typing import NamedTuple
+
+from rlv_landing.errors import LandingError, unknown
+from rlv_landing.parameters import check_value
+from rlv_landing.quantities import INPUT_QUANTITIES, Quantity
+from rlv_landing.text.files import read_csv
+from rlv_landing.text.units import Unit, UnitError, parse_number
+from rlv_landing.text.values import number_in_si, split_heading, unit_of
+
+TIME = Quantity("s", "time since the start", 0.0, inf, name="time")
+QUANTITIES = {q.name: q for q in INPUT_QUANTITIES}
+# inputs whose rate is an input of its own
+RATES = {"ground.heave": "ground.heave_rate", "ground.tilt": "ground.tilt_rate"}
+
+
+class Setting(NamedTuple):
+    """Inputs that are set at a time [s]: values by name [SI], and rates by name [SI/s]."""
+
+    time: float
+    values: dict[str, float]
+    rates: dict[str, float]
+
+
+@dataclass(frozen=True)
+class InputTable:
+    """Values of inputs over time.
+
+    Attributes:
+        times: The times [s], ascending.
+        columns: The values by input [SI], one a time.
+    """
+
+    times: list[float]
+    columns: dict[str, list[float]]
+
+    def settings(self) -> list[Setting]:
+        """What is set, in the order of time, the first at 0."""
+        found = []
+        for i, time in enumerate(self.times):
+            values = {name: column[i] for name, column in self.columns.items()}
+            found.append(Setting(time, values, self._rates(i)))
+        first = found[0]
+        if first.time > 0.0:
+            found.insert(0, Setting(0.0, first.values, dict.fromkeys(first.rates, 0.0)))
+        return found
+
+    def _rates(self, i: int) -> dict[str, float]:
+        """The rates of the inputs from row `i` to the next."""
+        last = i + 1 == len(self.times)
+        interval = inf if last else self.times[i + 1] - self.times[i]
+        rates = {}
+        for name, column in self.columns.items():
+            if RATES.get(name) in self.columns or name in RATES.values():
+                continue
+            step = 0.0 if last else column[i + 1] - column[i]
+            rates[name] = step / interval if interval > 0.0 else 0.0
+        return rates
+
+
+def read_inputs(path: Path) -> InputTable:
+    """The table in a CSV file, see this module's docstring.
+
+    Raises:
+        LandingError: The file is missing or cannot be read, a column is missing, unknown or
+            doubled, a unit is wrong, a value is no number or out of bounds, times do not ascend,
+            or there are no rows.
+    """
+    names: list[str] = []
+    units: list[Unit] = []
+    rows: list[list[float]] = []
+    for line, cells in read_csv(path, "table of inputs"):
+        if not names:
+            names, units = _headings(path, cells)
+            continue
+        try:
+            rows.append(_values(names, units, cells))
+            if len(rows) > 1 and rows[-1][0] < rows[-2][0]:
+                raise LandingError(
+                    f"time = {rows[-1][0]:g} s comes after {rows[-2][0]:g} s; sort the rows by time"
+                )
+        except LandingError as e:
+            raise LandingError(f"{path}, line {line}: {e}") from None
+    if not rows:
+        raise LandingError(f"{path} has no rows of inputs")
+    order = [i for i, name in enumerate(names) if name != TIME.name]
+    return InputTable([row[0] for row in rows], {names[i]: [row[i] for row in rows] for i in order})
+
+
+def _headings(path: Path, cells: list[str]) -> tuple[list[str], list[Unit]]:
+    names, units = [], []
+    for heading in cells:
+        name, unit = split_heading(heading)
+        try:
+            if name != TIME.name and name not in QUANTITIES:
+                raise unknown("input", name, [TIME.name, *QUANTITIES])
+            units.append(unit_of(QUANTITIES.get(name, TIME), unit))
+        except LandingError as e:
+            raise LandingError(f"{path}, column {heading!r}: {e}") from None
+        if name in names:
+            raise LandingError(f"{path} has two columns of {name}; leave one")
+        names.append(name)
+    if names[0] != TIME.name or len(names) == 1:
+        raise LandingError(
+            f"{path} must have a column time [s] first, and behind it columns of inputs, "
+            "for example external.force_x [kN]"
+        )
+    return names, units
+
+
+def _values(names: list[str], units: list[Unit], cells: list[str]) -> list[float]:
+    if len(cells) != len(names):
+        raise LandingError(
+            f"{len(cells)} values under {len(names)} headings; give every column a value, "
+            "with a point and no comma in it"
+        )
+    values = []
+    for name, unit, text in zip(names, units, cells):
+        q = QUANTITIES.get(name, TIME)
+        try:
+            number = parse_number(text.strip())
+        except UnitError as e:
+            raise LandingError(f"{name} = {text.strip()!r} is no number: {e}") from None
+        value = float(check_value(q, number_in_si(q, number, unit)))
+        if not isfinite(value):
+            raise LandingError(f"{name} = {value:g} {q.unit} must be finite")
+        values.append(value)
+    return values
+
+
+def constants(values: Mapping[str, float | str]) -> list[Setting]:
+    """Inputs that keep their values by name [SI]."""
+    return [Setting(0.0, {name: float(value) for name, value in values.items()}, {})]

@@ -1,0 +1,90 @@
+"""One landing of an FMU through FMPy, as a history."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import inf
+from pathlib import Path
+
+import numpy as np
+
+from rlv_landing.effort import check_duration, check_memory
+from rlv_landing.errors import LandingError
+from rlv_landing.history import History
+from rlv_landing.parameters import Parameters
+from rlv_landing.quantities import OUTPUT_NAMES
+from rlv_landing.state import LATEST
+
+from .input_table import Setting
+from .peaks import known_extremes
+from .runner import FmuRunner
+
+# a step with all outputs takes at least so long [s]
+SECONDS_PER_SAMPLE = 15e-6
+
+
+def land_fmu(
+    path: Path,
+    parameters: Parameters,
+    inputs: Sequence[Setting] = (),
+    until: float = 1.0,
+    every: float = 1e-3,
+    progress: Callable[[float], object] | None = None,
+) -> History:
+    """Land an FMU; return its outputs every `every` [s], and its true peaks.
+
+    The communication points are the samples, and the times at which inputs are set between them.
+    Results do not depend on the samples.
+
+    Args:
+        path: The FMU.
+        parameters: The vehicle, all of whose values are set.
+        inputs: What is set, in the order of time.
+        until: The end [s].
+        every: The time between samples [s].
+        progress: Called with the time reached [s].
+
+    Raises:
+        LandingError: A time is out of bounds, or the FMU does not load, or refuses with its reason.
+    """
+    if not 0.0 < every < inf:
+        raise LandingError(f"every = {every:g} s must be finite and above 0 s")
+    if not 0.0 < until <= LATEST:
+        raise LandingError(
+            f"until = {until:g} s must be finite, after the start at 0 s, and at most {LATEST:g} s"
+        )
+    span = f"a landing until {until:g} s in samples of {every:g} s"
+    remedy = "land shorter, or sample more seldom"
+    count = until / every
+    check_memory(span, 8.0 * len(OUTPUT_NAMES) * count, remedy)
+    check_duration(span, SECONDS_PER_SAMPLE * count, remedy)
+    times = [k * every for k in range(int(count * (1.0 + 1e-12) + 1e-9) + 1)]
+    rows = np.empty((len(times), len(OUTPUT_NAMES)))
+    with FmuRunner(path, dict(parameters.items())) as runner:
+        waiting = list(reversed(inputs))
+        now = 0.0
+        for row, time in zip(rows, times):
+            while waiting and waiting[-1].time < time:
+                now = _go_on(runner, now, waiting[-1].time)
+                _set(runner, waiting.pop())
+            if time == 0.0:
+                while waiting and waiting[-1].time == 0.0:
+                    _set(runner, waiting.pop())
+            now = _go_on(runner, now, time)
+            row[:] = runner.values()
+            if progress is not None:
+                progress(time)
+        found = {name.removeprefix("peak."): peak for name, peak in runner.peaks().items()}
+    history = History(np.array(times), OUTPUT_NAMES, rows, parameters)
+    history.extremes = known_extremes(found, history)
+    return history
+
+
+def _go_on(runner: FmuRunner, now: float, time: float) -> float:
+    if time > now:
+        runner.advance(now, time)
+    return max(now, time)
+
+
+def _set(runner: FmuRunner, setting: Setting) -> None:
+    runner.set_inputs(setting.values, setting.rates)

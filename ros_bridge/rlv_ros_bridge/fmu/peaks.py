@@ -1,0 +1,32 @@
+"""True peaks of a landing, as far as they are known, as extremes of its history."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import nan
+
+from rlv_landing.history import History
+from rlv_landing.outputs import Extreme
+from rlv_landing.quantities import PEAKS
+
+# value [SI] and time [s]
+Found = tuple[float, float]
+
+
+def known_extremes(found: Mapping[str, Found], history: History) -> dict[str, Extreme]:
+    """The extremes of the outputs that have a known peak, by output.
+
+    The side that is not known is that of the samples; NaN for an output without a column.
+
+    Args:
+        found: Value and time of each peak by `OUTPUT.SIDE`.
+        history: The samples.
+    """
+    extremes: dict[str, Extreme] = {}
+    for output in dict.fromkeys(p.output for p in PEAKS):
+        low, high = found.get(f"{output}.min"), found.get(f"{output}.max")
+        if low is None and high is None:
+            continue
+        sampled = history.extreme(output) if output in history else Extreme(nan, nan, nan, nan)
+        extremes[output] = Extreme(*(low or sampled[:2]), *(high or sampled[2:]))
+    return extremes
