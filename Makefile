@@ -10,7 +10,7 @@ CORE := $(shell find fmu_src/rlv_landing/core -name '*.py')
 SLAVE := fmu_src/landing_fmu.py \
   $(wildcard $(addprefix fmu_src/,fmu_build/*.py fmu_build/*.j2 fmu_front/*)) \
   $(addprefix fmu_src/rlv_landing/,__init__.py errors.py quantities.py parameters.py touchdown.py) \
-  $(addprefix fmu_src/rlv_landing/,assembly.py inputs/*.py extremes.py state.py stints.py) \
+  $(addprefix fmu_src/rlv_landing/,assembly.py inputs/*.py events/*.py extremes.py state.py stints.py) \
   $(addprefix fmu_src/rlv_landing/,landing.py figures/plots.py) CHANGELOG.md LICENSE
 
 .PHONY: help run test lint torture bench annotate coverage docs clean

@@ -5,6 +5,7 @@ For Linux, and for Windows if there is a compiler for it. pythonfmu's own binari
 
 from __future__ import annotations
 
+import platform
 import shutil
 import subprocess
 import sys
@@ -15,11 +16,14 @@ from xml.etree import ElementTree
 
 import fmpy
 
+from .arrays import variables
 from .compilers import Compiler, environment, for_linux, for_windows
 
 FRONT = Path(__file__).parent.parent / "fmu_front"
 HEADERS = Path(fmpy.__file__).parent / "c-code"
 CAUSALITIES = {"parameter": "p", "input": "i", "output": "o"}
+# the folder of a platform's binary in FMI 3.0, by that in FMI 2.0
+FOLDERS_OF_FMI3 = {"linux64": f"{platform.machine()}-linux", "win64": "x86_64-windows"}
 FLAGS = ["-std=c11", "-O2", "-fvisibility=hidden", "-Wall", "-Wextra", "-g0", "-s", "-shared"]
 
 
@@ -34,11 +38,13 @@ def front_sources() -> list[Path]:
     return sorted(p for p in FRONT.iterdir() if p.suffix in (".c", ".h", ".py"))
 
 
-def replace_binaries(files: Path) -> dict[str, str]:
+def replace_binaries(files: Path, root: ElementTree.Element, fmi: int) -> dict[str, str]:
     """Replace pythonfmu's binaries by the front.
 
     Args:
         files: Folder of the unpacked FMU.
+        root: Root of its description in FMI 2.0.
+        fmi: The FMU's version of FMI, 2 or 3. The front has the functions of both.
 
     Returns:
         The compiler for each platform.
@@ -46,7 +52,6 @@ def replace_binaries(files: Path) -> dict[str, str]:
     Raises:
         SystemExit: The front does not compile; the message has the compiler's output.
     """
-    root = ElementTree.parse(files / "modelDescription.xml").getroot()
     simulation = root.find("CoSimulation")
     assert simulation is not None
     module = (files / "resources" / "slavemodule.txt").read_text().strip()
@@ -55,15 +60,14 @@ def replace_binaries(files: Path) -> dict[str, str]:
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         folder = Path(name)
         (folder / "variables.h").write_text(variables_header(root, module))
-        for platform, compiler in compilers().items():
-            suffix = ".dll" if platform == "win64" else ".so"
-            target = (
-                files / "binaries" / platform / f"{simulation.attrib['modelIdentifier']}{suffix}"
-            )
-            target.parent.mkdir(parents=True)
-            compile_front(folder / target.name, folder, compiler)
-            shutil.copy(folder / target.name, target)
-            used[platform] = compiler.name
+        for system, compiler in compilers().items():
+            place = files / "binaries" / (FOLDERS_OF_FMI3[system] if fmi == 3 else system)
+            place.mkdir(parents=True)
+            suffix = ".dll" if system == "win64" else ".so"
+            library = simulation.attrib["modelIdentifier"] + suffix
+            compile_front(folder / library, folder, compiler)
+            shutil.copy(folder / library, place)
+            used[place.name] = compiler.name
     return used
 
 
@@ -111,31 +115,38 @@ def compile_front(target: Path, include: Path, compiler: Compiler) -> None:
 def variables_header(root: ElementTree.Element, module: str) -> str:
     """C header with what the front knows of its FMU.
 
-    The description's variables, log categories and GUID, the slave's script, and the Python text
-    that makes the slave.
+    The variables of the slave and of FMI 3.0, log categories and GUID, the slave's script, and the
+    Python text that makes the slave.
 
     Args:
-        root: Root of the FMU's modelDescription.xml.
+        root: Root of the FMU's description in FMI 2.0.
         module: Name of the slave's script, without `.py`.
 
     Raises:
         SystemExit: The value references are not 0, 1, 2, ... in order.
     """
     lines = [
-        "/* Made by fmu_build/binary.py from modelDescription.xml. */",
-        "struct variable { char kind, causality; const char *name; };",
+        "/* Made by fmu_build/binary.py from the FMU's description. */",
+        "/* In FMI 3.0 it is the first of `count` elements of `whole`, `stride` apart; or none, 0. */",
+        "struct variable { char kind, causality; const char *name, *whole; "
+        "unsigned count, stride; };",
         "static const struct variable VARIABLES[] __attribute__((unused)) = {",
     ]
-    for i, variable in enumerate(root.findall("ModelVariables/ScalarVariable")):
+    scalars = root.findall("ModelVariables/ScalarVariable")
+    first = {v.reference: v for v in variables([s.attrib["name"] for s in scalars])}
+    for i, variable in enumerate(scalars):
         if int(variable.attrib["valueReference"]) != i:
             raise SystemExit(
                 f"error: value reference of {variable.attrib['name']} is not {i}; "
                 "the front needs them in order"
             )
         causality = CAUSALITIES.get(variable.attrib["causality"], "-")
-        lines.append(
-            f"    {{'{variable[0].tag[0]}', '{causality}', {quoted(variable.attrib['name'])}}},"
+        name = quoted(variable.attrib["name"])
+        whole = first.get(i)
+        array = (
+            f"{quoted(whole.name)}, {len(whole.elements)}, {whole.stride}" if whole else "NULL, 0, 0"
         )
+        lines.append(f"    {{'{variable[0].tag[0]}', '{causality}', {name}, {array}}},")
     lines += ["};", "enum { VARIABLE_COUNT = sizeof VARIABLES / sizeof *VARIABLES };"]
     lines += ["static const char *const CATEGORIES[] __attribute__((unused)) = {"]
     lines += [

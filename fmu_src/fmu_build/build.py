@@ -1,4 +1,4 @@
-"""Builds `build/RlvLanding.fmu`; run by `build_fmu.sh`.
+"""Builds `build/RlvLanding.fmu`, or with `--fmi 3` `build/RlvLanding3.fmu`; run by `build_fmu.sh`.
 
 pythonfmu builds an FMU of the slave and its own copy of the package. This unpacks it, completes its
 description, adds the documentation, gives it an identity of its own, puts the front in place of
@@ -26,8 +26,10 @@ from pythonfmu.builder import FmuBuilder
 from .binary import record_libpython, replace_binaries
 from .core_source import package_name
 from .description import describe
+from .description3 import describe3
 from .documentation import write_documentation
 from .identity import NO_GUID, identify
+from .terminals import faults, write_terminals
 
 HERE = Path(__file__).parent.parent
 ROOT = HERE.parent
@@ -45,6 +47,8 @@ MODULES = (
     "extremes.py",
     "state.py",
     "stints.py",
+    "events/__init__.py",
+    "events/search.py",
     "landing.py",
 )
 # pythonfmu's command line, CSV tool and builder, which no slave needs
@@ -191,16 +195,19 @@ def take_pythonfmu(own: Path, package: Path) -> None:
     slave.write_text(re.sub(r"^from pythonfmu", "from .pythonfmu", slave.read_text(), flags=re.M))
 
 
-def write_description(files: Path, date: datetime) -> ElementTree.Element:
-    """Complete pythonfmu's modelDescription.xml in `files`; return its root."""
-    path = files / "modelDescription.xml"
-    tree = ElementTree.parse(path)
-    root = tree.getroot()
+def complete_description(files: Path, date: datetime) -> ElementTree.Element:
+    """The root of pythonfmu's modelDescription.xml in `files`, completed."""
+    root = ElementTree.parse(files / "modelDescription.xml").getroot()
     root.set("guid", NO_GUID)
     describe(root, date.strftime("%Y-%m-%dT%H:%M:%SZ"))
-    ElementTree.indent(tree, "\t")
-    tree.write(path, encoding="UTF-8", xml_declaration=True)
     return root
+
+
+def write_description(files: Path, root: ElementTree.Element) -> None:
+    """Write the modelDescription.xml with this root."""
+    tree = ElementTree.ElementTree(root)
+    ElementTree.indent(tree, "\t")
+    tree.write(files / "modelDescription.xml", encoding="UTF-8", xml_declaration=True)
 
 
 def pack(files: Path, target: Path, date: datetime) -> None:
@@ -216,22 +223,21 @@ def pack(files: Path, target: Path, date: datetime) -> None:
             archive.writestr(entry, (files / name).read_bytes())
 
 
-def check(fmu: Path) -> str:
+def check(fmu: Path, fmi: int) -> str:
     """Validate the FMU's description and simulate one landing; return a line with the results.
 
     Raises:
         SystemExit: The description is not valid, or the landing's numbers are not plausible.
     """
-    problems = validate_fmu(str(fmu))
+    problems = validate_fmu(str(fmu)) + (faults(fmu) if fmi == 3 else [])
     if problems:
         raise SystemExit("error: the FMU is not valid: " + "; ".join(problems))
+    strut = "leg.main_strut.force" if fmi == 3 else "leg[1].main_strut.force"
     result = fmpy.simulate_fmu(
-        str(fmu),
-        stop_time=0.2,
-        output_interval=1e-3,
-        output=["leg[1].main_strut.force", "energy.balance"],
+        str(fmu), stop_time=0.2, output_interval=1e-3, output=[strut, "energy.balance"]
     )
-    force, balance = result["leg[1].main_strut.force"].min(), abs(result["energy.balance"]).max()
+    forces = result[strut][:, 0] if fmi == 3 else result[strut]
+    force, balance = forces.min(), abs(result["energy.balance"]).max()
     if not (force < -1000.0 and balance < 1e-3):
         raise SystemExit(
             f"error: the FMU's trial landing is not plausible: strut force {force:g} N, "
@@ -243,11 +249,12 @@ def check(fmu: Path) -> str:
     )
 
 
-def build(target: Path, *, pure: bool) -> None:
+def build(target: Path, *, fmi: int = 2, pure: bool) -> None:
     """Build and check the FMU, then put it at `target` in one step; print what was done.
 
     Args:
         target: The FMU's file.
+        fmi: Version of FMI, 2 or 3.
         pure: Whether to leave the compiled core out.
     """
     target.parent.mkdir(parents=True, exist_ok=True)
@@ -256,13 +263,17 @@ def build(target: Path, *, pure: bool) -> None:
         folder = Path(name)
         files, package, script = build_with_pythonfmu(folder, pure=pure)
         record_libpython(files)
-        root = write_description(files, date)
-        write_documentation(files, root)
-        identify(files, package.name, script)
-        compilers = replace_binaries(files)
+        root = complete_description(files, date)
+        description = describe3(root) if fmi == 3 else root
+        write_description(files, description)
+        write_documentation(files, description)
+        if fmi == 3:
+            write_terminals(files, description)
+        root.set("guid", identify(files, package.name, script))
+        compilers = replace_binaries(files, root, fmi)
         made = folder / "RlvLanding.fmu"
         pack(files, made, date)
-        found = check(made)
+        found = check(made, fmi)
         shutil.copy(made, target.with_suffix(".part"))
         target.with_suffix(".part").replace(target)
     for platform, compiler in compilers.items():
@@ -284,8 +295,14 @@ def main() -> None:
         "file",
         nargs="?",
         type=Path,
-        default=ROOT / "build" / "RlvLanding.fmu",
-        help="the FMU's file [default: build/RlvLanding.fmu]",
+        help="the FMU's file [default: build/RlvLanding.fmu, for FMI 3.0 build/RlvLanding3.fmu]",
+    )
+    parser.add_argument(
+        "--fmi",
+        type=int,
+        choices=(2, 3),
+        default=2,
+        help="version of FMI: 2.0 or 3.0, both for co-simulation [default: 2]",
     )
     parser.add_argument(
         "--pure",
@@ -293,7 +310,8 @@ def main() -> None:
         help="leave the compiled core out: the same digits, ten times as slow",
     )
     arguments = parser.parse_args()
-    build(arguments.file, pure=arguments.pure)
+    name = "RlvLanding3.fmu" if arguments.fmi == 3 else "RlvLanding.fmu"
+    build(arguments.file or ROOT / "build" / name, fmi=arguments.fmi, pure=arguments.pure)
 
 
 if __name__ == "__main__":

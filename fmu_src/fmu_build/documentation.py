@@ -19,12 +19,14 @@ from rlv_landing.figures.plots import inline_svg
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.quantities import (
     INPUT_QUANTITIES,
+    LEGS,
     OUTPUT_QUANTITIES,
     PEAK_QUANTITIES,
     STATISTIC_QUANTITIES,
     Quantity,
 )
 
+from .arrays import whole_meaning, whole_name
 from .dependencies import inputs_of
 from .drawing import vehicle_figure
 
@@ -32,6 +34,8 @@ ROOT = Path(__file__).parents[2]
 TEMPLATE = Path(__file__).with_name("documentation.html.j2")
 LICENCE_OF = "pythonfmu"
 DOTS_PER_INCH = 100
+# what the tables say of the legs, by the version of FMI
+OF_LEGS = {2: "leg[1] stands for every leg", 3: "[4]: arrays with an element for each leg"}
 
 
 def write_documentation(files: Path, description: Element) -> None:
@@ -78,9 +82,12 @@ def render(files: Path, description: Element) -> str:
     simulation = description.find("CoSimulation")
     assert experiment is not None
     assert simulation is not None
+    fmi = int(description.attrib["fmiVersion"][0])
     return environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
         version=__version__,
         model=description.attrib,
+        fmi=fmi,
+        identity=description.get("guid") or description.get("instantiationToken"),
         experiment=experiment.attrib,
         capabilities=simulation.attrib,
         cores=sorted(p.name for p in files.glob("resources/*/core/compiled.*")),
@@ -101,8 +108,8 @@ def render(files: Path, description: Element) -> str:
             (
                 "outputs",
                 "Outputs",
-                "calculated; leg[1] stands for every leg, numbered as drawn",
-                rows(of_one_leg(OUTPUT_QUANTITIES)),
+                f"calculated; {OF_LEGS[fmi]}, numbered as drawn",
+                rows(of_one_leg(OUTPUT_QUANTITIES), fmi),
             ),
             (
                 "statistics",
@@ -113,8 +120,8 @@ def render(files: Path, description: Element) -> str:
             (
                 "peaks",
                 "Peaks",
-                "local; extremes since the start, between steps too; leg[1] stands for every leg",
-                rows(of_one_leg(PEAK_QUANTITIES, "peak.")),
+                f"local; extremes since the start, between steps too; {OF_LEGS[fmi]}",
+                rows(of_one_leg(PEAK_QUANTITIES, "peak."), fmi),
             ),
         ],
     )
@@ -134,12 +141,19 @@ def of_one_leg(quantities: Iterable[Quantity], before: str = "") -> list[Quantit
     ]
 
 
-def rows(quantities: Any) -> list[dict[str, str]]:
+def names(q: Quantity, fmi: int) -> tuple[str, str]:
+    """Name and meaning of a quantity, or of the array whose first element it is in FMI 3.0."""
+    whole = whole_name(q.name)
+    if fmi == 3 and whole != q.name:
+        return f"{whole}[{len(LEGS)}]", whole_meaning(q.meaning)
+    return q.name, q.meaning
+
+
+def rows(quantities: Any, fmi: int = 2) -> list[dict[str, str]]:
     """One table row per quantity, all as text; bounds and default in its SI unit."""
     return [
         {
-            "name": q.name,
-            "meaning": q.meaning,
+            **dict(zip(("name", "meaning"), names(q, fmi))),
             "unit": q.unit or ("1" if q.kind == "real" else ""),
             "shown": q.display_unit,
             "type": q.kind.capitalize(),
