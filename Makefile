@@ -4,6 +4,7 @@ MODE ?= 2-2
 VENV := .venv
 BIN := $(VENV)/bin
 FMU := build/RlvLanding.fmu
+FMU3 := build/RlvLanding3.fmu
 COFMUPY := build/cofmupy/.packages
 CHROMIUM := build/chromium/.packages
 CORE := $(shell find fmu_src/rlv_landing/core -name '*.py')
@@ -43,6 +44,9 @@ $(VENV)/.core: $(VENV)/.packages setup.py fmu_src/fmu_build/core_source.py fmu_s
 $(FMU): $(VENV)/.core $(SLAVE) build_fmu.sh
 	PYTHON=$(BIN)/python ./build_fmu.sh
 
+$(FMU3): $(VENV)/.core $(SLAVE) build_fmu.sh
+	PYTHON=$(BIN)/python ./build_fmu.sh --fmi 3
+
 run: $(FMU)
 	@$(BIN)/rlv-landing node --mode $(MODE) --report
 
@@ -63,10 +67,10 @@ $(CHROMIUM): tests/viewer/fetch_chromium.py tests/viewer/package-lock.json | $(V
 	$(BIN)/python $< $(@D)
 	@touch $@
 
-test: $(FMU) $(COFMUPY) $(CHROMIUM) lint
+test: $(FMU) $(FMU3) $(COFMUPY) $(CHROMIUM) lint
 	$(BIN)/python -m pytest -n 2 --dist loadfile
 
-torture: $(FMU)
+torture: $(FMU) $(FMU3)
 	RLV_TORTURE=50 $(BIN)/python -m pytest -m torture
 
 bench: $(FMU)
@@ -79,7 +83,7 @@ bench: $(FMU)
 annotate: $(VENV)/.core
 	@$(BIN)/python benchmarks/annotate.py
 
-coverage: $(FMU)
+coverage: $(FMU) $(FMU3)
 	RLV_LANDING_PURE=1 $(BIN)/python -m pytest --cov --cov-report=term tests/core tests/model
 
 docs: $(FMU)

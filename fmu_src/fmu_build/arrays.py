@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 
 TIME = "time"
 LEG = re.compile(r"(?<![^.])leg\[\d+\]")
@@ -55,7 +56,7 @@ def variables(names: list[str]) -> list[Variable]:
         found.setdefault(whole_name(name), []).append(reference)
     made = []
     for whole, references in found.items():
-        strides = {b - a for a, b in zip(references, references[1:])} or {0}
+        strides = {b - a for a, b in pairwise(references)} or {0}
         if len(strides) > 1:
             raise SystemExit(
                 f"error: the value references of {whole} are {references}; the front needs them "

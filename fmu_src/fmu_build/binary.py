@@ -38,12 +38,14 @@ def front_sources() -> list[Path]:
     return sorted(p for p in FRONT.iterdir() if p.suffix in (".c", ".h", ".py"))
 
 
-def replace_binaries(files: Path, root: ElementTree.Element, fmi: int) -> dict[str, str]:
+def replace_binaries(
+    files: Path, root: ElementTree.Element | None = None, fmi: int = 2
+) -> dict[str, str]:
     """Replace pythonfmu's binaries by the front.
 
     Args:
         files: Folder of the unpacked FMU.
-        root: Root of its description in FMI 2.0.
+        root: Root of its description in FMI 2.0; by default that of its modelDescription.xml.
         fmi: The FMU's version of FMI, 2 or 3. The front has the functions of both.
 
     Returns:
@@ -52,6 +54,8 @@ def replace_binaries(files: Path, root: ElementTree.Element, fmi: int) -> dict[s
     Raises:
         SystemExit: The front does not compile; the message has the compiler's output.
     """
+    if root is None:
+        root = ElementTree.parse(files / "modelDescription.xml").getroot()
     simulation = root.find("CoSimulation")
     assert simulation is not None
     module = (files / "resources" / "slavemodule.txt").read_text().strip()
@@ -127,9 +131,12 @@ def variables_header(root: ElementTree.Element, module: str) -> str:
     """
     lines = [
         "/* Made by fmu_build/binary.py from the FMU's description. */",
-        "/* In FMI 3.0 it is the first of `count` elements of `whole`, `stride` apart; or none, 0. */",
-        "struct variable { char kind, causality; const char *name, *whole; "
-        "unsigned count, stride; };",
+        "/* In FMI 3.0 it is the first of `count` elements of `whole`, `stride` apart. */",
+        "struct variable {",
+        "    char kind, causality;",
+        "    const char *name, *whole;",
+        "    unsigned count, stride; /* count 0: no variable of its own */",
+        "};",
         "static const struct variable VARIABLES[] __attribute__((unused)) = {",
     ]
     scalars = root.findall("ModelVariables/ScalarVariable")
@@ -144,7 +151,9 @@ def variables_header(root: ElementTree.Element, module: str) -> str:
         name = quoted(variable.attrib["name"])
         whole = first.get(i)
         array = (
-            f"{quoted(whole.name)}, {len(whole.elements)}, {whole.stride}" if whole else "NULL, 0, 0"
+            f"{quoted(whole.name)}, {len(whole.elements)}, {whole.stride}"
+            if whole
+            else "NULL, 0, 0"
         )
         lines.append(f"    {{'{variable[0].tag[0]}', '{causality}', {name}, {array}}},")
     lines += ["};", "enum { VARIABLE_COUNT = sizeof VARIABLES / sizeof *VARIABLES };"]

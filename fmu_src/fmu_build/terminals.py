@@ -1,4 +1,4 @@
-"""The file terminalsAndIcons.xml of FMI 3.0: groups of variables that belong together, and the icon.
+"""The file terminalsAndIcons.xml of FMI 3.0: variables that belong together, and the icon.
 
 A terminal names variables, not elements of arrays, so the legs are one terminal with one for each
 of their parts. An importer connects the inputs of `ground` and `external` as a whole.

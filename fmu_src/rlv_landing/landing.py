@@ -191,9 +191,11 @@ class Landing:
                 f"time = {time:g} s is not a time from {self._time:g} to {LATEST:g} s; "
                 "reset() starts again"
             )
-        return self._move_ground(time, step_end, to_event) or self._go_on(time, to_event)
+        return self._move_ground(time, step_end, to_event=to_event) or self._go_on(
+            time, to_event=to_event
+        )
 
-    def _go_on(self, time: float, to_event: bool) -> bool:
+    def _go_on(self, time: float, *, to_event: bool) -> bool:
         """Go on to `time` [s], or to an event; the ground begins and ends no motion until then."""
         reached, found = time, False
         with self._until(time):
@@ -204,7 +206,7 @@ class Landing:
         self._time = reached
         return found
 
-    def _move_ground(self, time: float, step_end: float, to_event: bool) -> bool:
+    def _move_ground(self, time: float, step_end: float, *, to_event: bool) -> bool:
         """Begin and end motions of the ground to new positions until `time` [s], or to an event.
 
         The landing goes on to the last end before it. New motions end at `step_end` [s] at the
@@ -214,7 +216,7 @@ class Landing:
             return False
         self._inputs.begin_step(self._time, step_end)
         while (end := self._inputs.next_end(time)) is not None:
-            if self._go_on(end, to_event):
+            if self._go_on(end, to_event=to_event):
                 return True
             self._inputs.begin_step(end, step_end)
         return False

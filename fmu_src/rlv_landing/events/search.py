@@ -96,7 +96,7 @@ class EventSearch:
             return self._narrowed(start, first, middle)
         if _differ(first, last):
             return self._narrowed(middle, first, end)
-        for part in _turns(first[0], amid[0], last[0]):
+        for part in turns(first[0], amid[0], last[0]):
             at = start + part * (end - start)
             if start < at < end and _differ(first, self._look(at)):
                 return self._narrowed(start, first, at)
@@ -120,12 +120,13 @@ def _differ(one: Look, other: Look) -> bool:
     return one[1] != other[1] or one[0][-1] != other[0][-1]
 
 
-def _turns(first: Sequence[float], amid: Sequence[float], last: Sequence[float]) -> list[float]:
+def turns(first: Sequence[float], amid: Sequence[float], last: Sequence[float]) -> list[float]:
     """Parts of a step at which parabolas turn beyond the edge that they do not pass otherwise.
 
     Args:
-        first, amid, last: Distances from the edges [m] at the step's start, middle and end, and the
-            phase, which is left out.
+        first: Distances from the edges [m] at the step's start, and the phase, which is left out.
+        amid: The same at its middle.
+        last: The same at its end.
     """
     found = []
     for a, b, c in zip(first[:-1], amid[:-1], last[:-1]):
