@@ -202,7 +202,7 @@ class RlvLanding(Fmi2Slave):
         An integrator that fails within the step is an error and ends the landing: outputs and
         steps are errors until the importer restores a state or resets.
         """
-        return bool(self.do_part(current_time, step_size, math.inf, 0.0))
+        return bool(self._part(current_time, step_size, math.inf, to_event=False))
 
     @log_exceptions
     def do_part(
@@ -223,6 +223,11 @@ class RlvLanding(Fmi2Slave):
             The time reached [s], which is `stop` or that of an event before, and 1 if there is an
             event, else 0. Nothing if the step is refused or fails.
         """
+        return self._part(current_time, step_size, stop, to_event=to_event > 0.0)
+
+    def _part(
+        self, current_time: float, step_size: float, stop: float, *, to_event: bool
+    ) -> list[float]:
         try:
             landing = self._current_landing()
             if not 0.0 < step_size < math.inf:
@@ -244,7 +249,7 @@ class RlvLanding(Fmi2Slave):
         until = min(max(stop - self._start_time, landing.time), step_end)
         try:
             self._outputs = []
-            event = landing.advance_within_step(until, step_end, to_event=to_event > 0.0)
+            event = landing.advance_within_step(until, step_end, to_event=to_event)
         except LandingError as e:
             self._failure = f"{e}; the landing has ended there: restore a state, or reset"
             self.log(self._failure, Fmi2Status.error)

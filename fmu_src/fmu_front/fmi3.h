@@ -24,4 +24,8 @@ struct fmi3_host {
 bool fmi3_check_intermediate(const struct instance *c, const struct function *f,
                              const fmi3ValueReference vr[], size_t n);
 
+/* Refuse a call for values of a type that no variable has, but for those of no variable. */
+fmi3Status fmi3_refuse_type(struct instance *c, const char *name, const fmi3ValueReference vr[],
+                            size_t n, size_t n_values);
+
 #endif

@@ -79,13 +79,17 @@ static double update(struct instance *c, const struct fmi3_host *host, double en
     return early_time < end ? early_time : end;
 }
 
-/* Where to leave what is left of a step to ask the host: after a part of it, all alike. */
+/*
+ * Where to leave what is left of a step to ask the host: after the longest part, or, of less than
+ * two of these, in the middle.
+ */
 static double next_stop(const struct fmi3_host *host, double time, double end)
 {
     const double left = end - time;
     if (!host->update || left <= LONGEST_PART * (1.0 + 1e-9))
         return end;
-    return left < 2.0 * LONGEST_PART ? time + 0.5 * left : time + LONGEST_PART;
+    const double stop = time + (left < 2.0 * LONGEST_PART ? 0.5 * left : LONGEST_PART);
+    return stop > time ? stop : end; /* at times whose rounding is longer than a part */
 }
 
 /* The status of a step that was refused at `time`, after a part of it. */
@@ -107,13 +111,15 @@ static enum status step_in_parts(struct instance *c, double time, double step, f
     if ((!to_event && !host->update) || !(step > 0.0 && isfinite(step_end)))
         return instance_step(c, &DoStep, time, step);
     const double start = time;
-    enum status status = STATUS_OK;
+    enum status worst = STATUS_OK;
     for (double end = step_end; time < end;) {
         bool found;
-        status = instance_step_part(c, &DoStep, time, step_end, next_stop(host, time, end),
-                                    to_event, &found);
+        enum status status = instance_step_part(c, &DoStep, time, step_end,
+                                                next_stop(host, time, end), to_event, &found);
         if (status >= STATUS_DISCARD)
             return time > start ? leave_amid(c, status, time) : status;
+        if (status > worst)
+            worst = status;
         time = c->last_time;
         *event = *event || found;
         if (found && host->early_return)
@@ -123,7 +129,7 @@ static enum status step_in_parts(struct instance *c, double time, double step, f
         if (c->phase != STEPPING)
             return STATUS_ERROR;
     }
-    return status;
+    return worst;
 }
 
 fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoint,

@@ -192,3 +192,54 @@ fmi3Status fmi3GetVariableDependencies(fmi3Instance c, fmi3ValueReference depend
 {
     return refuse(c, "fmi3GetVariableDependencies", NO_DEPENDENCIES);
 }
+
+/* Getters and setters of types that no variable has. */
+
+#define TYPES_OF_NO_VARIABLE(X) \
+    X(Float32) \
+    X(Int8) \
+    X(UInt8) \
+    X(Int16) \
+    X(UInt16) \
+    X(UInt32) \
+    X(Int64) \
+    X(UInt64)
+
+#define REFUSE_TYPE(type) \
+    fmi3Status fmi3Get##type(fmi3Instance c, const fmi3ValueReference vr[], size_t n, \
+                             fmi3##type values[], size_t n_values) \
+    { \
+        return fmi3_refuse_type(c, "fmi3Get" #type, vr, n, n_values); \
+    } \
+    fmi3Status fmi3Set##type(fmi3Instance c, const fmi3ValueReference vr[], size_t n, \
+                             const fmi3##type values[], size_t n_values) \
+    { \
+        return fmi3_refuse_type(c, "fmi3Set" #type, vr, n, n_values); \
+    }
+TYPES_OF_NO_VARIABLE(REFUSE_TYPE)
+
+fmi3Status fmi3GetBinary(fmi3Instance c, const fmi3ValueReference valueReferences[],
+                         size_t nValueReferences, size_t valueSizes[], fmi3Binary values[],
+                         size_t nValues)
+{
+    return fmi3_refuse_type(c, "fmi3GetBinary", valueReferences, nValueReferences, nValues);
+}
+
+fmi3Status fmi3SetBinary(fmi3Instance c, const fmi3ValueReference valueReferences[],
+                         size_t nValueReferences, const size_t valueSizes[],
+                         const fmi3Binary values[], size_t nValues)
+{
+    return fmi3_refuse_type(c, "fmi3SetBinary", valueReferences, nValueReferences, nValues);
+}
+
+fmi3Status fmi3GetClock(fmi3Instance c, const fmi3ValueReference valueReferences[],
+                        size_t nValueReferences, fmi3Clock values[])
+{
+    return fmi3_refuse_type(c, "fmi3GetClock", valueReferences, nValueReferences, 0);
+}
+
+fmi3Status fmi3SetClock(fmi3Instance c, const fmi3ValueReference valueReferences[],
+                        size_t nValueReferences, const fmi3Clock values[])
+{
+    return fmi3_refuse_type(c, "fmi3SetClock", valueReferences, nValueReferences, 0);
+}

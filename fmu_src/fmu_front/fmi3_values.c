@@ -271,69 +271,12 @@ fmi3Status fmi3SetString(fmi3Instance c, const fmi3ValueReference valueReference
                                               values);
 }
 
-/* Types that no variable has: nothing can be read or set, and all else is an error. */
-
-static fmi3Status refuse_type(struct instance *c, const char *name, const fmi3ValueReference vr[],
-                              size_t n, size_t n_values)
+fmi3Status fmi3_refuse_type(struct instance *c, const char *name, const fmi3ValueReference vr[],
+                            size_t n, size_t n_values)
 {
     const struct function function = {name, READABLE};
     const bool nothing =
         enter_reading(c, &function) && (!n || require(c, &function, "valueReferences", vr)) &&
         check_kinds(c, &function, '-', false, vr, n) && check_count(c, &function, vr, n, n_values);
     return nothing ? fmi3OK : fmi3Error;
-}
-
-#define TYPES_OF_NO_VARIABLE(X) \
-    X(Float32) \
-    X(Int8) \
-    X(UInt8) \
-    X(Int16) \
-    X(UInt16) \
-    X(UInt32) \
-    X(Int64) \
-    X(UInt64)
-
-#define REFUSE_TYPE(type) \
-    fmi3Status fmi3Get##type(fmi3Instance c, const fmi3ValueReference vr[], size_t n, \
-                             fmi3##type values[], size_t n_values) \
-    { \
-        (void)values; \
-        return refuse_type(c, "fmi3Get" #type, vr, n, n_values); \
-    } \
-    fmi3Status fmi3Set##type(fmi3Instance c, const fmi3ValueReference vr[], size_t n, \
-                             const fmi3##type values[], size_t n_values) \
-    { \
-        (void)values; \
-        return refuse_type(c, "fmi3Set" #type, vr, n, n_values); \
-    }
-TYPES_OF_NO_VARIABLE(REFUSE_TYPE)
-
-fmi3Status fmi3GetBinary(fmi3Instance c, const fmi3ValueReference valueReferences[],
-                         size_t nValueReferences, size_t valueSizes[], fmi3Binary values[],
-                         size_t nValues)
-{
-    (void)valueSizes, (void)values;
-    return refuse_type(c, "fmi3GetBinary", valueReferences, nValueReferences, nValues);
-}
-
-fmi3Status fmi3SetBinary(fmi3Instance c, const fmi3ValueReference valueReferences[],
-                         size_t nValueReferences, const size_t valueSizes[],
-                         const fmi3Binary values[], size_t nValues)
-{
-    (void)valueSizes, (void)values;
-    return refuse_type(c, "fmi3SetBinary", valueReferences, nValueReferences, nValues);
-}
-
-fmi3Status fmi3GetClock(fmi3Instance c, const fmi3ValueReference valueReferences[],
-                        size_t nValueReferences, fmi3Clock values[])
-{
-    (void)values;
-    return refuse_type(c, "fmi3GetClock", valueReferences, nValueReferences, 0);
-}
-
-fmi3Status fmi3SetClock(fmi3Instance c, const fmi3ValueReference valueReferences[],
-                        size_t nValueReferences, const fmi3Clock values[])
-{
-    (void)values;
-    return refuse_type(c, "fmi3SetClock", valueReferences, nValueReferences, 0);
 }

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 from .assembly import NO_INPUTS, begin, build_system
 from .core import DormandPrince, Exponential, Inputs, Solver
 from .errors import LandingError, unknown
-from .events.search import EventSearch
 from .extremes import Extreme, by_name, output_order
 from .inputs.driven import RATE_INPUTS, DrivenInputs, Setting, changed_setting
 from .parameters import Parameters
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from numpy import float64
     from numpy.typing import NDArray
 
+    from .events.search import EventSearch
     from .history import History
 
 DEFAULT_RTOL = 1e-5
@@ -81,8 +81,7 @@ class Landing:
         self._pick = itemgetter(*(i for i, _ in self._order))
         self._turned = [k for k, (_, factor) in enumerate(self._order) if factor < 0.0]
         self._inputs = DrivenInputs(self._solver)
-        stroke_max = self.parameters.main_strut.stroke_max
-        self._search = EventSearch(self._solver, self._order, stroke_max)
+        self._search: EventSearch | None = None
         self._first = changed_setting((NO_INPUTS, NO_INPUTS), inputs or {}, rates or {})
         self.reset()
 
@@ -200,11 +199,19 @@ class Landing:
         reached, found = time, False
         with self._until(time):
             if to_event:
-                reached, found = self._search.advance(self._time, time)
+                reached, found = self._event_search().advance(self._time, time)
             else:
                 advance(self._solver, time)
         self._time = reached
         return found
+
+    def _event_search(self) -> EventSearch:
+        if self._search is None:
+            from .events.search import EventSearch
+
+            stroke_max = self.parameters.main_strut.stroke_max
+            self._search = EventSearch(self._solver, self._order, stroke_max)
+        return self._search
 
     def _move_ground(self, time: float, step_end: float, *, to_event: bool) -> bool:
         """Begin and end motions of the ground to new positions until `time` [s], or to an event.
