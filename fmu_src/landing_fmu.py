@@ -222,6 +222,32 @@ class RlvLanding(Fmi2Slave):
         An integrator that fails within the step is an error and ends the landing: outputs and
         steps are errors until the importer restores a state or resets.
         """
+        return bool(self._part(current_time, step_size, math.inf, to_event=False))
+
+    @log_exceptions
+    def do_part(
+        self, current_time: float, step_size: float, stop: float, to_event: float
+    ) -> list[float]:
+        """Integrate within the step from `current_time` to `current_time + step_size` [s].
+
+        The front leaves a step of FMI 3.0 at events, and for intermediate updates. What is refused
+        and what ends the landing are as for `do_step`.
+
+        Args:
+            current_time: Where the step, or what is left of it, starts [s].
+            step_size: Its length [s].
+            stop: Where to leave it at the latest [s]; infinite for its end.
+            to_event: Above 0: leave it at the first event.
+
+        Returns:
+            The time reached [s], which is `stop` or that of an event before, and 1 if there is an
+            event, else 0. Nothing if the step is refused or fails.
+        """
+        return self._part(current_time, step_size, stop, to_event=to_event > 0.0)
+
+    def _part(
+        self, current_time: float, step_size: float, stop: float, *, to_event: bool
+    ) -> list[float]:
         try:
             landing = self._current_landing()
             if not 0.0 < step_size < math.inf:
@@ -237,16 +263,19 @@ class RlvLanding(Fmi2Slave):
             self._apply_inputs()
         except LandingError as e:
             self.log(str(e), Fmi2Status.error if self._failure else Fmi2Status.discard)
-            return False
+            return []
         self._inputs, self._rates = {}, {}
+        step_end = max(now + step_size, landing.time)
+        until = min(max(stop - self._start_time, landing.time), step_end)
         try:
             self._outputs = []
-            landing.advance_to(max(now + step_size, landing.time))
+            event = landing.advance_within_step(until, step_end, to_event=to_event)
         except LandingError as e:
             self._failure = f"{e}; the landing has ended there: restore a state, or reset"
             self.log(self._failure, Fmi2Status.error)
-            return False
-        return True
+            return []
+        early = landing.time < until
+        return [min(self._start_time + landing.time, stop) if early else stop, float(event)]
 
     def _current_landing(self) -> Landing:
         if self._failure:
