@@ -7,6 +7,7 @@ package has. pythonfmu's own binaries are left out.
 from __future__ import annotations
 
 import hashlib
+import platform
 import shutil
 import sysconfig
 import tempfile
@@ -22,6 +23,8 @@ from .fronts.header import FRONT, front_identity, neutral_header, variables_head
 # FMI's C headers, which FMPy has; it takes long to import
 _FMPY = find_spec("fmpy")
 HEADERS = Path((_FMPY.origin if _FMPY else None) or "fmpy").parent / "c-code"
+# the folder of a platform's binary in FMI 3.0, by that in FMI 2.0
+FOLDERS_OF_FMI3 = {"linux64": f"{platform.machine()}-linux", "win64": "x86_64-windows"}
 FLAGS = ["-std=c11", "-O2", "-fvisibility=hidden", "-Wall", "-Wextra", "-g0", "-s", "-shared"]
 
 
@@ -40,7 +43,7 @@ def makers(root: ElementTree.Element) -> dict[str, str]:
     ready = prebuilt.fronts(made_of(root))
     if ready:
         return {f.platform: hashlib.sha256(f.content).hexdigest() for f in ready}
-    return {platform: repr((c.name, c.flags, FLAGS)) for platform, c in compilers().items()}
+    return {system: repr((c.name, c.flags, FLAGS)) for system, c in compilers().items()}
 
 
 def front_sources() -> list[Path]:
@@ -48,11 +51,15 @@ def front_sources() -> list[Path]:
     return sorted(p for p in FRONT.iterdir() if p.suffix in (".c", ".h", ".py"))
 
 
-def replace_binaries(files: Path) -> dict[str, str]:
+def replace_binaries(
+    files: Path, root: ElementTree.Element | None = None, fmi: str = "2"
+) -> dict[str, str]:
     """Replace pythonfmu's binaries by the front.
 
     Args:
         files: Folder of the unpacked FMU.
+        root: Root of its description in FMI 2.0; by default that of its modelDescription.xml.
+        fmi: The FMU's version of FMI, 2 or 3. The front has the functions of both.
 
     Returns:
         The compiler for each platform.
@@ -60,34 +67,31 @@ def replace_binaries(files: Path) -> dict[str, str]:
     Raises:
         SystemExit: The front does not compile; the message has the compiler's output.
     """
-    root = ElementTree.parse(files / "modelDescription.xml").getroot()
+    if root is None:
+        root = ElementTree.parse(files / "modelDescription.xml").getroot()
     simulation = root.find("CoSimulation")
     assert simulation is not None
     name = simulation.attrib["modelIdentifier"]
     module = (files / "resources" / "slavemodule.txt").read_text().strip()
     shutil.rmtree(files / "binaries")
+
+    def place(system: str) -> Path:
+        folder = files / "binaries" / (FOLDERS_OF_FMI3[system] if fmi == "3" else system)
+        folder.mkdir(parents=True)
+        return folder / f"{name}{suffix(system)}"
+
     ready = prebuilt.fronts(made_of(root))
-    if ready:
-        identity = front_identity(root, module)
-        for front in ready:
-            target = _place(files, front.platform, name)
-            target.write_bytes(prebuilt.identified(front.content, identity))
-        return {front.platform: front.compiler for front in ready}
-    return compile_fronts(
-        variables_header(root, module), lambda platform: _place(files, platform, name)
-    )
+    if not ready:
+        return compile_fronts(variables_header(root, module), place)
+    identity = front_identity(root, module)
+    for front in ready:
+        place(front.platform).write_bytes(prebuilt.identified(front.content, identity))
+    return {front.platform: front.compiler for front in ready}
 
 
-def _place(files: Path, platform: str, name: str) -> Path:
-    """The front's file for a platform, in its folder, which is made."""
-    target = files / "binaries" / platform / f"{name}{suffix(platform)}"
-    target.parent.mkdir(parents=True)
-    return target
-
-
-def suffix(platform: str) -> str:
+def suffix(system: str) -> str:
     """The ending of a shared library of one of FMI's platforms."""
-    return ".dll" if platform.startswith("win") else ".so"
+    return ".dll" if system.startswith("win") else ".so"
 
 
 def made_of(root: ElementTree.Element) -> bytes:
@@ -120,11 +124,11 @@ def compile_fronts(header: str, place: Callable[[str], Path]) -> dict[str, str]:
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         folder = Path(name)
         (folder / "variables.h").write_text(header)
-        for platform, compiler in compilers().items():
-            made = folder / f"front{suffix(platform)}"
+        for system, compiler in compilers().items():
+            made = folder / f"front{suffix(system)}"
             compile_front(made, folder, compiler)
-            shutil.copy(made, place(platform))
-            used[platform] = compiler.name
+            shutil.copy(made, place(system))
+            used[system] = compiler.name
     return used
 
 

@@ -25,11 +25,13 @@ from rlv_landing.text.durable import write_durably, writing
 
 from .binary import record_libpython, replace_binaries
 from .description import describe
+from .description3 import describe3
 from .identity import NO_GUID, identify
 from .pages.documentation import write_documentation
 from .sources import ROOT, compiled_cores, copy_sources, source_date
+from .terminals import write_terminals
 from .trial import check, expected
-from .wanted import MODEL_NAME, Wanted
+from .wanted import FMI_VERSIONS, MODEL_NAME, Wanted
 
 # pythonfmu's command line, CSV tool and builder, which no slave needs
 NOT_NEEDED = ("__main__.py", "csvbuilder.py", "deploy.py", "builder.py", "osutil.py")
@@ -104,16 +106,19 @@ def take_pythonfmu(own: Path, package: Path) -> None:
     slave.write_text(re.sub(r"^from pythonfmu", "from .pythonfmu", slave.read_text(), flags=re.M))
 
 
-def write_description(files: Path, date: datetime, wanted: Wanted) -> ElementTree.Element:
-    """Complete pythonfmu's modelDescription.xml in `files`; return its root."""
-    path = files / "modelDescription.xml"
-    tree = ElementTree.parse(path)
-    root = tree.getroot()
+def complete_description(files: Path, date: datetime, wanted: Wanted) -> ElementTree.Element:
+    """The root of pythonfmu's modelDescription.xml in `files`, completed."""
+    root = ElementTree.parse(files / "modelDescription.xml").getroot()
     root.set("guid", NO_GUID)
     describe(root, date.strftime("%Y-%m-%dT%H:%M:%SZ"), wanted)
-    ElementTree.indent(tree, "\t")
-    tree.write(path, encoding="UTF-8", xml_declaration=True)
     return root
+
+
+def write_description(files: Path, root: ElementTree.Element) -> None:
+    """Write the modelDescription.xml with this root."""
+    tree = ElementTree.ElementTree(root)
+    ElementTree.indent(tree, "\t")
+    tree.write(files / "modelDescription.xml", encoding="UTF-8", xml_declaration=True)
 
 
 def pack(files: Path, target: Path, date: datetime) -> None:
@@ -149,10 +154,14 @@ def build(target: Path, wanted: Wanted) -> list[str]:
         folder = Path(name)
         files, package, script = build_with_pythonfmu(folder, wanted)
         record_libpython(files)
-        root = write_description(files, date, wanted)
-        write_documentation(files, root, wanted)
-        identify(files, package.name, script)
-        compilers = replace_binaries(files)
+        root = complete_description(files, date, wanted)
+        description = describe3(root) if wanted.fmi == "3" else root
+        write_description(files, description)
+        write_documentation(files, description, wanted)
+        if wanted.fmi == "3":
+            write_terminals(files, description)
+        root.set("guid", identify(files, package.name, script, root))
+        compilers = replace_binaries(files, root, wanted.fmi)
         made = folder / "made.fmu"
         pack(files, made, date)
         found = check(made, wanted, ends)
@@ -180,8 +189,13 @@ def main() -> None:
         "file",
         nargs="?",
         type=Path,
-        default=ROOT / "build" / f"{MODEL_NAME}.fmu",
-        help="the FMU's file [default: build/RlvLanding.fmu]",
+        help="the FMU's file [default: build/RlvLanding.fmu, for FMI 3.0 build/RlvLanding3.fmu]",
+    )
+    parser.add_argument(
+        "--fmi",
+        choices=FMI_VERSIONS,
+        default=FMI_VERSIONS[0],
+        help="version of FMI: 2.0 or 3.0, both for co-simulation [default: 2]",
     )
     parser.add_argument(
         "--pure",
@@ -189,7 +203,9 @@ def main() -> None:
         help="leave the compiled core out: the same digits, ten times as slow",
     )
     arguments = parser.parse_args()
-    for line in build(arguments.file, Wanted(pure=arguments.pure)):
+    wanted = Wanted(fmi=arguments.fmi, pure=arguments.pure)
+    name = f"{MODEL_NAME}{'3' if wanted.fmi == '3' else ''}.fmu"
+    for line in build(arguments.file or ROOT / "build" / name, wanted):
         print(line)
 
 

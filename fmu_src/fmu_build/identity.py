@@ -19,13 +19,13 @@ NO_GUID = "00000000-0000-0000-0000-000000000000"
 TAG_LENGTH = 12
 
 
-def digest(files: Path) -> bytes:
+def digest(files: Path, root: ElementTree.Element) -> bytes:
     """SHA-256 of the FMU's files, without pythonfmu's binaries, and of the front's sources.
 
     Args:
         files: Folder of the unpacked FMU, with NO_GUID for the GUID.
+        root: Root of its description in FMI 2.0.
     """
-    root = ElementTree.parse(files / "modelDescription.xml").getroot()
     made_from = {"front": made_of(root)} | {
         f"compiler/{platform}": text.encode() for platform, text in makers(root).items()
     }
@@ -41,18 +41,19 @@ def digest(files: Path) -> bytes:
     return found.digest()
 
 
-def identify(files: Path, package: str, script: str) -> str:
+def identify(files: Path, package: str, script: str, root: ElementTree.Element) -> str:
     """Put the GUID in its places, and the tag of the build at the end of the modules' names.
 
     Args:
         files: Folder of the unpacked FMU, with NO_GUID for the GUID.
         package: Name of the package in `resources`.
         script: Name of pythonfmu's script there, without `.py`, which imports the package.
+        root: Root of the description in FMI 2.0.
 
     Returns:
         The GUID.
     """
-    found = digest(files)
+    found = digest(files, root)
     guid = str(uuid.UUID(bytes=found[:16], version=5))
     tag = found.hex()[:TAG_LENGTH]
     for path in (files / "modelDescription.xml", files / "documentation" / "index.html"):

@@ -56,6 +56,6 @@ def test_windows_library_compiles_without_a_warning_exports_what_linuxs_does_and
         check=True,
     )
     of_linux = {line.split()[-1] for line in listed.stdout.splitlines()}
-    assert len(of_linux) == 44
+    assert {"fmi2DoStep", "fmi3DoStep"} < of_linux
     assert exports == of_linux
     assert {name for name in needs if not name.startswith("api-ms-win-crt-")} <= OF_WINDOWS
