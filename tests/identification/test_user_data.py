@@ -24,7 +24,7 @@ from rlv_landing.identification.search_folder import Best, SearchFolder
 from rlv_landing.identification.targets import Landed, Wanted, fit_of
 from rlv_landing.presets import read_toml
 from rlv_landing.studies.sweep.responses import Measure
-from rlv_landing.studies.whole_landing import LATEST, whole_landing
+from rlv_landing.studies.whole_landing import whole_landing
 from rlv_landing.validation.sensors import through_sensors
 
 BASE = load_preset("yue2022-figures")
@@ -42,7 +42,7 @@ def targets(folder: Path, text: str) -> Path:
 def whole() -> History:
     """The preset's landing in 2-2 until it is decided, as a sweep has it."""
     own = BASE.for_mode("2-2")
-    return whole_landing(Landing(own), own.drop.contact_time + LATEST, 2e-4)
+    return whole_landing(Landing(own), every=2e-4)
 
 
 @pytest.mark.parametrize(

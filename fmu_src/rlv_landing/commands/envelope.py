@@ -83,7 +83,7 @@ STUDY = click.Path(path_type=Path)
     "--until",
     type=Number("s"),
     metavar="S",
-    help="End of a landing that neither rests nor topples [default: 6].",
+    help="End of a landing that neither rests nor topples [default: 60 after contact].",
 )
 @click.option(
     "--work",

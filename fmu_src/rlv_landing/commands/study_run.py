@@ -154,14 +154,13 @@ def _check_effort(task: Task, options: RunOptions) -> None:
         LandingError: They need too much. The time on a cluster is not known here.
     """
     from ..studies.study_effort import check_landings
-    from ..studies.whole_landing import LATEST
     from ..workers import default_workers
 
     plan = task.plan
     check_landings(
         len(task),
         options.workers or default_workers(),
-        LATEST if plan.until is None else plan.until,
+        plan.until,
         plan.every,
         decided=plan.until is None,
         timed=options.scheduler is None,
