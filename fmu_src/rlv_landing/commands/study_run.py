@@ -16,7 +16,7 @@ from ..errors import LandingError, one_line
 from ..text.durable import unwritable
 from .number_types import NumberRange, WholeNumber
 from .options import add_options
-from .printing import print_warning
+from .printing import exit_code, print_warning
 
 if TYPE_CHECKING:
     from ..studies.sweep.result_files import Results
@@ -195,7 +195,8 @@ def _run_or_exit(task: Task, results: Results, engine: Engine, *, strict: bool) 
         except KeyboardInterrupt:
             reason, status = "interrupted", INTERRUPTED
         except OSError as e:
-            reason, status = f"error: {unwritable(results.folder, e, 'make room')}", FAILED
+            refused = unwritable(results.folder, e, "name another by --results", kept=True)
+            reason, status = f"error: {refused}", exit_code(e)
         except (LostError, LandingError) as e:
             reason, status = f"error: {e}", FAILED
     click.echo(

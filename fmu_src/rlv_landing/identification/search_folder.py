@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from ..errors import LandingError
-from ..text.durable import FolderLock, write_durably
+from ..text.durable import FolderLock, refuse_no_files, write_durably
 from ..text.files import check_sum, read_record
 from .global_search import GlobalSearch
 from .objective import Objective
@@ -128,6 +128,7 @@ class SearchFolder:
             )
         self._lock = FolderLock(self.folder, ANOTHER)
         try:
+            refuse_no_files(self.folder, RESULTS, ANOTHER)
             return self._load()
         except LandingError:
             self.release()

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rlv_landing.errors import LandingError
+from rlv_landing.text.durable import unwritable
 from rlv_landing.text.files import shown_name
 
 from .bag_writer import BagTopic, BagWriter
@@ -99,9 +100,7 @@ def recover(path: Path, folder: Path | None = None) -> Recovery:
     try:
         writer = BagWriter(target)
     except OSError as e:
-        raise LandingError(
-            f"log folder {target} cannot be written: {e.strerror or e}; name another"
-        ) from None
+        raise unwritable(target, e, what="log folder ") from None
     try:
         copy = _Copy(writer, found)
         for file in files:
@@ -112,10 +111,7 @@ def recover(path: Path, folder: Path | None = None) -> Recovery:
     except BaseException as e:
         writer.discard()
         if isinstance(e, OSError):
-            raise LandingError(
-                f"log folder {target} cannot be written: {e.strerror or e}; "
-                "make room, or name another"
-            ) from None
+            raise unwritable(target, e, what="log folder ") from None
         raise
     found.folder = str(target)
     return found
