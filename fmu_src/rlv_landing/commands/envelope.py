@@ -197,7 +197,7 @@ def _override(document: dict[str, Any], options: dict[str, Any]) -> None:
         keys.pop("preset", None)
         keys.pop("parameters", None)
     top = {
-        "parameters": None if file is None else str(Path(file).resolve()),
+        "parameters": None if file is None else str(Path.cwd() / file),
         **{
             key: options[key] for key in ("preset", "mode", "criterion", "cells", "levels", "until")
         },

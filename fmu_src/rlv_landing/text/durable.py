@@ -131,11 +131,17 @@ def unwritable(
         what: The word for it, with a blank.
     """
     named = error.filename2 or error.filename
-    name = os.fsdecode(named) if isinstance(named, (str, bytes)) and os.path.isdir(path) else path
+    name = os.fsdecode(named) if isinstance(named, (str, bytes)) and _is_folder(path) else path
     return LandingError(
         f"{what}{name} cannot be written: {error.strerror or error}; "
         f"{_remedy(error, remedy, kept=kept)}"
     )
+
+
+def _is_folder(path: Path) -> bool:
+    with suppress(OSError):
+        return path.is_dir()
+    return False
 
 
 def _remedy(error: OSError, remedy: str, *, kept: bool) -> str:

@@ -13,10 +13,13 @@ import re
 import sys
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from io import TextIOWrapper
 from pathlib import Path
 from typing import Any, TextIO
 
 from ..errors import LandingError
+from .pipes import is_pipe, open_input
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -34,6 +37,8 @@ _BYTE_ORDER_MARKS = {
     codecs.BOM_UTF16_LE: "UTF-16",
     codecs.BOM_UTF16_BE: "UTF-16",
 }
+_keeping: list[bool] = []
+_kept: dict[Path, bytes] = {}
 _SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "strokes"}
 
 
@@ -50,8 +55,7 @@ def read_text(path: Path, what: str, missing: str = "") -> str:
             has NUL characters.
     """
     try:
-        with path.open("rb") as file:
-            data = file.read(LARGEST_TEXT + 1)
+        data = _content(path)
     except FileNotFoundError:
         raise LandingError(missing or f"there is no {what} {path}") from None
     except (OSError, ValueError) as e:
@@ -65,6 +69,29 @@ def read_text(path: Path, what: str, missing: str = "") -> str:
     if "\0" in text:
         raise _with_nuls(what, path)
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _content(path: Path) -> bytes:
+    """The bytes of a file, as far as a text may be large."""
+    if path in _kept:
+        return _kept[path]
+    pipe = is_pipe(path)
+    with open_input(path) as file:
+        data = file.read(LARGEST_TEXT + 1)
+    if pipe and _keeping:
+        _kept[path] = data
+    return data
+
+
+@contextmanager
+def pipes_kept() -> Iterator[None]:
+    """Texts of pipes that the body reads are kept, so that it can read them again."""
+    _keeping.append(True)
+    try:
+        yield
+    finally:
+        _keeping.pop()
+        _kept.clear()
 
 
 def unreadable(what: str, path: Path, error: Exception, start: bytes = b"") -> LandingError:
@@ -192,7 +219,7 @@ def read_csv(path: Path, what: str, missing: str = "") -> Iterator[tuple[int, li
             its first row is separated by semicolons, tabs or strokes.
     """
     try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
+        with open_input(path) as data, TextIOWrapper(data, "utf-8-sig", newline="") as file:
             rows = csv.reader(_lines(file, what, path))
             first = True
             for row in rows:
@@ -227,6 +254,8 @@ def _with_nuls(what: str, path: Path) -> LandingError:
 
 def _start(path: Path) -> bytes:
     try:
+        if not path.is_file():
+            return b""
         with path.open("rb") as file:
             return file.read(4)
     except (OSError, ValueError):
