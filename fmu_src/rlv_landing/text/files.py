@@ -20,6 +20,7 @@ from typing import Any, TextIO
 
 from ..errors import LandingError
 from .pipes import is_pipe, open_input
+from .units import is_zero
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -161,7 +162,10 @@ def parse_document(text: str, name: str) -> dict[str, Any]:
     if max(part.count(".") for part in re.split(r"[\n,=\[\]{}#]", plain)) > DEEPEST:
         raise LandingError(f"{name}: TOML syntax: a key has more than {DEEPEST} parts")
     try:
-        document = tomllib.loads(text)
+        # a number that a float cannot tell from 0 is refused
+        document = tomllib.loads(text, parse_float=_toml_float)
+    except LandingError as e:
+        raise LandingError(f"{name}: {e}") from None
     except RecursionError:
         raise LandingError(f"{name}: tables and lists are nested too deep; {DEEPEST} fit") from None
     except tomllib.TOMLDecodeError as e:
@@ -171,6 +175,13 @@ def parse_document(text: str, name: str) -> dict[str, Any]:
         raise LandingError(f"{name} has {_TOO_LARGE}") from None
     _check_size(document, name)
     return document
+
+
+def _toml_float(text: str) -> float:
+    value = float(text)
+    if value == 0.0 and not is_zero(text):
+        raise LandingError(f"{text} is below the smallest number, 4.9e-324; write 0")
+    return value
 
 
 def _check_size(document: dict[str, Any], name: str) -> None:
