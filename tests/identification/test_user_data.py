@@ -291,11 +291,15 @@ def test_a_start_that_is_moved_to_a_bound_is_said(tmp_path, monkeypatch, command
 
 def test_priors_are_those_of_the_vehicle(command):
     own, other = (
-        {line.split()[0]: line for line in command("identify", "--priors", *extra).out.splitlines()}
+        {
+            line.split()[1]: line
+            for line in command("identify", "--priors", *extra).out.splitlines()
+            if line.startswith("│")
+        }
         for extra in ((), ("--set", "vehicle.mass=2000", "--set", "vehicle.inertia=5000"))
     )
     assert "178 kg between the auxiliary joints" in own["vehicle.inertia"]
-    assert "2500 ... 1e+04" in other["vehicle.inertia"]
+    assert other["vehicle.inertia"].split()[3:6:2] == ["2500", "1e+04"]
     assert "the start, a factor of 2 to either side" in other["vehicle.inertia"]
 
 

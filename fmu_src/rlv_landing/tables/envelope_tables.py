@@ -7,7 +7,7 @@ from ..quantities import shown
 from ..studies.envelope.results import NAMES, lost_text, stretches, verdict
 from ..studies.envelope.search import Envelope, Family
 from ..studies.sweep.factors import value_text
-from .landing import new_table, render
+from .rendering import new_table, render
 
 
 def envelope_tables(found: Envelope) -> str:
