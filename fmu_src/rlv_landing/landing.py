@@ -142,9 +142,9 @@ class Landing:
         (of `step`, `advance_to`, or the first `every` of `run`). So positions without rates are a
         motion that is linear between them, one interval late, also if a position is set again at
         each step until it changes. If intervals vary, the longest counts, until one is less than
-        0.45 of it. After more than 0.25 s without a new position the interval from before counts,
-        or, if there was none, the next step. A position that is set again, unchanged, together with
-        its rate is no new position, unless the rate is 0.
+        0.45 of it. The start counts as a position, and an interval of more than 1 s as 1 s. A
+        position that is set again, unchanged, together with its rate is no new position, unless the
+        rate is 0.
 
         Raises LandingError for an unknown name, NaN, a value out of bounds, or, at time 0, a flight
         in which a footpad would pass below the ground; nothing is changed then.

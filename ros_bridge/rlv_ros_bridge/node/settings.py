@@ -77,8 +77,8 @@ SETTINGS: dict[str, Setting] = {
     "step_count": Setting(1, "steps that one call of ~/step does", 1.0, 1e6, "always"),
     "input_timeout": Setting(
         0.5,
-        "wall time [s] without a message after which external_wrench becomes 0 and ground stops; "
-        "0: never",
+        "wall time [s] without a message after which external_wrench becomes 0 and a velocity of "
+        "ground ends; 0: never",
         0.0,
         3600.0,
         "always",
