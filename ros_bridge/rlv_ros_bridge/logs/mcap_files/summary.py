@@ -130,7 +130,8 @@ def _read(file: IO[bytes], path: Path, size: int) -> Summary | None:
     if zlib.crc32(covered) != checksum:
         return None
     # Where bytes were inserted or lost, the data do not end where the footer says.
-    if read_record(file, start - DATA_END_BYTES, size)[0] != DATA_END:
+    opcode, body = read_record(file, start - DATA_END_BYTES, size)
+    if opcode != DATA_END or file.tell() != start:
         return None
     found = Summary(path, ours, None)
     others: list[int] = []
