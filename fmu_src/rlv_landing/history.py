@@ -127,10 +127,11 @@ class History:
         with whole_file(Path(path)) as file, text_of(file) as text:
             self.write_csv(text)
 
-    def write_csv(self, file: TextIO) -> None:
-        """Write all columns to an open CSV file, SI units, full precision."""
+    def write_csv(self, file: TextIO, *, heading: bool = True) -> None:
+        """Write all columns to an open CSV file, SI units, full precision, names first."""
         writer = csv.writer(file)
-        writer.writerow(list(self))
+        if heading:
+            writer.writerow(list(self))
         for first in range(0, len(self), ROWS_AT_ONCE):
             part = slice(first, first + ROWS_AT_ONCE)
             for t, row in zip(self.time[part].tolist(), self.data[part].tolist()):

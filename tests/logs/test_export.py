@@ -20,9 +20,12 @@ from rlv_landing.history import History
 from rlv_landing.summary import summarise
 from rlv_landing.tables.landing import comparison_table
 from rlv_landing.validation.measures import leg_work
-from rlv_ros_bridge.logs.export import select_rows
-from rlv_ros_bridge.logs.history import log_history
+from rlv_ros_bridge.logs import history as history_module
+from rlv_ros_bridge.logs.history import HistoryParts, log_history, with_parts
+from rlv_ros_bridge.logs.instants import RowChoice
 from rlv_ros_bridge.logs.reader import LogReader
+from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.messages.qos import TELEMETRY
 
 START = 1_790_000_000_000_000_000
 
@@ -80,6 +83,11 @@ def test_a_log_is_the_landings_history_and_every_plot_and_measure_takes_it(
     )
     assert summarise(history)["legs"] == summarise(landing)["legs"]
     assert leg_work(history) == leg_work(landing)
+
+
+def taken(history: History, every: float) -> list[float]:
+    choice = RowChoice(every=every)
+    return [time for time in history.time.tolist() if choice.takes(time)]
 
 
 def pick(landing: History, history: History) -> np.ndarray:
@@ -159,8 +167,8 @@ def test_topics_span_and_step_choose_rows_and_columns(one_log: Path, tmp_path: P
     assert [round(1e3 * float(row.split(",")[0])) for row in rows[1:]] == list(range(100, 501, 10))
     whole = log_history(one_log)
     # Every 2.5 ms of 1 ms samples: the first instant in each, none interpolated.
-    assert np.allclose(select_rows(whole, every=0.0025).time[:5], [0.0, 0.003, 0.005, 0.008, 0.01])
-    same(select_rows(whole, every=1e-9), whole)
+    assert np.allclose(taken(whole, 0.0025)[:5], [0.0, 0.003, 0.005, 0.008, 0.01])
+    assert taken(whole, 1e-9) == whole.time.tolist()
 
 
 def test_a_cut_log_is_exported_as_far_as_it_goes(one_log: Path, tmp_path: Path) -> None:
@@ -246,3 +254,41 @@ def test_a_file_that_is_no_recording_is_refused_in_one_line(tmp_path: Path) -> N
             done = run(*line)
             assert message in one_error_line(done)
             assert done.returncode == 2
+
+
+@pytest.mark.parametrize("size", [1, 7, 500, 10_000])
+def test_a_log_read_in_parts_of_any_size_is_the_same(
+    one_log: Path, monkeypatch, tmp_path: Path, size: int
+) -> None:
+    whole = log_history(one_log)
+    monkeypatch.setattr(history_module, "ROWS_AT_ONCE", size)
+    found = log_history(one_log)
+    same(found, whole)
+    assert found.extremes == whole.extremes
+    sizes: list[int] = []
+
+    def read(parts: HistoryParts) -> None:
+        sizes.extend(len(part) for part in parts)
+
+    with_parts(LogReader(one_log), (), RowChoice(), read)
+    assert sum(sizes) == len(whole)
+    assert max(sizes) == min(size, len(whole))
+
+
+def test_a_recording_whose_topics_follow_each_other_is_read_all_the_same(
+    one_log: Path, monkeypatch, tmp_path: Path
+) -> None:
+    """Such as one whose topics are minutes apart: no part of it has all topics."""
+    reader = LogReader(one_log)
+    messages = list(reader.messages())
+    recorder = Recorder(
+        tmp_path / "sorted",
+        [RecordedTopic(c.topic, c.type_name, TELEMETRY) for c in reader.channels.values()],
+        reader.metadata,
+        reader.attachments,
+    )
+    for message in sorted(messages, key=lambda m: m.topic):
+        recorder.write(message.topic, message.log_time, message.data)
+    recorder.close()
+    monkeypatch.setattr(history_module, "ROWS_AT_ONCE", 100)
+    same(log_history(tmp_path / "sorted"), log_history(one_log))

@@ -178,9 +178,13 @@ def export(
 
     Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged.
     """
+    from rlv_landing.history import History
+
+    from ..fmu.peaks import known_extremes
     from ..logs.bag_reader import open_log
-    from ..logs.export import ENDINGS, select_rows, write_history
-    from ..logs.history import read_history
+    from ..logs.export import ENDINGS, Written, write_parts
+    from ..logs.history import HistoryParts, with_parts
+    from ..logs.instants import RowChoice
 
     if output is None and plot is None:
         raise LandingError(
@@ -193,17 +197,28 @@ def export(
     if plot is not None and topics:
         raise LandingError("--plot needs every topic; leave --topics out")
     reader = open_log(log)
-    history, notes = read_history(reader, split_names(topics))
-    history = select_rows(history, **span)
+    choice = RowChoice(**span)
+    notes: list[str] = []
     if output is not None:
-        write_history(history, output)
+
+        def write(parts: HistoryParts) -> tuple[Written, list[str]]:
+            peaks = parts.peaks()
+            return write_parts(
+                parts, output, known_extremes(peaks) if peaks else None
+            ), parts.notes()
+
+        done, notes = with_parts(reader, split_names(topics), choice, write)
         click.echo(
-            f"{output}: {len(history)} instants from {history.time[0]:g} s to "
-            f"{history.time[-1]:g} s, {len(history.names)} columns"
+            f"{output}: {done.rows} instants from {done.first:g} s to {done.last:g} s, "
+            f"{done.columns} columns"
         )
     if plot is not None:
         from rlv_landing.figures.plots import save_overview
 
+        def read(parts: HistoryParts) -> tuple[History, list[str]]:
+            return parts.joined(), parts.notes()
+
+        history, notes = with_parts(reader, (), choice, read)
         with writing(plot):
             save_overview(history, plot, shown_name(log))
         click.echo(f"picture: {plot}")

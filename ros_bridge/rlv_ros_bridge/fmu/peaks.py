@@ -13,20 +13,24 @@ from rlv_landing.quantities import PEAKS
 Found = tuple[float, float]
 
 
-def known_extremes(found: Mapping[str, Found], history: History) -> dict[str, Extreme]:
+def known_extremes(
+    found: Mapping[str, Found], history: History | None = None
+) -> dict[str, Extreme]:
     """The extremes of the outputs that have a known peak, by output.
 
     The side that is not known is that of the samples; NaN for an output without a column.
 
     Args:
         found: Value and time of each peak by `OUTPUT.SIDE`.
-        history: The samples.
+        history: The samples; None: what is not known is NaN.
     """
     extremes: dict[str, Extreme] = {}
     for output in dict.fromkeys(p.output for p in PEAKS):
         low, high = found.get(f"{output}.min"), found.get(f"{output}.max")
         if low is None and high is None:
             continue
-        sampled = history.extreme(output) if output in history else Extreme(nan, nan, nan, nan)
+        sampled = Extreme(nan, nan, nan, nan)
+        if history is not None and output in history:
+            sampled = history.extreme(output)
         extremes[output] = Extreme(*(low or sampled[:2]), *(high or sampled[2:]))
     return extremes

@@ -5,9 +5,10 @@ Values are SI, in the paper's axes.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -15,15 +16,18 @@ from rlv_landing.errors import LandingError
 from rlv_landing.history import History
 from rlv_landing.text.units import parse_number
 
-from ..fmu.peaks import known_extremes
+from ..fmu.peaks import Found, known_extremes
 from ..messages.columns import READINGS
 from ..messages.topics import RECORDED, resolve
 from .bag_reader import open_log
+from .instants import OrderError, RowChoice, instants
 from .peaks import read_peaks
 from .reader import Decoder, LogReader
 
 TYPES = {t.name: t.type_name for t in RECORDED}
-NANOSECONDS = 1_000_000_000
+# Rows of a part of a history.
+ROWS_AT_ONCE = 1000
+Result = TypeVar("Result")
 
 
 def log_history(path: str | Path, topics: Sequence[str] = ()) -> History:
@@ -51,32 +55,127 @@ def history_of(reader: LogReader) -> History:
 
 def read_history(reader: LogReader, topics: Sequence[str] = ()) -> tuple[History, list[str]]:
     """As `log_history`, with notes on what was left out."""
-    reader.read_through()
+
+    def read(parts: HistoryParts) -> tuple[History, list[str]]:
+        return parts.joined(), parts.notes()
+
+    return with_parts(reader, topics, RowChoice(), read)
+
+
+def with_parts(
+    reader: LogReader,
+    topics: Sequence[str],
+    choice: RowChoice,
+    use: Callable[[HistoryParts], Result],
+) -> Result:
+    """What `use` makes of the landing in parts, as `log_history` reads them.
+
+    Parts are some thousand rows each, so that a long log takes no more memory than a short one. If
+    the instants of a log are too far out of order for that, `use` is called once more, with one
+    part of all rows.
+
+    Args:
+        reader: the log.
+        topics: as in `log_history`.
+        choice: the rows to take; it is reset.
+        use: what to do.
+    """
+    if not reader.read_summary():
+        reader.read_through()
     chosen = choose_topics(reader, topics)
-    names = [
-        name
-        for relative in READINGS
-        if relative in chosen.values()
-        for name in READINGS[relative][0]
-    ]
-    rows: dict[int, dict[str, Any]] = {}
-    decode = Decoder(reader)
-    for message in reader.messages(chosen):
-        columns, reading = READINGS[chosen[message.topic]]
-        decoded = decode(message)
-        rows.setdefault(_stamp(decoded), {}).update(zip(columns, reading(decoded)))
-    complete = [(t, row) for t, row in sorted(rows.items()) if len(row) == len(names)]
-    if not complete:
-        raise LandingError(
-            f"{reader.path} holds no landing: no instant has all of {', '.join(chosen.values())}"
+    try:
+        choice.reset()
+        return use(HistoryParts(reader, chosen, choice, ROWS_AT_ONCE))
+    except OrderError:
+        choice.reset()
+        return use(HistoryParts(reader, chosen, choice, sys.maxsize))
+
+
+class HistoryParts:
+    """The rows of a log in parts, each a `History`.
+
+    Args:
+        reader: the log, its summary or its whole read.
+        chosen: the topics: full name -> name relative to the landing's namespace.
+        choice: the rows to take.
+        size: rows of a part, and instants by which messages may be out of order.
+    """
+
+    def __init__(
+        self, reader: LogReader, chosen: Mapping[str, str], choice: RowChoice, size: int
+    ) -> None:
+        self._reader, self._chosen, self._choice, self._size = reader, chosen, choice, size
+        self._incomplete = 0
+        self.names = [
+            name
+            for relative in READINGS
+            if relative in chosen.values()
+            for name in READINGS[relative][0]
+        ]
+        self.parameters = reader.parameters()
+
+    def __iter__(self) -> Iterator[History]:
+        """The parts in the order of time.
+
+        Raises:
+            LandingError: there is no row, or a message is of another layout.
+            OrderError: messages are out of order by more than the size of a part.
+        """
+        times: list[float] = []
+        rows: list[list[float]] = []
+        decode = Decoder(self._reader)
+        self._incomplete, count = 0, 0
+        for nanoseconds, messages in instants(self._reader, self._chosen, decode, self._size):
+            if len(messages) < len(self._chosen):
+                self._incomplete += 1
+                continue
+            time = _seconds(self._reader, nanoseconds)
+            if not self._choice.takes(time):
+                continue
+            row: dict[str, Any] = {}
+            for topic, message in messages.items():
+                columns, reading = READINGS[self._chosen[topic]]
+                row.update(zip(columns, reading(decode(message))))
+            times.append(time)
+            rows.append([float(row[name]) for name in self.names])
+            count += 1
+            if len(rows) >= self._size:
+                yield self._history(times, rows)
+                times, rows = [], []
+        if rows:
+            yield self._history(times, rows)
+        if not count:
+            self._choice.refuse()
+            raise LandingError(
+                f"{self._reader.path} holds no landing: no instant has all of "
+                f"{', '.join(self._chosen.values())}"
+            )
+
+    def _history(self, times: list[float], rows: list[list[float]]) -> History:
+        return History(np.array(times), self.names, np.array(rows), self.parameters)
+
+    def peaks(self) -> dict[str, Found]:
+        """The peaks of the log's record by `OUTPUT.SIDE`; none where rows were chosen by time."""
+        if not self._reader.peaks or self._choice.is_part:
+            return {}
+        return read_peaks(self._reader.peaks, str(self._reader.path))[0]
+
+    def joined(self) -> History:
+        """All rows as one history, with the extremes of the log's record."""
+        parts = list(self)
+        history = History(
+            np.concatenate([p.time for p in parts]),
+            self.names,
+            np.concatenate([p.data for p in parts]),
+            self.parameters,
         )
-    times = np.array([_seconds(reader, t) for t, _ in complete])
-    data = np.array([[float(row[name]) for name in names] for _, row in complete])
-    history = History(times, names, data, reader.parameters())
-    if reader.peaks:
-        found, _ = read_peaks(reader.peaks, str(reader.path))
-        history.extremes = known_extremes(found, history)
-    return history, _notes(reader, chosen, len(rows) - len(complete))
+        if found := self.peaks():
+            history.extremes = known_extremes(found, history)
+        return history
+
+    def notes(self) -> list[str]:
+        """What was left out, after all parts have been read."""
+        return _notes(self._reader, self._chosen, self._incomplete)
 
 
 def choose_topics(reader: LogReader, topics: Sequence[str]) -> dict[str, str]:
@@ -109,18 +208,13 @@ def choose_topics(reader: LogReader, topics: Sequence[str]) -> dict[str, str]:
     return {name: relative for name, relative in readable.items() if name in chosen}
 
 
-def _notes(reader: LogReader, chosen: dict[str, str], incomplete: int) -> list[str]:
+def _notes(reader: LogReader, chosen: Mapping[str, str], incomplete: int) -> list[str]:
     own = f"/{reader.namespace.strip('/')}/"
     ignored = [name.removeprefix(own) for name in reader.channels if name not in chosen]
     notes = [f"left aside: {', '.join(ignored)}"] if ignored else []
     if incomplete:
         notes.append(f"left out: {incomplete} instants that lack one of the topics")
     return notes
-
-
-def _stamp(message: Any) -> int:
-    stamp = message.header.stamp
-    return int(stamp.sec) * NANOSECONDS + int(stamp.nanosec)
 
 
 def _seconds(reader: LogReader, nanoseconds: int) -> float:

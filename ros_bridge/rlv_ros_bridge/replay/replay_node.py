@@ -6,7 +6,7 @@ import gc
 import math
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
@@ -22,7 +22,7 @@ from tqdm import tqdm
 
 from rlv_landing.errors import LandingError
 
-from ..logs.reader import LogReader
+from ..logs.reader import LogMessage, LogReader
 from ..messages import topics as landing_topics
 from ..messages.message_types import message_class
 from ..messages.qos import CLOCK, parse_qos
@@ -152,17 +152,20 @@ class ReplayNode(Node):
         gc.freeze()
         gc.disable()
         try:
+            messages = selection.begin()
             self._replay_clock.start(time.perf_counter())
             while not self._ended:
                 # One step of the log lies between the last message of a round and the first of the
                 # next.
-                count, whole = self._play_round(rounds * (selection.length + selection.step))
+                epoch = rounds * (selection.length + selection.step)
+                count, whole = self._play_round(messages, epoch)
                 played += count
                 if not whole:
                     break
                 rounds += 1
                 if not o.loop:
                     break
+                messages = selection.begin()
         finally:
             gc.enable()
             gc.unfreeze()
@@ -187,8 +190,10 @@ class ReplayNode(Node):
     def _ended(self) -> bool:
         return bool(self._stop) or self._quit
 
-    def _play_round(self, epoch: int) -> tuple[int, bool]:
-        """Plays the selection once, with `epoch` [ns] added to the stamps.
+    def _play_round(
+        self, messages: Generator[LogMessage, None, None], epoch: int
+    ) -> tuple[int, bool]:
+        """Plays `messages`, the selection once, with `epoch` [ns] added to the stamps.
 
         Returns:
             The messages played, and whether those were all.
@@ -198,7 +203,7 @@ class ReplayNode(Node):
         next_tick = epoch / 1e9 if self._clock_publisher is not None else math.inf
         count = 0
         with (
-            closing(iter(selection)) as messages,
+            closing(messages),
             tqdm(
                 total=selection.length / 1e9,
                 disable=not sys.stderr.isatty(),

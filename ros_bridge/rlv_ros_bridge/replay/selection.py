@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Generator, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -112,6 +113,19 @@ class Selection:
         self.channels = [c for c in reader.channels.values() if c.topic in chosen]
         self.names = remapped_names(reader, sorted(chosen), options.remap)
         self.length = last - self.first
+
+    def begin(self) -> Generator[LogMessage, None, None]:
+        """An iterator over the messages, the first of which is in memory already."""
+        messages = iter(self)
+        first = next(messages, None)
+
+        def given() -> Generator[LogMessage, None, None]:
+            with closing(messages):
+                if first is not None:
+                    yield first
+                    yield from messages
+
+        return given()
 
     def __iter__(self) -> Generator[LogMessage, None, None]:
         before = None
