@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import zipfile
-import zlib
 from collections.abc import Mapping, Sequence
 from operator import itemgetter
 from pathlib import Path
@@ -24,7 +22,7 @@ from rlv_landing.quantities import (
 )
 from rlv_landing.text.durable import writing
 
-from .description import MODEL_NAME, read_description, references
+from .description import MODEL_NAME, check_size, read_description, references
 from .folder import FmuFolder
 
 # fmi2Status.
@@ -84,9 +82,13 @@ class FmuRunner:
             self._folder = FmuFolder()
             unpacked = str(self._folder.path)
             try:
+                check_size(self.path)
                 extract(str(self.path), unzipdir=unpacked)
-            except (zipfile.BadZipFile, zlib.error, RuntimeError, ValueError) as e:
-                raise LandingError(f"{self.path} is damaged: {e}; build it again") from None
+            except (OSError, LandingError):
+                raise
+            except Exception as e:  # of a name that leads out of the folder, FMPy's has no type
+                reason = str(e).rstrip(".")
+                raise LandingError(f"{self.path} is damaged: {reason}; build it again") from None
         try:
             slave = FMU2Slave(
                 guid=description.guid,
