@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import shutil
+import signal
 import subprocess
 import sys
 
@@ -76,7 +77,7 @@ def test_a_build_that_is_ended_leaves_nothing(tmp_path):
         timeout=60,
         env={**os.environ, "CC": str(compiler), "TMPDIR": str(room)},
     )
-    assert done.returncode == 143, done.stderr
-    assert not done.stderr
+    assert done.returncode in (130, -signal.SIGINT), done.stderr
+    assert done.stderr == "interrupted\n"
     assert not list(room.iterdir())
     assert sorted(p.name for p in tmp_path.iterdir()) == ["cc", "room"]

@@ -1,11 +1,13 @@
-"""FMU files that `rlv-landing fmu simulate` refuses in one line."""
+"""FMU files that `rlv-landing fmu simulate` refuses in one line, and its end by Ctrl-C."""
 
 from __future__ import annotations
 
 import re
 import struct
+import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import FrameType
 from zipfile import ZipFile
 
 import pytest
@@ -13,6 +15,7 @@ import pytest
 from rlv_landing import LandingError
 from rlv_ros_bridge.commands.fmu import fmu as commands
 from rlv_ros_bridge.fmu.description import open_description
+from rlv_ros_bridge.fmu.runner import FmuRunner
 
 DESCRIPTION = "modelDescription.xml"
 
@@ -75,3 +78,17 @@ def test_a_description_that_would_fill_the_memory_is_refused(changed, command):
 def test_an_fmu_without_an_end_needs_one(changed):
     path = changed(lambda text: re.sub(rb"<DefaultExperiment[^>]*/>", b"", text))
     assert refusal("simulate", path).endswith("give one, for example --until 1")
+
+
+def test_ctrl_c_in_a_step_of_the_fmu_is_ctrl_c(fmu):
+    """It has ended the slave, so the instance cannot be terminated any more, only freed."""
+
+    def interrupt(frame: FrameType, event: str, _argument: object) -> None:
+        if event == "call" and frame.f_code.co_name == "do_step":
+            sys.setprofile(None)
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt), FmuRunner(fmu, {}) as runner:
+        sys.setprofile(interrupt)
+        runner.advance(0.0, 1e-3)
+    assert sys.getprofile() is None

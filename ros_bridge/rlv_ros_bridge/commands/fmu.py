@@ -22,7 +22,7 @@ from rlv_landing.errors import LandingError
 from rlv_landing.text.durable import writing
 from rlv_landing.text.files import shown_name
 
-from ..ros.interruption import exit_on_sigterm
+from ..ros.interruption import interrupt_on_sigterm
 
 if TYPE_CHECKING:
     from rlv_landing.history import History
@@ -111,7 +111,7 @@ def build(
     check_writable(target, ".fmu", force=force)
     from fmu_build.build import build as build_fmu
 
-    with exit_on_sigterm():
+    with interrupt_on_sigterm():
         lines = build_fmu(target, wanted)
     click.echo("\n".join(lines))
 
@@ -232,7 +232,7 @@ def simulate(
         raise LandingError(f"{output} must end in {' or '.join(ENDINGS)}")
     for path, ending in ((output, output.suffix if output else ""), (plot, ".png")):
         check_writable(path, ending, force=force)
-    with exit_on_sigterm():
+    with interrupt_on_sigterm():
         history, name = _landed(file, options)
     print_warning(warning_of(history))
     assert history.parameters is not None

@@ -114,7 +114,10 @@ def read_description(path: Path) -> Any:
             f"{BUILD}"
         )
     if description.fmiVersion != "2.0" or description.coSimulation is None:
-        raise LandingError(f"{path} is not an FMU for FMI 2.0 co-simulation; {BUILD}")
+        raise LandingError(
+            f"{path} is an FMU of FMI {description.fmiVersion}; FMI 2.0 for co-simulation is what "
+            "runs here: build it by `rlv-landing fmu build`, without `--fmi 3`"
+        )
     return description
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from operator import itemgetter
 from pathlib import Path
 from tempfile import gettempdir
@@ -280,12 +281,16 @@ class FmuRunner:
 
     def close(self) -> None:
         """Terminates and frees the instance, and removes its folder; may be called again."""
+        from fmpy.fmi1 import FMICallException
+
         slave = self._forget_instance()
         folder, self._folder = self._folder, None
         try:
             if slave is not None:
                 try:
-                    slave.terminate()
+                    # a slave that Ctrl-C has ended can be freed only
+                    with suppress(FMICallException):
+                        slave.terminate()
                 finally:
                     slave.freeInstance()
         finally:
