@@ -88,7 +88,11 @@ def test_ctrl_c_in_a_step_of_the_fmu_is_ctrl_c(fmu):
             sys.setprofile(None)
             raise KeyboardInterrupt
 
-    with pytest.raises(KeyboardInterrupt), FmuRunner(fmu, {}) as runner:
-        sys.setprofile(interrupt)
-        runner.advance(0.0, 1e-3)
+    def land() -> None:
+        with FmuRunner(fmu, {}) as runner:
+            sys.setprofile(interrupt)
+            runner.advance(0.0, 1e-3)
+
+    with pytest.raises(KeyboardInterrupt):
+        land()
     assert sys.getprofile() is None
