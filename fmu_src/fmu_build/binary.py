@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import platform
+import shlex
 import shutil
 import sysconfig
 import tempfile
@@ -164,10 +165,13 @@ def compile_front(target: Path, include: Path, compiler: Compiler) -> None:
             'install it with pip install "rlv-landing[fmu]"'
         )
     done = run(command, include)
-    if done.returncode != 0:
-        raise SystemExit(
-            f"error: the FMU's front does not compile: {' '.join(command)}\n{done.stderr}"
-        )
+    if done.returncode == 0 and target.is_file():
+        return
+    reason = f"exit code {done.returncode}" if done.returncode else "it has made no library"
+    raise SystemExit(
+        f"error: {shlex.join(compiler.command)} does not compile the FMU's front ({reason}); "
+        f"install ziglang or gcc, or name another compiler by CC\n{done.stderr}".strip()
+    )
 
 
 def record_libpython(files: Path) -> None:

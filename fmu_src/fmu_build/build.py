@@ -9,6 +9,8 @@ validates the FMU and simulates one landing before it replaces an older file.
 from __future__ import annotations
 
 import argparse
+import errno
+import os
 import re
 import sys
 import tempfile
@@ -21,7 +23,7 @@ from xml.etree import ElementTree
 
 from pythonfmu.builder import FmuBuilder
 
-from rlv_landing.text.durable import write_durably, writing
+from rlv_landing.text.durable import unwritable, write_durably, writing
 
 from .binary import record_libpython, replace_binaries
 from .description import describe
@@ -33,6 +35,8 @@ from .terminals import write_terminals
 from .trial import check, expected
 from .wanted import FMI_VERSIONS, MODEL_NAME, Wanted
 
+# what the system says where a disk takes no more
+FULL = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
 # pythonfmu's command line, CSV tool and builder, which no slave needs
 NOT_NEEDED = ("__main__.py", "csvbuilder.py", "deploy.py", "builder.py", "osutil.py")
 # the line of pythonfmu's `__init__.py` that imports the builder, and with it argparse, logging and
@@ -134,6 +138,27 @@ def pack(files: Path, target: Path, date: datetime) -> None:
             archive.writestr(entry, (files / name).read_bytes())
 
 
+@contextmanager
+def _workshop() -> Iterator[Path]:
+    """A temporary folder to build in.
+
+    Raises:
+        LandingError: Its disk is full.
+    """
+    try:
+        with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
+            yield Path(name)
+    except OSError as e:
+        # where whole folders are copied the error has a list of errors, and no number
+        numbers = [e.errno, *(n for n in FULL if os.strerror(n) in str(e))]
+        full = next((n for n in numbers if n in FULL), None)
+        if full is None:
+            raise
+        remedy = "make room, or name another folder by TMPDIR"
+        error = OSError(full, os.strerror(full))
+        raise unwritable(Path(tempfile.gettempdir()), error, remedy) from None
+
+
 def build(target: Path, wanted: Wanted) -> list[str]:
     """Build and check the FMU, then put it at `target` in one step.
 
@@ -145,13 +170,13 @@ def build(target: Path, wanted: Wanted) -> list[str]:
         Lines on what was done.
 
     Raises:
-        LandingError: The vehicle cannot land, or `target` cannot be written.
+        LandingError: The vehicle cannot land, or `target` or the temporary folder cannot be
+            written.
         SystemExit: The FMU cannot be built; the message is the error.
     """
     ends = expected(wanted)
     date = source_date()
-    with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
-        folder = Path(name)
+    with _workshop() as folder:
         files, package, script = build_with_pythonfmu(folder, wanted)
         record_libpython(files)
         root = complete_description(files, date, wanted)

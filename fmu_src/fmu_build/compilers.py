@@ -84,12 +84,26 @@ def _zig(target: str) -> tuple[str, ...]:
 
 
 def for_linux() -> Compiler:
-    """The compiler for this machine's Linux."""
-    if os.environ.get("CC"):
-        return Compiler(tuple(shlex.split(os.environ["CC"])))
+    """The compiler for this machine's Linux.
+
+    Raises:
+        SystemExit: CC is no command.
+    """
+    named = os.environ.get("CC", "").strip()
+    if named:
+        return Compiler(_words(named))
     if has_zig() and platform.machine() == "x86_64":
         return Compiler(_zig(f"x86_64-linux-gnu.{GLIBC}"), ZIG_FLAGS)
     return Compiler(("gcc",))
+
+
+def _words(command: str) -> tuple[str, ...]:
+    try:
+        return tuple(shlex.split(command))
+    except ValueError as e:
+        raise SystemExit(
+            f"error: CC = {command!r} is no command ({e}); name a C compiler by CC, or unset it"
+        ) from None
 
 
 def for_windows() -> Compiler | None:

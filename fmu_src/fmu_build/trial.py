@@ -64,6 +64,8 @@ def check(fmu: Path, wanted: Wanted, ends: Expected) -> str:
             output=list(dict.fromkeys(names.values())),
         )
     except Exception as e:
+        if isinstance(e.__context__, KeyboardInterrupt):  # it has ended the slave
+            raise e.__context__ from None
         raise SystemExit(f"error: the FMU does not land: {' '.join(str(e).split())}") from None
     for q in OUTPUT_QUANTITIES:
         ours, its = ends.values[q.name], float(_column(result, q.name, names)[-1])

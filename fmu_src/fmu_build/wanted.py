@@ -12,6 +12,12 @@ from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
 MODEL_NAME = "RlvLanding"
 LONGEST_NAME = 64
 FMI_VERSIONS = ("2", "3")
+# words of C, which are no identifiers, and names that Windows gives no file
+NO_NAMES = re.compile(
+    r"auto|break|case|char|const|continue|default|do|double|else|enum|extern|float|for|goto|if"
+    r"|inline|int|long|register|restrict|return|short|signed|sizeof|static|struct|switch|typedef"
+    r"|union|unsigned|void|volatile|while|(?i:con|prn|aux|nul|com\d|lpt\d)"
+)
 # the default experiment's end [s], and how long after the first contact it is at least
 END, AFTER_CONTACT = 1.0, 0.5
 
@@ -29,8 +35,8 @@ class Wanted:
         pure: Whether to leave the compiled core out.
 
     Raises:
-        LandingError: `name` is no identifier of C, FMI's version is not to be had, or flat names
-            are wanted in FMI 3.0.
+        LandingError: `name` is no identifier of C or no name of a file, FMI's version is not to be
+            had, or flat names are wanted in FMI 3.0.
     """
 
     parameters: Parameters = field(default_factory=Parameters)
@@ -45,6 +51,11 @@ class Wanted:
             raise LandingError(
                 f"model name {self.name!r} must be letters, digits and underscores, no digit "
                 "first: it names the FMU's binary; for example F9Landing"
+            )
+        if NO_NAMES.fullmatch(self.name):
+            raise LandingError(
+                f"model name {self.name!r} is a word of C or a device of Windows, after which no "
+                "binary can be called; add to it, for example a version"
             )
         if len(self.name) > LONGEST_NAME:
             raise LandingError(

@@ -67,7 +67,7 @@ static void send_message(const struct host *host, const char *name, enum status 
 /* The host's callbacks, kept apart from its own memory, which it may free. */
 static struct host host_of(const fmi2CallbackFunctions *callbacks, bool logging)
 {
-    struct host host = {.logging = logging};
+    struct host host = {.version = '2', .logging = logging};
     fmi2CallbackFunctions *copy = callbacks && callbacks->logger ? malloc(sizeof *copy) : NULL;
     if (copy) {
         *copy = *callbacks;

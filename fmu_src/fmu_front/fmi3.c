@@ -64,6 +64,7 @@ static struct instance wanted(struct fmi3_host *callbacks, const char *name, boo
 {
     return (struct instance){.host = {.send = callbacks->log ? send_message : NULL,
                                       .callbacks = callbacks,
+                                      .version = '3',
                                       .takes_errors = true,
                                       .logging = logging},
                              .name = (char *)(name ? name : "")};

@@ -123,8 +123,10 @@ enum status instance_setup(struct instance *c, const struct function *f, double 
         log_message(c, STATUS_ERROR, "%s: startTime = %g s must be finite", f->name, start);
         return STATUS_ERROR;
     }
-    c->last_time = start;
-    return leave_call(c, slave_setup(c->slave, start, stop, tolerance));
+    enum status status = leave_call(c, slave_setup(c->slave, start, stop, tolerance));
+    if (status < STATUS_ERROR)
+        c->last_time = start;
+    return status;
 }
 
 enum status instance_enter_initialization(struct instance *c, const struct function *f)

@@ -42,6 +42,7 @@ struct host {
     void (*send)(const struct host *host, const char *name, enum status status,
                  const char *category, const char *text);
     const void *callbacks;
+    char version; /* of FMI: '2' or '3'; `callbacks` are of its types */
     bool event_mode; /* it handles events */
     bool logging;
     bool takes_errors; /* whether they are of categories that it wants or not */
@@ -145,8 +146,8 @@ int category_index(const char *name);
 /*
  * Enter the call `f` of the host.
  *
- * Returns false if the instance is NULL, or, with a logged error, if it is in a phase in which `f`
- * may not be called. The cached outputs are invalid afterwards.
+ * Returns false if the instance is NULL, or, with a logged error, if it is one of another version of
+ * FMI, or in a phase in which `f` may not be called. The cached outputs are invalid afterwards.
  */
 bool enter_call(struct instance *c, const struct function *f);
 

@@ -81,6 +81,11 @@ bool enter_call(struct instance *c, const struct function *f)
         return false;
     c->worst_status = STATUS_OK;
     c->outputs_valid = false;
+    if (f->name[sizeof "fmi" - 1] != c->host.version) {
+        log_message(c, STATUS_ERROR, "%s: the instance was made by FMI %c.0", f->name,
+                    c->host.version);
+        return false;
+    }
     if (c->phase & f->phases)
         return true;
     log_message(c, STATUS_ERROR, "%s must not be called %s", f->name, description_of(c));

@@ -12,6 +12,10 @@ from .errors import LandingError
 from .landing import DEFAULT_RTOL, Landing
 from .parameters import PARAMETER_QUANTITIES, Parameters, check_value
 from .quantities import PEAKS
+from .state import LATEST
+
+# beyond it a host's time, a double, is rounded to more than 1 us [s]
+LATEST_START = 1e10
 
 
 class HostedLanding:
@@ -48,7 +52,16 @@ class HostedLanding:
         self._peaks: tuple[list[float], list[float]] = [], []
 
     def set_up(self, start_time: float, rtol: float) -> None:
-        """Set the start time [s] and the integrator's relative tolerance; begin anew."""
+        """Set the start time [s] and the integrator's relative tolerance; begin anew.
+
+        Raises:
+            LandingError: The start time is so late, or so early, that its rounding matters.
+        """
+        if not abs(start_time) <= LATEST_START:
+            raise LandingError(
+                f"start time = {start_time:g} s is outside [-{LATEST_START:g}, {LATEST_START:g}] "
+                "s, where doubles tell times of less than 2 us apart; start nearer to 0 s"
+            )
         self.start_time, self._rtol = start_time, rtol
         self._landing = None
 
@@ -105,9 +118,15 @@ class HostedLanding:
                 f"the importer's time is {now:g} s, the landing's is {landing.time:g} s; "
                 "restore a state or reset to go back"
             )
+        end = max(now + step_size, landing.time)
+        if end > LATEST:
+            raise LandingError(
+                f"step = {step_size:g} s ends {end:g} s after the start, beyond {LATEST:g} s; "
+                "make a shorter step"
+            )
         self._apply_inputs()
         self._inputs, self._rates = {}, {}
-        return max(now + step_size, landing.time)
+        return end
 
     def advance(self, end: float, stop: float = inf, *, to_event: bool = False) -> list[float]:
         """Go on in a step that ends at the landing's time `end` [s].

@@ -96,3 +96,23 @@ def test_an_importer_that_repeats_refused_steps_ends_with_the_reason(fmu, capfd)
     with pytest.raises(FMICallException, match="error"):
         simulate_fmu(str(fmu), stop_time=0.1, output_interval=1e-3, input=pulse)
     assert "external.force_x" in capfd.readouterr().err
+
+
+@pytest.mark.parametrize("start", [1e11, -1e11, 1e308])
+def test_a_start_time_that_rounds_away_steps_is_an_error(instance, start):
+    assert (
+        instance.status("fmi2SetupExperiment", 0, c_double(0.0), c_double(start), 0, c_double())
+        == ERROR
+    )
+    assert f"start time = {start:g} s is outside [-1e+10, 1e+10] s" in instance.reason()
+    instance.start()
+    assert instance.step(0.0, 1e-3) == OK
+
+
+def test_a_step_beyond_the_longest_landing_is_refused(instance):
+    """It ends nothing: the landing goes on."""
+    instance.start()
+    for step in (1e9 + 1.0, 1e300):
+        assert instance.step(0.0, step) == DISCARD
+        assert "beyond 1e+09 s; make a shorter step" in instance.reason()
+    assert_lands_like_landing(instance)

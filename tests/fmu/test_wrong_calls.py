@@ -192,3 +192,13 @@ def test_calls_without_an_instance_are_errors(instance):
     assert instance.status("fmi2Reset") == ERROR
     instance.status("fmi2FreeInstance")
     instance.slave.component = kept
+
+
+def test_functions_of_the_other_version_of_fmi_are_errors(instance, make3):
+    """The library has those of both, and each has callbacks of other types."""
+    for one, function, own in ((instance, "fmi3Reset", 2), (make3(), "fmi2Reset", 3)):
+        call = getattr(one.slave.dll, function)
+        assert call(c_void_p(one.slave.component)) == ERROR
+        assert one.reason() == f"{function}: the instance was made by FMI {own}.0"
+        one.start()
+        one.steps(0, 2)

@@ -22,6 +22,8 @@ from rlv_landing.errors import LandingError
 from rlv_landing.text.durable import writing
 from rlv_landing.text.files import shown_name
 
+from ..ros.interruption import interrupt_on_sigterm
+
 if TYPE_CHECKING:
     from rlv_landing.history import History
     from rlv_landing.parameters import Parameters
@@ -109,7 +111,9 @@ def build(
     check_writable(target, ".fmu", force=force)
     from fmu_build.build import build as build_fmu
 
-    click.echo("\n".join(build_fmu(target, wanted)))
+    with interrupt_on_sigterm():
+        lines = build_fmu(target, wanted)
+    click.echo("\n".join(lines))
 
 
 def require_build() -> None:
@@ -228,7 +232,8 @@ def simulate(
         raise LandingError(f"{output} must end in {' or '.join(ENDINGS)}")
     for path, ending in ((output, output.suffix if output else ""), (plot, ".png")):
         check_writable(path, ending, force=force)
-    history, name = _landed(file, options)
+    with interrupt_on_sigterm():
+        history, name = _landed(file, options)
     print_warning(warning_of(history))
     assert history.parameters is not None
     title = f"{name}: {history.parameters.drop.mode} landing"
@@ -264,7 +269,7 @@ def _landed(file: Path, options: dict[str, Any]) -> tuple[History, str]:
     inputs = _inputs(options["inputs"])
     until = options["until"]
     if until is None:
-        until = float(description.defaultExperiment.stopTime)
+        until = _own_end(description, file)
     with tqdm(
         total=until,
         unit="s",
@@ -276,6 +281,18 @@ def _landed(file: Path, options: dict[str, Any]) -> tuple[History, str]:
             file, parameters, inputs, until, options["every"], lambda t: bar.update(t - bar.n)
         )
     return history, description.modelName
+
+
+def _own_end(description: Any, file: Path) -> float:
+    """The end of the FMU's default experiment [s].
+
+    Raises:
+        LandingError: The description has none.
+    """
+    end = description.defaultExperiment and description.defaultExperiment.stopTime
+    if end is None:
+        raise LandingError(f"{file} has no end of its own; give one, for example --until 1")
+    return float(end)
 
 
 def _inputs(given: tuple[str, ...]) -> list[Setting]:

@@ -24,6 +24,10 @@ MODEL_NAME = "RlvLanding"
 MADE_BY = "rlv-landing "
 # the start values of a vehicle that is not the default one
 VEHICLE = re.compile(r"resources/[^/]+/vehicle\.json")
+# what an FMU may need on a disk, and its description in memory [bytes]: an archive of a few kB can
+# hold what fills either
+LARGEST, LARGEST_DESCRIPTION = 1_000_000_000, 200_000_000
+DESCRIPTION = "modelDescription.xml"
 BUILD = "build ours by `rlv-landing fmu build`"
 NAMES = (
     *OUTPUT_NAMES,
@@ -37,7 +41,8 @@ def open_description(path: Path) -> Any:
     """FMPy's description of any FMU at `path`.
 
     Raises:
-        LandingError: no such file, not an FMU, or FMPy is missing.
+        LandingError: no such file, not an FMU, a description that is too large, or FMPy is
+            missing.
     """
     try:
         found = path.is_file()
@@ -54,7 +59,16 @@ def open_description(path: Path) -> Any:
             'FMPy is missing; install it with pip install "rlv-landing[fmu]"'
         ) from None
     try:
+        with zipfile.ZipFile(path) as archive:
+            size = archive.getinfo(DESCRIPTION).file_size
+        if size > LARGEST_DESCRIPTION:
+            raise LandingError(
+                f"{path}: its {DESCRIPTION} has {size / 1e6:.0f} MB, at most "
+                f"{LARGEST_DESCRIPTION / 1e6:.0f} MB are read"
+            )
         return read_model_description(str(path))
+    except LandingError:
+        raise
     except (zipfile.BadZipFile, KeyError):
         raise LandingError(
             f"{path} is not an FMU: it is no zip archive with a modelDescription.xml in it"
@@ -63,6 +77,22 @@ def open_description(path: Path) -> Any:
         raise LandingError(
             f"{path} is not an FMU that can be read: {' '.join(str(e).split())}"
         ) from None
+
+
+def check_size(path: Path) -> None:
+    """Check that the FMU at `path`, unpacked, is not so large that it would fill the disk.
+
+    Raises:
+        LandingError: It is.
+        OSError, zipfile.BadZipFile: It cannot be read.
+    """
+    with zipfile.ZipFile(path) as archive:
+        size = sum(entry.file_size for entry in archive.infolist())
+    if size > LARGEST:
+        raise LandingError(
+            f"{path} has {size / 1e6:.0f} MB unpacked, at most {LARGEST / 1e6:.0f} MB are "
+            f"unpacked; {BUILD}"
+        )
 
 
 def is_ours(description: Any) -> bool:
@@ -84,7 +114,10 @@ def read_description(path: Path) -> Any:
             f"{BUILD}"
         )
     if description.fmiVersion != "2.0" or description.coSimulation is None:
-        raise LandingError(f"{path} is not an FMU for FMI 2.0 co-simulation; {BUILD}")
+        raise LandingError(
+            f"{path} is an FMU of FMI {description.fmiVersion}; FMI 2.0 for co-simulation is what "
+            "runs here: build it by `rlv-landing fmu build`, without `--fmi 3`"
+        )
     return description
 
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import ctypes
-import zipfile
-import zlib
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from operator import itemgetter
 from pathlib import Path
 from tempfile import gettempdir
@@ -24,7 +23,7 @@ from rlv_landing.quantities import (
 )
 from rlv_landing.text.durable import writing
 
-from .description import MODEL_NAME, read_description, references
+from .description import MODEL_NAME, check_size, read_description, references
 from .folder import FmuFolder
 
 # fmi2Status.
@@ -84,9 +83,13 @@ class FmuRunner:
             self._folder = FmuFolder()
             unpacked = str(self._folder.path)
             try:
+                check_size(self.path)
                 extract(str(self.path), unzipdir=unpacked)
-            except (zipfile.BadZipFile, zlib.error, RuntimeError, ValueError) as e:
-                raise LandingError(f"{self.path} is damaged: {e}; build it again") from None
+            except (OSError, LandingError):
+                raise
+            except Exception as e:  # of a name that leads out of the folder, FMPy's has no type
+                reason = str(e).rstrip(".")
+                raise LandingError(f"{self.path} is damaged: {reason}; build it again") from None
         try:
             slave = FMU2Slave(
                 guid=description.guid,
@@ -278,12 +281,16 @@ class FmuRunner:
 
     def close(self) -> None:
         """Terminates and frees the instance, and removes its folder; may be called again."""
+        from fmpy.fmi1 import FMICallException
+
         slave = self._forget_instance()
         folder, self._folder = self._folder, None
         try:
             if slave is not None:
                 try:
-                    slave.terminate()
+                    # a slave that Ctrl-C has ended can be freed only
+                    with suppress(FMICallException):
+                        slave.terminate()
                 finally:
                     slave.freeInstance()
         finally:

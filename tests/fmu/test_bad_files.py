@@ -1,0 +1,98 @@
+"""FMU files that `rlv-landing fmu simulate` refuses in one line, and its end by Ctrl-C."""
+
+from __future__ import annotations
+
+import re
+import struct
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from types import FrameType
+from zipfile import ZipFile
+
+import pytest
+
+from rlv_landing import LandingError
+from rlv_ros_bridge.commands.fmu import fmu as commands
+from rlv_ros_bridge.fmu.description import open_description
+from rlv_ros_bridge.fmu.runner import FmuRunner
+
+DESCRIPTION = "modelDescription.xml"
+
+
+@pytest.fixture
+def changed(fmu, tmp_path) -> Callable[..., Path]:
+    """Makes a copy of the FMU, with its description changed and files added."""
+
+    def made(change: Callable[[bytes], bytes] = bytes, **added: bytes) -> Path:
+        target = tmp_path / "changed.fmu"
+        with ZipFile(fmu) as source, ZipFile(target, "w") as archive:
+            for name in source.namelist():
+                text = source.read(name)
+                archive.writestr(name, change(text) if name == DESCRIPTION else text)
+            for name, text in added.items():
+                archive.writestr(name, text)
+        return target
+
+    return made
+
+
+def claim(path: Path, name: str, size: int) -> None:
+    """Let the archive's directory say that the last file of this name has `size` bytes."""
+    content = bytearray(path.read_bytes())
+    # the directory has the name 46 bytes behind the entry's start, and the size 24 bytes
+    at = content.rindex(name.encode()) - 46
+    assert content[at : at + 4] == b"PK\1\2"
+    struct.pack_into("<I", content, at + 24, size)
+    path.write_bytes(content)
+
+
+def refusal(*arguments: object) -> str:
+    with pytest.raises(LandingError) as refused:
+        commands.main([str(a) for a in arguments], standalone_mode=False)
+    message = str(refused.value)
+    assert "\n" not in message
+    return message
+
+
+def test_a_path_that_leads_out_of_the_folder_is_refused(changed):
+    path = changed(**{"/tmp/rlv_landing_out": b"x"})
+    assert "is damaged: Illegal path" in refusal("simulate", path)
+
+
+def test_an_archive_that_would_fill_the_disk_is_refused(changed):
+    path = changed(bomb=b"x")
+    claim(path, "bomb", 2**31)
+    assert "MB unpacked, at most 1000 MB" in refusal("simulate", path)
+
+
+@pytest.mark.parametrize("command", ["info", "simulate"])
+def test_a_description_that_would_fill_the_memory_is_refused(changed, command):
+    path = changed()
+    claim(path, DESCRIPTION, 2**31)
+    assert "its modelDescription.xml has 2147 MB" in refusal(command, path)
+    with pytest.raises(LandingError):
+        open_description(path)
+
+
+def test_an_fmu_without_an_end_needs_one(changed):
+    path = changed(lambda text: re.sub(rb"<DefaultExperiment[^>]*/>", b"", text))
+    assert refusal("simulate", path).endswith("give one, for example --until 1")
+
+
+def test_ctrl_c_in_a_step_of_the_fmu_is_ctrl_c(fmu):
+    """It has ended the slave, so the instance cannot be terminated any more, only freed."""
+
+    def interrupt(frame: FrameType, event: str, _argument: object) -> None:
+        if event == "call" and frame.f_code.co_name == "do_step":
+            sys.setprofile(None)
+            raise KeyboardInterrupt
+
+    def land() -> None:
+        with FmuRunner(fmu, {}) as runner:
+            sys.setprofile(interrupt)
+            runner.advance(0.0, 1e-3)
+
+    with pytest.raises(KeyboardInterrupt):
+        land()
+    assert sys.getprofile() is None
