@@ -82,7 +82,9 @@ def test_the_tables_of_a_log_and_of_its_landing_have_the_same_peaks(log: Path, m
         summary_table(history, "title").splitlines() for history in (log_history(log), whole)
     )
     legs = [line for line in expected if line.startswith("│")]
-    assert len(legs) == len(LEGS)
+    # a table that is too wide comes in parts, each with a line for each leg
+    assert len(legs) >= len(LEGS)
+    assert len(legs) % len(LEGS) == 0
     assert [line for line in told if line.startswith("│")] == legs
     assert told[-1] == expected[-1]
     assert told[-2] == expected[-2].partition(";")[0]
