@@ -11,6 +11,7 @@ import ast
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
+from typing import cast
 
 # these become C: records, and how arrays and records are accessed
 RECORDS = "records"
@@ -232,7 +233,7 @@ def _constants(records: ast.Module, access: ast.Module) -> Iterator[str]:
             value = (
                 len(fields[owner])
                 if text.startswith("len(")
-                else fields[owner].index(ast.literal_eval(node.value.args[0]))
+                else fields[owner].index(ast.literal_eval(cast(ast.Call, node.value).args[0]))
             )
             yield f"    {_targets(node)[0]} = {value}\n"
 

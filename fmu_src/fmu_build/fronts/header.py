@@ -147,7 +147,7 @@ def _values(identity: bytes) -> list[str]:
     lines = [*texts, f"{identity[at]},", "{"]
     at += 1
     for row in range(at, len(identity), 4 + 2 * NAME_SIZE):
-        kind, causality = identity[row : row + 2].decode()
+        kind, causality = map(chr, identity[row : row + 2])
         count, stride = identity[row + 2 : row + 4]
         name, whole = (
             quoted(identity[start : start + NAME_SIZE].rstrip(b"\0").decode())

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from importlib.metadata import distribution
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 from xml.etree.ElementTree import Element
 
 from jinja2 import Environment, StrictUndefined
@@ -143,7 +143,8 @@ def render(files: Path, description: Element, wanted: Wanted) -> str:
 def starts_of(parameters: Parameters) -> list[Quantity]:
     """The parameters' quantities with the vehicle's values for defaults, and their sources."""
     return [
-        replace(q, default=parameters[name], source=one_line(parameters.source(name)))
+        # a file may name any source
+        replace(q, default=parameters[name], source=cast(Any, one_line(parameters.source(name))))
         for name, q in PARAMETER_QUANTITIES.items()
     ]
 
