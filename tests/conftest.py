@@ -34,6 +34,12 @@ settings.load_profile("suite")
 MODES = ("2-2", "1-2-1")
 
 
+@pytest.fixture(autouse=True)
+def no_width_of_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Tables are as wide as in a file, whatever terminal the suite is started from."""
+    monkeypatch.delenv("COLUMNS", raising=False)
+
+
 @pytest.fixture(scope="session")
 def many() -> Callable[[int], int]:
     """Scale the number of a random test's cases: by RLV_TORTURE in the environment, else by 1."""

@@ -154,7 +154,7 @@ def _workshop() -> Iterator[Path]:
         full = next((n for n in numbers if n in FULL), None)
         if full is None:
             raise
-        remedy = "make room, or name another folder by TMPDIR"
+        remedy = "name another folder by TMPDIR"
         error = OSError(full, os.strerror(full))
         raise unwritable(Path(tempfile.gettempdir()), error, remedy) from None
 
