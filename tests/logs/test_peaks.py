@@ -25,7 +25,7 @@ from rlv_ros_bridge.logs.landing_record import RECORD as LANDING_RECORD
 from rlv_ros_bridge.logs.peaks import RECORD, landing_peaks, read_peaks
 from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.logs.recover import recover
-from rlv_ros_bridge.logs.verify import verify
+from rlv_ros_bridge.logs.verification.verify import verify
 
 FORCE = "leg[1].main_strut.force.min"
 

@@ -20,7 +20,7 @@ from rlv_landing.errors import LandingError
 from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
 from rlv_ros_bridge.logs.recover import recover
-from rlv_ros_bridge.logs.verify import TOLERANCE, Verification, verify
+from rlv_ros_bridge.logs.verification.verify import TOLERANCE, Verification, verify
 from rlv_ros_bridge.messages.inputs import HEAVE, TILT, WRENCH
 from rlv_ros_bridge.messages.qos import TELEMETRY
 from rlv_ros_bridge.messages.samples import SampleBytes

@@ -19,7 +19,7 @@ from sensor_msgs.msg import JointState
 from rlv_landing import Landing, LandingError, Parameters
 from rlv_ros_bridge.logs.history import history_of
 from rlv_ros_bridge.logs.reader import LogReader
-from rlv_ros_bridge.logs.verify import verify
+from rlv_ros_bridge.logs.verification.verify import verify
 from rlv_ros_bridge.messages.inputs import merged, read_ground
 from rlv_ros_bridge.node.commanded_ground import CommandedGround
 from rlv_ros_bridge.node.input_queue import InputQueue

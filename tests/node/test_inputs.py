@@ -22,7 +22,7 @@ from sensor_msgs.msg import JointState
 from rlv_landing import Landing, LandingError
 from rlv_ros_bridge.logs.history import history_of
 from rlv_ros_bridge.logs.reader import Decoder, LogReader
-from rlv_ros_bridge.logs.verify import verify
+from rlv_ros_bridge.logs.verification.verify import verify
 from rlv_ros_bridge.messages.inputs import HEAVE, READINGS, TILT, WRENCH, read_ground, read_wrench
 from rlv_ros_bridge.messages.topics import APPLIED_GROUND, APPLIED_WRENCH
 from rlv_ros_bridge.node.input_queue import InputChange

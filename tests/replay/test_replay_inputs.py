@@ -13,7 +13,7 @@ from remote import ACTIVATE, CLEANUP, CONFIGURE, DEACTIVATE, Remote
 from rlv_ros_bridge.logs.history import history_of
 from rlv_ros_bridge.logs.reader import Decoder, LogReader
 from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
-from rlv_ros_bridge.logs.verify import verify
+from rlv_ros_bridge.logs.verification.verify import verify
 from rlv_ros_bridge.messages.inputs import HEAVE, READINGS, TILT, WRENCH
 from rlv_ros_bridge.messages.message_types import message_class
 from rlv_ros_bridge.messages.qos import TELEMETRY

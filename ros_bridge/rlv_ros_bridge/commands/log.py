@@ -87,7 +87,7 @@ def verify(log: Path, fmu: Path | None, *, as_json: bool) -> None:
     Exit codes: 0 the same, 1 differs, 2 the log cannot be repeated.
     """
     from ..logs.bag_reader import open_log
-    from ..logs.verify import verify as compare
+    from ..logs.verification.verify import verify as compare
 
     found = compare(open_log(log), fmu)
     click.echo(json.dumps(found.as_dict(), indent=2) if as_json else found.text())

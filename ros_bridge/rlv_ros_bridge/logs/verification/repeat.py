@@ -11,10 +11,10 @@ from rlv_landing.errors import LandingError
 from rlv_landing.quantities import OUTPUT_NAMES
 from rlv_landing.text.units import parse_number
 
-from ..messages.inputs import READINGS
-from ..messages.topics import APPLIED, resolve
-from .peaks import landing_peaks
-from .reader import Decoder, LogReader
+from ...messages.inputs import READINGS
+from ...messages.topics import APPLIED, resolve
+from ..peaks import landing_peaks
+from ..reader import Decoder, LogReader
 
 # Inputs by the number of the sample from which on they act.
 Inputs = dict[int, list[dict[str, float]]]
@@ -81,7 +81,7 @@ class RepeatedRun:
 
             yield from self._samples(landing.outputs, landing.set_inputs, step)
             return
-        from ..fmu.runner import FmuRunner
+        from ...fmu.runner import FmuRunner
 
         with FmuRunner(self._fmu, dict(self.parameters.items())) as runner:
             self._peaks = runner.peaks

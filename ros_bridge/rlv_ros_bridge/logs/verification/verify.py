@@ -12,13 +12,13 @@ from typing import Any
 
 from rlv_landing.errors import LandingError
 
-from ..fmu.builds import inexact_reason
-from ..messages.fields import TOPIC_FIELDS, expected_fields, expected_numbers, leaves
-from ..messages.topics import resolve
-from .peaks import read_peaks
-from .reader import Decoder, LogMessage, LogReader
+from ...fmu.builds import inexact_reason
+from ...messages.fields import TOPIC_FIELDS, expected_fields, expected_numbers, leaves
+from ...messages.topics import resolve
+from ..peaks import read_peaks
+from ..reader import Decoder, LogMessage, LogReader
 from .repeat import RepeatedRun
-from .verification import Difference, Verification
+from .result import Difference, Verification
 
 # By this share of a field's largest value a rerun by another build may differ. Contact magnifies
 # the smallest difference: one unit in the last place of a parameter makes 0.31 % within 3 s of the

@@ -1,0 +1,1 @@
+"""Verification: a log beside a repetition of its run, value by value."""
