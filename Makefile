@@ -69,7 +69,7 @@ $(CHROMIUM): tests/viewer/fetch_chromium.py tests/viewer/package-lock.json | $(V
 	@touch $@
 
 test: $(FMU) $(FMU3) $(COFMUPY) $(CHROMIUM) lint
-	$(BIN)/python -m pytest -n 3 --dist loadfile
+	$(BIN)/python -m pytest -n 3 --dist loadfile --timeout 900 --durations 10
 
 torture: $(FMU) $(FMU3)
 	RLV_TORTURE=50 $(BIN)/python -m pytest -m torture

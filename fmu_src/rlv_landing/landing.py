@@ -13,7 +13,7 @@ from .core import DormandPrince, Exponential, Inputs, Solver
 from .errors import LandingError, unknown
 from .events.search import EventSearch
 from .inputs.driven import RATE_INPUTS, DrivenInputs, Setting, changed_setting
-from .interruptible import advance, check_going, record
+from .interruptible import advance, check_going, record, view
 from .outputs import Extreme, OutputReader, output_order
 from .parameters import Parameters
 from .quantities import INPUT_NAMES, OUTPUT_NAMES
@@ -165,7 +165,7 @@ class Landing:
         set; their rates are those of its motion.
         """
         self._solver.inputs_at(self._time)
-        return dict(zip(INPUT_NAMES, self._solver.u_now))
+        return dict(zip(INPUT_NAMES, view(self._solver.u_now)))
 
     def step(self, dt: float) -> None:
         """Go on by `dt` [s].

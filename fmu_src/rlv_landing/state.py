@@ -9,10 +9,10 @@ from math import isfinite
 from typing import NamedTuple
 
 from .core import Fault, Solver
-from .core.memory import Buffer
 from .core.solvers.step_control import LEAST_PREVIOUS_ERROR, LONGEST_STEP
 from .errors import LandingError
 from .inputs.ground_way import POSITIONS, Way, way_faults
+from .interruptible import view
 
 # a count that doubles tell from the next one
 LARGEST_COUNT = 2.0**53
@@ -57,10 +57,11 @@ OF_SOLVER = tuple(name for name in StateHeader._fields if name not in ("time", *
 WHOLE = ("fault", "dense_at", "seen", "still", "waited")
 
 
-def _arrays(solver: Solver) -> tuple[Buffer, ...]:
-    """The arrays that a state holds after its header."""
+def _arrays(solver: Solver) -> list[memoryview]:
+    """The arrays that a state holds after its header, as views."""
     s = solver
-    return (s.u, s.u_rate, s.y, s.dense, s.kept, s.before, s.middle, s.last)
+    arrays = (s.u, s.u_rate, s.y, s.dense, s.kept, s.before, s.middle, s.last)
+    return [view(numbers) for numbers in arrays]
 
 
 def state_of(solver: Solver, time: float, ways: Sequence[float]) -> array[float]:
@@ -106,9 +107,9 @@ def load_state(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequen
         _step_faults(solver, header, state[at + 2 * len(solver.u) :]),
     ):
         raise LandingError(f"state holds {fault}; take one that state() gave")
+    numbers = memoryview(state)
     for target in targets:
-        for i in range(len(target)):
-            target[i] = state[at + i]
+        target[:] = numbers[at : at + len(target)]
         at += len(target)
     for name in OF_SYSTEM:
         setattr(solver.system, name, getattr(header, name))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import random
 import signal
 import subprocess
 import sys
@@ -11,6 +12,7 @@ from pathlib import Path
 
 import fmpy
 import pytest
+from interrupting import is_felt
 from python_libraries import BARE, python_libraries
 
 from rlv_landing import Landing
@@ -157,9 +159,26 @@ def test_ctrl_c_reaches_the_hosts_python_and_the_instance_can_be_reset(unpacked,
         with subprocess.Popen(
             command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         ) as process:
-            assert process.stdout is not None
-            assert process.stdout.readline() == "stepping\n"
-            process.send_signal(signal.SIGINT)
-            out, err = process.communicate(timeout=60)
+            try:
+                assert process.stdout is not None
+                assert process.stdout.readline() == "stepping\n"
+                process.send_signal(signal.SIGINT)
+                out, err = process.communicate(timeout=60)
+            finally:
+                process.kill()
         assert process.returncode == 0, err
         assert out == "interrupted\nlanded again\n"
+
+
+def test_ctrl_c_at_any_moment_of_a_call_is_felt(make):
+    instance = make()
+
+    def call():
+        instance.set_rate("external.force_x", random.uniform(1.0, 2.0))
+        instance.step(2e-3, 1e-3)
+
+    for _ in range(500):
+        instance.slave.reset()
+        instance.start()
+        instance.steps(0, 2)
+        assert is_felt(call, random.uniform(1e-6, 4e-4))

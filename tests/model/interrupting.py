@@ -1,6 +1,7 @@
 """Ctrl-C for tests."""
 
 import signal
+import time
 
 import pytest
 
@@ -18,3 +19,28 @@ def interrupted_after(seconds, work):
     finally:
         signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
         signal.signal(signal.SIGVTALRM, usual)
+
+
+def is_felt(work, delay):
+    """Whether Ctrl-C that is pressed `delay` [s] after the start of `work`, or at its end, is felt.
+
+    It is not if something between `work` and the caller drops the exception.
+    """
+    pressed = []
+
+    def press(*_):
+        pressed.append(True)
+        signal.default_int_handler(2, None)
+
+    usual = signal.signal(signal.SIGALRM, press)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, delay)
+        work()
+        while not pressed:
+            time.sleep(1e-3)
+    except KeyboardInterrupt:
+        return True
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, usual)
+    return False

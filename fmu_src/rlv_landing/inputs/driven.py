@@ -9,6 +9,7 @@ from typing import Any
 from ..assembly import ground_motion
 from ..core import Inputs, Solver
 from ..errors import LandingError, unknown
+from ..interruptible import view
 from ..parameters import check_value
 from ..quantities import INPUT_NAMES, INPUT_QUANTITIES
 from ..touchdown import GroundMotion
@@ -65,11 +66,11 @@ class DrivenInputs:
         """The inputs as they were set, at time `t` [s], and their rates."""
         solver = self._solver
         solver.inputs_at(t)
-        u, rate = Inputs(*solver.u), Inputs(*solver.u_rate)
+        u, rate = Inputs(*view(solver.u)), Inputs(*view(solver.u_rate))
         passed = t - solver.t_input
         goal = u._replace(heave=self._ways[0].goal, tilt=self._ways[1].goal)
         heave, tilt = ground_motion(goal, rate).at(passed)
-        now = Inputs(*solver.u_now)._replace(
+        now = Inputs(*view(solver.u_now))._replace(
             heave=heave,
             heave_rate=u.heave_rate + rate.heave_rate * passed,
             tilt=tilt,
