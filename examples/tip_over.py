@@ -5,9 +5,12 @@ The vehicle's critical speeds are found by the bisection of `envelope` (docs/env
 
 from __future__ import annotations
 
+from itertools import product
 from math import degrees, radians
 
 from rlv_landing import Parameters, load_preset
+from rlv_landing.quantities import MODES
+from rlv_landing.studies.envelope.judged_landing import judged_landing
 from rlv_landing.studies.envelope.search import Critical, envelope
 from rlv_landing.studies.envelope.study import Axis, EnvelopeStudy
 from rlv_landing.studies.envelope.tip_over import LOCKED, RigidBlock
@@ -17,6 +20,8 @@ from rlv_landing.workers import default_workers
 RAISED = (-0.5, 0.0, 0.5)
 SLOPES = (0.0, 5.0, 10.0)
 SINK = -0.5
+# slopes and tilts [rad] and horizontal speeds [m/s] with which a vehicle swings from foot to foot
+SWINGS = [*product((-0.1, 0.0, 0.1), (-0.1, 0.0, 0.1), map(float, range(-5, 6)))]
 
 
 def critical_points(parameters: Parameters, slope: float) -> list[Critical]:
@@ -40,24 +45,52 @@ def row(mode: str, block: RigidBlock, slope: float, points: list[Critical]) -> s
     )
 
 
+def locked(mode: str, **values: float) -> Parameters:
+    """The vehicle of the presets with locked legs, and other `values` by name, `__` for the dot."""
+    start = {"drop.pitch_rate": 0.0, "drop.contact_time": 0.0, "drop.vertical_velocity": SINK}
+    given = {name.replace("__", "."): value for name, value in values.items()}
+    return load_preset("yue2022-figures", mode).with_values({**LOCKED, **start, **given})
+
+
+def rows(mode: str, *, inertia: float | None = None) -> list[str]:
+    """The rows of a mode: a row for each height of the CG and slope."""
+    found = []
+    for raised in RAISED:
+        depths = {
+            f"{strut}__joint_depth": load_preset("yue2022-figures", mode)[f"{strut}.joint_depth"]
+            + raised
+            for strut in ("main_strut", "auxiliary_strut")
+        }
+        other = {} if inertia is None else {"vehicle__inertia": inertia}
+        parameters = locked(mode, **depths, **other)
+        block = RigidBlock.of(parameters)
+        found += [row(mode, block, slope, critical_points(parameters, slope)) for slope in SLOPES]
+    return found
+
+
+def swings_as_the_block(mode: str, slope: float, tilt: float, speed: float) -> bool:
+    """Whether the vehicle topples to the block's side, or stays up as it does (rad, rad, m/s)."""
+    parameters = locked(mode, ground__slope=slope, drop__tilt=tilt)
+    axes = (
+        Axis("drop.horizontal_velocity", -50.0, 50.0, 1.0),
+        Axis("drop.tilt", -1.5, 1.5, 0.1),
+    )
+    study = EnvelopeStudy(parameters, *axes, until=4.5)
+    side = judged_landing(study, {"drop.horizontal_velocity": speed}).towards
+    return side == RigidBlock.of(parameters).topples(tilt, slope, speed, SINK)
+
+
 def main() -> None:
-    """Print a row for each mode, height of the CG and slope."""
+    """Print a row for each mode, height of the CG and slope, and the count of the swings."""
     print(
         "mode   CG above feet  slope  points  tilt           critical speed   "
         "model/block: mean, least, largest"
     )
-    for mode in ("2-2", "1-2-1"):
-        preset = load_preset("yue2022-figures", mode)
-        for raised in RAISED:
-            joints = {
-                f"{strut}.joint_depth": preset[f"{strut}.joint_depth"] + raised
-                for strut in ("main_strut", "auxiliary_strut")
-            }
-            start = {"drop.pitch_rate": 0.0, "drop.vertical_velocity": SINK}
-            parameters = preset.with_values({**LOCKED, **joints, **start})
-            block = RigidBlock.of(parameters)
-            for slope in SLOPES:
-                print(row(mode, block, slope, critical_points(parameters, slope)), flush=True)
+    for mode in MODES:
+        print(*rows(mode), sep="\n", flush=True)
+    for mode in MODES:
+        agreed = sum(swings_as_the_block(mode, *swing) for swing in SWINGS)
+        print(f"{mode}: to the same side, or to none, in {agreed} of {len(SWINGS)} swings")
 
 
 if __name__ == "__main__":

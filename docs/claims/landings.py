@@ -19,6 +19,7 @@ from rlv_landing.outputs import Extreme
 from rlv_landing.presets import preset_names
 from rlv_landing.quantities import LEGS, MODES, PEAKS
 from rlv_landing.studies.envelope.tip_over import RigidBlock
+from rlv_landing.studies.sweep.responses import expand
 from rlv_landing.touchdown import footpad_at_rest
 from rlv_landing.validation.paper import LEVELS, paper_counts_against_test, printed_scalars
 from rlv_landing.validation.validate import Validation, validate
@@ -73,6 +74,12 @@ def counts(against: str = "simulation", transverse: str = "") -> str:
             "sensed": both.counts_against_test_sensed,
         }[against]
     return f"{n['within_5']} / {n['within_10']} / {n['within_20']}"
+
+
+@quick
+def responses() -> float:
+    """The responses that a sweep has if its study names none."""
+    return float(len(expand(None)))
 
 
 @quick

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import importlib.util
-from contextlib import redirect_stdout
 from functools import lru_cache
-from io import StringIO
 from math import radians
+from types import ModuleType
 
 from marks import ROOT, Value
 
@@ -73,23 +72,27 @@ def times_fewer() -> float:
 
 
 @lru_cache
-def tip_over_rows() -> tuple[tuple[str, ...], ...]:
-    """The rows of `examples/tip_over.py`: its columns' texts."""
-    path = EXAMPLES / "tip_over.py"
-    spec = importlib.util.spec_from_file_location("tip_over", path)
+def tip_over() -> ModuleType:
+    """The module `examples/tip_over.py`."""
+    spec = importlib.util.spec_from_file_location("tip_over", EXAMPLES / "tip_over.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    with redirect_stdout(StringIO()) as printed:
-        module.main()
-    return tuple(tuple(line.split()) for line in printed.getvalue().splitlines()[1:])
+    return module
+
+
+@lru_cache
+def tip_over_rows(mode: str, inertia: str = "") -> tuple[tuple[str, ...], ...]:
+    """The rows of `examples/tip_over.py`: its columns' texts; inertia [kg m2] or the preset's."""
+    rows = tip_over().rows(mode, inertia=float(inertia) if inertia else None)
+    return tuple(tuple(row.split()) for row in rows)
 
 
 def tip_over_table() -> str:
     """The table of envelope.md."""
     lines = [f"| {' | '.join(COLUMNS)} |\n", f"|{'---|' * len(COLUMNS)}\n"]
-    for row in tip_over_rows():
+    for row in (*tip_over_rows("2-2"), *tip_over_rows("1-2-1")):
         mode, height, _, slope, _, _, tilt, _, tilts, _, speed, _, speeds, _, *ratios = row
         mean, least, largest = (f"{float(r.rstrip(',')):.3f}" for r in ratios)
         lines.append(
@@ -99,6 +102,23 @@ def tip_over_table() -> str:
     return "\n" + "".join(lines)
 
 
+def tip_over_deviation(what: str, which: str, mode: str, height: str, inertia: str = "") -> float:
+    """A deviation of the model's critical speed from the block's, over rows of the table [%].
+
+    `what` is mean or point, `which` least or largest, `height` the CG's above the feet [m] or all.
+    """
+    columns = {"mean": [-3], "point": [-2, -1]}[what]
+    rows = [row for row in tip_over_rows(mode, inertia) if height in ("all", row[1])]
+    found = [max(abs(float(row[column].rstrip(",")) - 1.0) for column in columns) for row in rows]
+    return 100.0 * {"least": min, "largest": max}[which](found)
+
+
+def swings(mode: str) -> float:
+    """In how many swings the model topples to the block's side, or stays up as it does."""
+    found = tip_over()
+    return float(sum(found.swings_as_the_block(mode, *swing) for swing in found.SWINGS))
+
+
 SLOW = {
     compute.__name__: Value(compute, slow=True)
     for compute in (
@@ -106,6 +126,8 @@ SLOW = {
         uniform_landings,
         times_fewer,
         tip_over_table,
+        tip_over_deviation,
+        swings,
         critical_speed,
     )
 }
