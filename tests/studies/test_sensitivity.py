@@ -138,6 +138,8 @@ def test_a_stop_that_is_never_met_has_indices_of_zero_and_adds_to_the_margin_wha
     assert table.code == 0, table.err
     assert "leg[1].main_strut.efficiency" in table.out
     assert "Sobol indices, 95 % intervals" in table.out
+    assert "more (legs.main_strut.force.min, " in table.out
+    assert "): name them, and --resume" in table.out
 
 
 def test_samples_with_a_failed_landing_are_replaced_and_counted_and_too_many_give_no_indices(

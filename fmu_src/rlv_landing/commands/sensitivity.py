@@ -66,7 +66,12 @@ def sensitivity(
     """
     from ..figures.sensitivity_figure import save_bars
     from ..studies.study_effort import check_indices
-    from ..studies.sweep.sensitivity import indices_of, numeric_responses, sobol_design
+    from ..studies.sweep.sensitivity import (
+        indices_of,
+        left_out,
+        numeric_responses,
+        sobol_design,
+    )
     from ..studies.sweep.study import read_study
     from ..studies.sweep.sweep_row import Task
     from ..tables.sweep_tables import indices_table
@@ -99,4 +104,7 @@ def sensitivity(
         )
     else:
         click.echo(indices_table(found, level), nl=False)
+        if left := left_out(read, wanted):
+            names = f"{', '.join(left[:3])}{', ...' if len(left) > 3 else ''}"
+            click.echo(f"without indices of {len(left)} more ({names}): name them, and --resume")
         click.echo(f"results: {path}\nbars: {picture}")

@@ -266,10 +266,20 @@ def numeric_responses(study: Study, wanted: Sequence[str]) -> tuple[str, ...]:
             raise LandingError(
                 f"{name} is a text; Sobol indices are of numbers: take one of its margins"
             )
-    numbers = [name for name in study.responses if known[name].kind == "real"]
+    numbers = _numbers(study)
     whole = [
         name for name in numbers if not name.startswith(("leg[", "outcome.", "energy.balance"))
     ]
     if not numbers:
         raise LandingError("this study takes no response that is a number; add one to responses")
     return tuple(wanted or whole or numbers)
+
+
+def left_out(study: Study, wanted: Sequence[str]) -> list[str]:
+    """The study's responses that are numbers and not `wanted`."""
+    return [name for name in _numbers(study) if name not in wanted]
+
+
+def _numbers(study: Study) -> list[str]:
+    known = known_responses()
+    return [name for name in study.responses if known[name].kind == "real"]
