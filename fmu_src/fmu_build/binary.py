@@ -1,7 +1,7 @@
 """Puts the front (`fmu_front/`), the binary that hosts load, into the FMU.
 
-For Linux, and for Windows if there is a compiler for it: compiled, or one that the installed
-package has. pythonfmu's own binaries are left out.
+For this machine's platform, or for all that there is a compiler for: compiled, or one that the
+installed package has. pythonfmu's own binaries are left out.
 """
 
 from __future__ import annotations
@@ -15,9 +15,11 @@ from importlib.util import find_spec
 from pathlib import Path
 from xml.etree import ElementTree
 
-from .compilers import Compiler, for_linux, for_windows, run
+from .compilers import Compiler, for_linux, for_target, run
+from .cross import universal
 from .fronts import prebuilt
 from .fronts.header import FRONT, front_identity, neutral_header, variables_header
+from .targets import ALL, FMI2, OWN, of_platform, own_machine, own_platform
 
 # FMI's C headers, which FMPy has; it takes long to import
 _FMPY = find_spec("fmpy")
@@ -25,22 +27,50 @@ HEADERS = Path((_FMPY.origin if _FMPY else None) or "fmpy").parent / "c-code"
 FLAGS = ["-std=c11", "-O2", "-fvisibility=hidden", "-Wall", "-Wextra", "-g0", "-s", "-shared"]
 
 
-def compilers() -> dict[str, Compiler]:
-    """The compiler for each of FMI's platforms that there is one for."""
-    windows = for_windows()
-    return {"linux64": for_linux(), **({"win64": windows} if windows else {})}
+# of the sources, those that are for one system or two
+SYSTEMS = {
+    "posix.c": ("linux", "darwin"),
+    "linux.c": ("linux",),
+    "macos.c": ("darwin",),
+    "windows.c": ("windows",),
+}
+SYSTEM_ARGS = {
+    "linux": ["-fPIC", "-ldl"],
+    "darwin": ["-fPIC", "-install_name", "@rpath/front.dylib"],
+    "windows": [],
+}
+SYSTEM_OF_SUFFIX = {".so": "linux", ".dylib": "darwin", ".dll": "windows"}
 
 
-def makers(root: ElementTree.Element) -> dict[str, str]:
+def compilers(platforms: str = OWN) -> dict[str, list[Compiler]]:
+    """The compilers for each of FMI's platforms that there are all for, one for each architecture.
+
+    Args:
+        platforms: This machine's or all.
+    """
+    found = {own_platform(): [for_linux()]}
+    for platform in FMI2 if platforms == ALL else ():
+        targets = of_platform(platform)
+        chosen = [c for c in map(for_target, targets) if c]
+        if len(chosen) == len(targets) and own_machine() not in {t.name for t in targets}:
+            found.setdefault(platform, chosen)
+    return found
+
+
+def makers(root: ElementTree.Element, platforms: str = OWN) -> dict[str, str]:
     """What makes the front for each platform: the compiler with its options, or what it made.
 
     Args:
         root: Root of the FMU's modelDescription.xml.
+        platforms: This machine's or all.
     """
-    ready = prebuilt.fronts(made_of(root))
+    ready = prebuilt.fronts(made_of(root)) if platforms == OWN else []
     if ready:
         return {f.platform: hashlib.sha256(f.content).hexdigest() for f in ready}
-    return {platform: repr((c.name, c.flags, FLAGS)) for platform, c in compilers().items()}
+    return {
+        platform: repr([(c.name, c.command[1:], c.flags, FLAGS) for c in chosen])
+        for platform, chosen in compilers(platforms).items()
+    }
 
 
 def front_sources() -> list[Path]:
@@ -48,11 +78,12 @@ def front_sources() -> list[Path]:
     return sorted(p for p in FRONT.iterdir() if p.suffix in (".c", ".h", ".py"))
 
 
-def replace_binaries(files: Path) -> dict[str, str]:
+def replace_binaries(files: Path, platforms: str = OWN) -> dict[str, str]:
     """Replace pythonfmu's binaries by the front.
 
     Args:
         files: Folder of the unpacked FMU.
+        platforms: Which platforms it is for, this machine's or all.
 
     Returns:
         The compiler for each platform.
@@ -66,7 +97,7 @@ def replace_binaries(files: Path) -> dict[str, str]:
     name = simulation.attrib["modelIdentifier"]
     module = (files / "resources" / "slavemodule.txt").read_text().strip()
     shutil.rmtree(files / "binaries")
-    ready = prebuilt.fronts(made_of(root))
+    ready = prebuilt.fronts(made_of(root)) if platforms == OWN else []
     if ready:
         identity = front_identity(root, module)
         for front in ready:
@@ -74,7 +105,9 @@ def replace_binaries(files: Path) -> dict[str, str]:
             target.write_bytes(prebuilt.identified(front.content, identity))
         return {front.platform: front.compiler for front in ready}
     return compile_fronts(
-        variables_header(root, module), lambda platform: _place(files, platform, name)
+        variables_header(root, module),
+        lambda platform: _place(files, platform, name),
+        compilers(platforms),
     )
 
 
@@ -87,7 +120,7 @@ def _place(files: Path, platform: str, name: str) -> Path:
 
 def suffix(platform: str) -> str:
     """The ending of a shared library of one of FMI's platforms."""
-    return ".dll" if platform.startswith("win") else ".so"
+    return of_platform(platform)[0].library
 
 
 def made_of(root: ElementTree.Element) -> bytes:
@@ -103,12 +136,15 @@ def made_of(root: ElementTree.Element) -> bytes:
     )
 
 
-def compile_fronts(header: str, place: Callable[[str], Path]) -> dict[str, str]:
-    """Compile the front for each platform that there is a compiler for.
+def compile_fronts(
+    header: str, place: Callable[[str], Path], wanted: dict[str, list[Compiler]]
+) -> dict[str, str]:
+    """Compile the front for each platform.
 
     Args:
         header: Text of `variables.h`.
         place: The library's file for a platform.
+        wanted: The compilers for each platform, one for each architecture.
 
     Returns:
         The compiler for each platform.
@@ -120,11 +156,15 @@ def compile_fronts(header: str, place: Callable[[str], Path]) -> dict[str, str]:
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         folder = Path(name)
         (folder / "variables.h").write_text(header)
-        for platform, compiler in compilers().items():
+        for platform, chosen in wanted.items():
             made = folder / f"front{suffix(platform)}"
-            compile_front(made, folder, compiler)
-            shutil.copy(made, place(platform))
-            used[platform] = compiler.name
+            libraries = []
+            for compiler in chosen:
+                compile_front(made, folder, compiler)
+                libraries.append(made.read_bytes())
+            one = libraries[0] if len(libraries) == 1 else universal.joined(libraries)
+            place(platform).write_bytes(one)
+            used[platform] = chosen[0].name
     return used
 
 
@@ -132,15 +172,15 @@ def compile_front(target: Path, include: Path, compiler: Compiler) -> None:
     """Compile the front to a shared library.
 
     Args:
-        target: The library, for Windows if it is a `.dll`.
+        target: The library, for Windows if it is a `.dll`, for macOS if a `.dylib`.
         include: Folder that holds `variables.h`.
         compiler: A compiler for that system.
 
     Raises:
         SystemExit: The front does not compile; the message has the compiler's output.
     """
-    windows = target.suffix == ".dll"
-    other_system = "posix.c" if windows else "windows.c"
+    system = SYSTEM_OF_SUFFIX[target.suffix]
+    sources = [p for p in front_sources() if p.suffix == ".c"]
     command = [
         *compiler.command,
         *FLAGS,
@@ -151,8 +191,8 @@ def compile_front(target: Path, include: Path, compiler: Compiler) -> None:
         str(HEADERS),
         "-o",
         str(target),
-        *(str(p) for p in front_sources() if p.suffix == ".c" and p.name != other_system),
-        *([] if windows else ["-fPIC", "-ldl"]),
+        *(str(p) for p in sources if system in SYSTEMS.get(p.name, (system,))),
+        *SYSTEM_ARGS[system],
     ]
     if not (HEADERS / "fmi2Functions.h").is_file():
         raise SystemExit(

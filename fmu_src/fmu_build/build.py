@@ -24,13 +24,16 @@ from pythonfmu.builder import FmuBuilder
 from rlv_landing.text.durable import write_durably, writing
 
 from .binary import record_libpython, replace_binaries
+from .cross.cores import compile_cores
 from .description import describe
 from .identity import NO_GUID, identify
 from .pages.documentation import write_documentation
 from .sources import ROOT, compiled_cores, copy_sources, source_date
+from .targets import ALL, OWN, TARGETS, Target, own_machine, tried
 from .trial import check, expected
 from .wanted import MODEL_NAME, Wanted
 
+LIBRARIES = (".so", ".dll", ".dylib", ".pyd")
 # pythonfmu's command line, CSV tool and builder, which no slave needs
 NOT_NEEDED = ("__main__.py", "csvbuilder.py", "deploy.py", "builder.py", "osutil.py")
 # the line of pythonfmu's `__init__.py` that imports the builder, and with it argparse, logging and
@@ -125,8 +128,17 @@ def pack(files: Path, target: Path, date: datetime) -> None:
             entry = zipfile.ZipInfo(name, date.timetuple()[:6])
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.create_system = 3  # Unix, whose modes these are
-            entry.external_attr = (0o100755 if name.endswith((".so", ".dll")) else 0o100644) << 16
+            entry.external_attr = (
+                0o100755 if name.endswith((".so", ".dll", ".dylib", ".pyd")) else 0o100644
+            ) << 16
             archive.writestr(entry, (files / name).read_bytes())
+
+
+def other_targets(wanted: Wanted) -> list[Target]:
+    """The platforms besides this machine's that the wanted FMU has a compiled core for."""
+    if wanted.pure or wanted.platforms == OWN:
+        return []
+    return [target for target in TARGETS.values() if target.name != own_machine()]
 
 
 def build(target: Path, wanted: Wanted) -> list[str]:
@@ -148,21 +160,27 @@ def build(target: Path, wanted: Wanted) -> list[str]:
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         folder = Path(name)
         files, package, script = build_with_pythonfmu(folder, wanted)
+        core_names = [] if wanted.pure else [file.name for file in compiled_cores()]
+        others = other_targets(wanted)
+        compile_cores(others, package / "core" / "compiled_for")
         record_libpython(files)
         root = write_description(files, date, wanted)
         write_documentation(files, root, wanted)
-        identify(files, package.name, script)
-        compilers = replace_binaries(files)
+        identify(files, package.name, script, wanted.platforms)
+        compilers = replace_binaries(files, wanted.platforms)
         made = folder / "made.fmu"
         pack(files, made, date)
         found = check(made, wanted, ends)
         with writing(target):
             target.parent.mkdir(parents=True, exist_ok=True)
             write_durably(target, made.read_bytes())
-    cores = [] if wanted.pure else [file.name for file in compiled_cores()]
     return [
-        *(f"{platform}: front compiled by {compiler}" for platform, compiler in compilers.items()),
-        f"core: {', '.join(cores) or 'not compiled, as --pure asks for'}",
+        *(
+            f"{platform}: front compiled by {compiler}; {tried(platform)}"
+            for platform, compiler in compilers.items()
+        ),
+        f"core: {', '.join(core_names) or 'not compiled, as --pure asks for'}",
+        *(f"{target.name}: core compiled by Zig; {target.tried}" for target in others),
         f"{target}: {found}",
     ]
 
@@ -188,8 +206,16 @@ def main() -> None:
         action="store_true",
         help="leave the compiled core out: the same digits, ten times as slow",
     )
+    parser.add_argument(
+        "--platforms",
+        choices=(OWN, ALL),
+        default=OWN,
+        help="binaries for this machine's platform, or for all that Zig compiles for: Linux on "
+        "x86-64 and Arm, Windows, macOS [default: own]",
+    )
     arguments = parser.parse_args()
-    for line in build(arguments.file, Wanted(pure=arguments.pure)):
+    wanted = Wanted(pure=arguments.pure, platforms=arguments.platforms)
+    for line in build(arguments.file, wanted):
         print(line)
 
 

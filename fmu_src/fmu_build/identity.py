@@ -13,21 +13,23 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from .binary import made_of, makers
+from .targets import OWN
 
 # what stands in the files until the GUID is known
 NO_GUID = "00000000-0000-0000-0000-000000000000"
 TAG_LENGTH = 12
 
 
-def digest(files: Path) -> bytes:
+def digest(files: Path, platforms: str = OWN) -> bytes:
     """SHA-256 of the FMU's files, without pythonfmu's binaries, and of the front's sources.
 
     Args:
         files: Folder of the unpacked FMU, with NO_GUID for the GUID.
+        platforms: Which platforms it is for, this machine's or all.
     """
     root = ElementTree.parse(files / "modelDescription.xml").getroot()
     made_from = {"front": made_of(root)} | {
-        f"compiler/{platform}": text.encode() for platform, text in makers(root).items()
+        f"compiler/{platform}": text.encode() for platform, text in makers(root, platforms).items()
     }
     carried = {
         p.relative_to(files).as_posix(): p.read_bytes()
@@ -41,18 +43,19 @@ def digest(files: Path) -> bytes:
     return found.digest()
 
 
-def identify(files: Path, package: str, script: str) -> str:
+def identify(files: Path, package: str, script: str, platforms: str = OWN) -> str:
     """Put the GUID in its places, and the tag of the build at the end of the modules' names.
 
     Args:
         files: Folder of the unpacked FMU, with NO_GUID for the GUID.
         package: Name of the package in `resources`.
         script: Name of pythonfmu's script there, without `.py`, which imports the package.
+        platforms: Which platforms the FMU is for, this machine's or all.
 
     Returns:
         The GUID.
     """
-    found = digest(files)
+    found = digest(files, platforms)
     guid = str(uuid.UUID(bytes=found[:16], version=5))
     tag = found.hex()[:TAG_LENGTH]
     for path in (files / "modelDescription.xml", files / "documentation" / "index.html"):
