@@ -83,7 +83,9 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
         ax.axhline(0.0, color="#999999", linewidth=0.6)
         ax.grid(visible=True, linewidth=0.3)
         ax.margins(x=0.0)
-    axes[0].legend(loc="lower right", frameon=False, ncols=len(groups))
+    # above the curves, beside the title: inside, some vehicle's curves would cross it
+    above = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.2}
+    axes[0].legend(**above, frameon=False, ncols=len(groups))
     axes[0].set_title(title, loc="left")
     axes[-1].set_xlabel(
         "time [s]   (dotted: first contact; triangles: peaks; "
