@@ -4,12 +4,13 @@ MODE ?= 2-2
 VENV := .venv
 BIN := $(VENV)/bin
 FMU := build/RlvLanding.fmu
+FMU3 := build/RlvLanding3.fmu
 COFMUPY := build/cofmupy/.packages
 CHROMIUM := build/chromium/.packages
 CORE := $(shell find fmu_src/rlv_landing/core -name '*.py')
 SLAVE := fmu_src/landing_fmu.py \
   $(wildcard $(addprefix fmu_src/,fmu_build/*.py fmu_build/*/*.py fmu_build/*/*.j2 fmu_front/*)) \
-  $(wildcard $(addprefix fmu_src/rlv_landing/,quantities/*.py parameters/*.py inputs/*.py)) \
+  $(wildcard $(addprefix fmu_src/rlv_landing/,quantities/*.py parameters/*.py inputs/*.py events/*.py)) \
   $(addprefix fmu_src/rlv_landing/,__init__.py errors.py touchdown.py assembly.py outputs.py) \
   $(addprefix fmu_src/rlv_landing/,state.py interruptible.py landing.py hosted.py figures/plots.py) \
   CHANGELOG.md LICENSE
@@ -44,6 +45,9 @@ $(VENV)/.core: $(VENV)/.packages setup.py fmu_src/fmu_build/core_source.py fmu_s
 $(FMU): $(VENV)/.core $(SLAVE) build_fmu.sh
 	PYTHON=$(BIN)/python ./build_fmu.sh
 
+$(FMU3): $(VENV)/.core $(SLAVE) build_fmu.sh
+	PYTHON=$(BIN)/python ./build_fmu.sh --fmi 3
+
 run: $(FMU)
 	@$(BIN)/rlv-landing node --mode $(MODE) --report
 
@@ -64,10 +68,10 @@ $(CHROMIUM): tests/viewer/fetch_chromium.py tests/viewer/package-lock.json | $(V
 	$(BIN)/python $< $(@D)
 	@touch $@
 
-test: $(FMU) $(COFMUPY) $(CHROMIUM) lint
+test: $(FMU) $(FMU3) $(COFMUPY) $(CHROMIUM) lint
 	$(BIN)/python -m pytest -n 2 --dist loadfile
 
-torture: $(FMU)
+torture: $(FMU) $(FMU3)
 	RLV_TORTURE=50 $(BIN)/python -m pytest -m torture
 
 bench: $(FMU)
@@ -80,7 +84,7 @@ bench: $(FMU)
 annotate: $(VENV)/.core
 	@$(BIN)/python benchmarks/annotate.py
 
-coverage: $(FMU)
+coverage: $(FMU) $(FMU3)
 	RLV_LANDING_PURE=1 $(BIN)/python -m pytest --cov --cov-report=term tests/core tests/model
 
 docs: $(FMU)

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Builds build/RlvLanding.fmu, or the file that the first argument names, and checks it with FMPy.
+# Builds build/RlvLanding.fmu, or the file that an argument names, and checks it with FMPy.
+# With `--fmi 3` it is an FMU of FMI 3.0, build/RlvLanding3.fmu.
 # Needs python3 (3.10 to 3.13), and makes .venv on first use. PYTHON=... names another Python that
 # has the packages. `--pure` builds without the compiled core; `--help` says more.
 set -eu

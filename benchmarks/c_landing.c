@@ -641,7 +641,7 @@ static int bulges(const Landing *s, double h)
         double change = s->y_new[i] - s->y[i], bend = h * s->k1[i] - change;
         double last = change - h * s->k5[i] - bend;
         double out = 0.1875 * MAX(fabs(bend + 0.25 * last), fabs(bend + 0.75 * last));
-        if (out > fabs(change) + 0.1 * (fabs(s->y[i]) + fabs(s->y_new[i])))
+        if (out > fabs(change) + 0.002 * (fabs(s->y[i]) + fabs(s->y_new[i])))
             return 1;
     }
     return 0;

@@ -185,14 +185,39 @@ class RlvLanding(Fmi2Slave):
         fails within the step is an error and ends the landing: outputs and steps are errors until
         the importer restores a state or resets.
         """
+        return bool(self._part(current_time, step_size, math.inf, to_event=False))
+
+    @log_exceptions
+    def do_part(
+        self, current_time: float, step_size: float, stop: float, to_event: float
+    ) -> list[float]:
+        """Integrate within the step from `current_time` to `current_time + step_size` [s].
+
+        The front leaves a step of FMI 3.0 at events, and for intermediate updates. What is refused
+        and what ends the landing are as for `do_step`.
+
+        Args:
+            current_time: Where the step, or what is left of it, starts [s].
+            step_size: Its length [s].
+            stop: Where to leave it at the latest [s]; infinite for its end.
+            to_event: Above 0: leave it at the first event.
+
+        Returns:
+            The time reached [s], which is `stop` or that of an event before, and 1 if there is an
+            event, else 0. Nothing if the step is refused or fails.
+        """
+        return self._part(current_time, step_size, stop, to_event=to_event > 0.0)
+
+    def _part(
+        self, current_time: float, step_size: float, stop: float, *, to_event: bool
+    ) -> list[float]:
         try:
             end = self._hosted.prepare_step(current_time, step_size)
         except LandingError as e:
             self._refuse(str(e))
-            return False
+            return []
         self._refusals = 0
-        self._hosted.advance(end)
-        return True
+        return self._hosted.advance(end, stop, to_event=to_event)
 
     def _refuse(self, reason: str) -> None:
         self._refusals += 1

@@ -48,6 +48,14 @@ def fmu() -> Path:
     return path
 
 
+@pytest.fixture(scope="session")
+def fmu3(fmu: Path) -> Path:
+    """The built FMU of FMI 3.0. Tests fail without it: `make test` builds it."""
+    path = fmu.with_name("RlvLanding3.fmu")
+    assert path.is_file(), f"{path} is missing: run ./build_fmu.sh --fmi 3"
+    return path
+
+
 @pytest.fixture(scope="session", params=MODES)
 def mode(request: pytest.FixtureRequest) -> str:
     return str(request.param)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
@@ -34,6 +35,7 @@ def test_marked_numbers_are_right(page):
 
 
 @pytest.mark.torture
+@pytest.mark.skipif("RLV_TORTURE" not in os.environ, reason="minutes of landings: make torture")
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_marked_numbers_of_studies_are_right(page):
     assert wrong(page, slow=True) == [], (

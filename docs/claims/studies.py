@@ -43,7 +43,7 @@ def topples(at: str, slope: float, tilt: float, speed: float) -> bool:
         "drop.contact_time": 0.0,
         "drop.horizontal_velocity": speed,
     }
-    history = whole_landing(Landing(load_preset("yue2022-figures", "2-2").with_values(values)), 6.0)
+    history = whole_landing(Landing(load_preset("yue2022-figures", "2-2").with_values(values)))
     return outcome(history, {}).name == "toppled"
 
 

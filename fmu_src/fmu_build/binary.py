@@ -10,7 +10,7 @@ import hashlib
 import shutil
 import sysconfig
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from importlib.util import find_spec
 from pathlib import Path
 from xml.etree import ElementTree
@@ -19,7 +19,7 @@ from .compilers import Compiler, for_linux, for_target, run
 from .cross import universal
 from .fronts import prebuilt
 from .fronts.header import FRONT, front_identity, neutral_header, variables_header
-from .targets import ALL, FMI2, OWN, of_platform, own_machine, own_platform
+from .targets import ALL, FMI2, OWN, TARGETS, of_platform, own_machine, own_platform
 
 # FMI's C headers, which FMPy has; it takes long to import
 _FMPY = find_spec("fmpy")
@@ -42,14 +42,16 @@ SYSTEM_ARGS = {
 SYSTEM_OF_SUFFIX = {".so": "linux", ".dylib": "darwin", ".dll": "windows"}
 
 
-def compilers(platforms: str = OWN) -> dict[str, list[Compiler]]:
+def compilers(platforms: str = OWN, fmi: str = "2") -> dict[str, list[Compiler]]:
     """The compilers for each of FMI's platforms that there are all for, one for each architecture.
 
     Args:
         platforms: This machine's or all.
+        fmi: The version of FMI, whose names the platforms have.
     """
-    found = {own_platform(): [for_linux()]}
-    for platform in FMI2 if platforms == ALL else ():
+    found = {own_platform(fmi): [for_linux()]}
+    names: Iterable[str] = FMI2 if fmi == "2" else TARGETS
+    for platform in names if platforms == ALL else ():
         targets = of_platform(platform)
         chosen = [c for c in map(for_target, targets) if c]
         if len(chosen) == len(targets) and own_machine() not in {t.name for t in targets}:
@@ -78,12 +80,19 @@ def front_sources() -> list[Path]:
     return sorted(p for p in FRONT.iterdir() if p.suffix in (".c", ".h", ".py"))
 
 
-def replace_binaries(files: Path, platforms: str = OWN) -> dict[str, str]:
+def replace_binaries(
+    files: Path,
+    root: ElementTree.Element | None = None,
+    platforms: str = OWN,
+    fmi: str = "2",
+) -> dict[str, str]:
     """Replace pythonfmu's binaries by the front.
 
     Args:
         files: Folder of the unpacked FMU.
+        root: Root of its description in FMI 2.0; by default that of its modelDescription.xml.
         platforms: Which platforms it is for, this machine's or all.
+        fmi: The FMU's version of FMI, 2 or 3. The front has the functions of both.
 
     Returns:
         The compiler for each platform.
@@ -91,36 +100,33 @@ def replace_binaries(files: Path, platforms: str = OWN) -> dict[str, str]:
     Raises:
         SystemExit: The front does not compile; the message has the compiler's output.
     """
-    root = ElementTree.parse(files / "modelDescription.xml").getroot()
+    if root is None:
+        root = ElementTree.parse(files / "modelDescription.xml").getroot()
     simulation = root.find("CoSimulation")
     assert simulation is not None
     name = simulation.attrib["modelIdentifier"]
     module = (files / "resources" / "slavemodule.txt").read_text().strip()
     shutil.rmtree(files / "binaries")
+
+    def place(platform: str) -> Path:
+        folder = files / "binaries" / platform
+        folder.mkdir(parents=True)
+        return folder / f"{name}{suffix(platform)}"
+
     ready = prebuilt.fronts(made_of(root)) if platforms == OWN else []
-    if ready:
-        identity = front_identity(root, module)
-        for front in ready:
-            target = _place(files, front.platform, name)
-            target.write_bytes(prebuilt.identified(front.content, identity))
-        return {front.platform: front.compiler for front in ready}
-    return compile_fronts(
-        variables_header(root, module),
-        lambda platform: _place(files, platform, name),
-        compilers(platforms),
-    )
+    if not ready:
+        return compile_fronts(variables_header(root, module), place, compilers(platforms, fmi))
+    identity = front_identity(root, module)
+    found = {own_platform(fmi): front for front in ready if front.platform == own_platform()}
+    for platform, front in found.items():
+        place(platform).write_bytes(prebuilt.identified(front.content, identity))
+    return {platform: front.compiler for platform, front in found.items()}
 
 
-def _place(files: Path, platform: str, name: str) -> Path:
-    """The front's file for a platform, in its folder, which is made."""
-    target = files / "binaries" / platform / f"{name}{suffix(platform)}"
-    target.parent.mkdir(parents=True)
-    return target
-
-
-def suffix(platform: str) -> str:
+def suffix(system: str) -> str:
     """The ending of a shared library of one of FMI's platforms."""
-    return of_platform(platform)[0].library
+    targets = of_platform(system)
+    return targets[0].library if targets else ".so"
 
 
 def made_of(root: ElementTree.Element) -> bytes:

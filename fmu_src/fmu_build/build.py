@@ -26,12 +26,14 @@ from rlv_landing.text.durable import write_durably, writing
 from .binary import record_libpython, replace_binaries
 from .cross.cores import compile_cores
 from .description import describe
+from .description3 import describe3
 from .identity import NO_GUID, identify
 from .pages.documentation import write_documentation
 from .sources import ROOT, compiled_cores, copy_sources, source_date
 from .targets import ALL, OWN, TARGETS, Target, own_machine, tried
+from .terminals import write_terminals
 from .trial import check, expected
-from .wanted import MODEL_NAME, Wanted
+from .wanted import FMI_VERSIONS, MODEL_NAME, Wanted
 
 LIBRARIES = (".so", ".dll", ".dylib", ".pyd")
 # pythonfmu's command line, CSV tool and builder, which no slave needs
@@ -107,16 +109,19 @@ def take_pythonfmu(own: Path, package: Path) -> None:
     slave.write_text(re.sub(r"^from pythonfmu", "from .pythonfmu", slave.read_text(), flags=re.M))
 
 
-def write_description(files: Path, date: datetime, wanted: Wanted) -> ElementTree.Element:
-    """Complete pythonfmu's modelDescription.xml in `files`; return its root."""
-    path = files / "modelDescription.xml"
-    tree = ElementTree.parse(path)
-    root = tree.getroot()
+def complete_description(files: Path, date: datetime, wanted: Wanted) -> ElementTree.Element:
+    """The root of pythonfmu's modelDescription.xml in `files`, completed."""
+    root = ElementTree.parse(files / "modelDescription.xml").getroot()
     root.set("guid", NO_GUID)
     describe(root, date.strftime("%Y-%m-%dT%H:%M:%SZ"), wanted)
-    ElementTree.indent(tree, "\t")
-    tree.write(path, encoding="UTF-8", xml_declaration=True)
     return root
+
+
+def write_description(files: Path, root: ElementTree.Element) -> None:
+    """Write the modelDescription.xml with this root."""
+    tree = ElementTree.ElementTree(root)
+    ElementTree.indent(tree, "\t")
+    tree.write(files / "modelDescription.xml", encoding="UTF-8", xml_declaration=True)
 
 
 def pack(files: Path, target: Path, date: datetime) -> None:
@@ -164,10 +169,14 @@ def build(target: Path, wanted: Wanted) -> list[str]:
         others = other_targets(wanted)
         compile_cores(others, package / "core" / "compiled_for")
         record_libpython(files)
-        root = write_description(files, date, wanted)
-        write_documentation(files, root, wanted)
-        identify(files, package.name, script, wanted.platforms)
-        compilers = replace_binaries(files, wanted.platforms)
+        root = complete_description(files, date, wanted)
+        description = describe3(root) if wanted.fmi == "3" else root
+        write_description(files, description)
+        write_documentation(files, description, wanted)
+        if wanted.fmi == "3":
+            write_terminals(files, description)
+        root.set("guid", identify(files, package.name, script, root, wanted.platforms))
+        compilers = replace_binaries(files, root, wanted.platforms, wanted.fmi)
         made = folder / "made.fmu"
         pack(files, made, date)
         found = check(made, wanted, ends)
@@ -198,8 +207,13 @@ def main() -> None:
         "file",
         nargs="?",
         type=Path,
-        default=ROOT / "build" / f"{MODEL_NAME}.fmu",
-        help="the FMU's file [default: build/RlvLanding.fmu]",
+        help="the FMU's file [default: build/RlvLanding.fmu, for FMI 3.0 build/RlvLanding3.fmu]",
+    )
+    parser.add_argument(
+        "--fmi",
+        choices=FMI_VERSIONS,
+        default=FMI_VERSIONS[0],
+        help="version of FMI: 2.0 or 3.0, both for co-simulation [default: 2]",
     )
     parser.add_argument(
         "--pure",
@@ -214,8 +228,9 @@ def main() -> None:
         "x86-64 and Arm, Windows, macOS [default: own]",
     )
     arguments = parser.parse_args()
-    wanted = Wanted(pure=arguments.pure, platforms=arguments.platforms)
-    for line in build(arguments.file, wanted):
+    wanted = Wanted(fmi=arguments.fmi, pure=arguments.pure, platforms=arguments.platforms)
+    name = f"{MODEL_NAME}{'3' if wanted.fmi == '3' else ''}.fmu"
+    for line in build(arguments.file or ROOT / "build" / name, wanted):
         print(line)
 
 

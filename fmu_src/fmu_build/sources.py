@@ -35,7 +35,7 @@ MODULES = (
     "landing.py",
     "hosted.py",
 )
-FOLDERS = ("quantities", "parameters", "inputs", "core")
+FOLDERS = ("quantities", "parameters", "inputs", "events", "core")
 # dates that a zip file can hold, 1980 to 2107 [s since 1970]; 1980 also for sources without a date
 OLDEST, NEWEST = 315532800, 4354819199
 

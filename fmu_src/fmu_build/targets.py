@@ -100,7 +100,7 @@ FMI2 = {
 
 def of_platform(folder: str) -> tuple[Target, ...]:
     """The targets whose binaries stand in a folder of `binaries`, by FMI 2.0's or 3.0's name."""
-    return tuple(TARGETS[name] for name in FMI2.get(folder, (folder,)))
+    return tuple(TARGETS[name] for name in FMI2.get(folder, (folder,)) if name in TARGETS)
 
 
 def own_machine() -> str:
@@ -109,11 +109,11 @@ def own_machine() -> str:
     return f"{'aarch64' if machine == 'arm64' else machine}-linux"
 
 
-def own_platform() -> str:
-    """The folder where hosts on this machine look for the binary, by FMI 2.0."""
-    return "linux64"
+def own_platform(fmi: str = "2") -> str:
+    """The folder where hosts on this machine look for the binary, by a version of FMI."""
+    return "linux64" if fmi == "2" else own_machine()
 
 
 def tried(folder: str) -> str:
     """How the binary in a folder of `binaries` was tried."""
-    return ", ".join(dict.fromkeys(target.tried for target in of_platform(folder)))
+    return ", ".join(dict.fromkeys(target.tried for target in of_platform(folder))) or "run"

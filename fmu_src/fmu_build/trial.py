@@ -11,6 +11,8 @@ from fmpy.validation import validate_fmu
 from rlv_landing import Landing
 from rlv_landing.quantities import OUTPUT_QUANTITIES, flat_name
 
+from .arrays import whole_name
+from .terminals import faults
 from .wanted import Wanted
 
 # the trial's end after the first contact [s], and its communication steps
@@ -50,27 +52,40 @@ def check(fmu: Path, wanted: Wanted, ends: Expected) -> str:
     Raises:
         SystemExit: The description is not valid, or the landing is not that of the vehicle.
     """
-    problems = validate_fmu(str(fmu))
+    problems = validate_fmu(str(fmu)) + (faults(fmu) if wanted.fmi == "3" else [])
     if problems:
         raise SystemExit("error: the FMU is not valid: " + "; ".join(problems))
-    names = {q.name: flat_name(q.name) if wanted.flat_names else q.name for q in OUTPUT_QUANTITIES}
+    names = {q.name: _own_name(q.name, wanted) for q in OUTPUT_QUANTITIES}
     try:
         result: Any = fmpy.simulate_fmu(
             fmpy.extract(str(fmu), str(fmu.with_suffix(""))),
             stop_time=ends.end,
             output_interval=ends.end / STEPS,
-            output=list(names.values()),
+            output=list(dict.fromkeys(names.values())),
         )
     except Exception as e:
         raise SystemExit(f"error: the FMU does not land: {' '.join(str(e).split())}") from None
     for q in OUTPUT_QUANTITIES:
-        ours, its = ends.values[q.name], float(result[names[q.name]][-1])
+        ours, its = ends.values[q.name], float(_column(result, q.name, names)[-1])
         if not abs(its - ours) <= TOLERANCE * max(abs(ours), q.nominal):
             raise SystemExit(
                 f"error: the FMU's trial landing is not that of the vehicle: {q.name} = {its:g} "
                 f"{q.unit} at {ends.end:g} s, not {ours:g} {q.unit}"
             )
     return (
-        f"valid; trial landing: main strut 1 down to {result[names[FORCE]].min():.0f} N, "
+        f"valid; trial landing: main strut 1 down to {_column(result, FORCE, names).min():.0f} N, "
         f"energy balance within {abs(result[names[BALANCE]]).max():.1e} J"
     )
+
+
+def _own_name(name: str, wanted: Wanted) -> str:
+    """The name of the FMU's variable that has an output."""
+    if wanted.fmi == "3":
+        return whole_name(name)
+    return flat_name(name) if wanted.flat_names else name
+
+
+def _column(result: Any, name: str, names: dict[str, str]) -> Any:
+    """The values of an output: a column of the array that the legs have in FMI 3.0."""
+    values = result[names[name]]
+    return values if values.ndim == 1 else values[:, int(name[name.index("[") + 1]) - 1]

@@ -13,7 +13,7 @@ from .targets import OWN
 
 MODEL_NAME = "RlvLanding"
 LONGEST_NAME = 64
-FMI_VERSIONS = ("2",)
+FMI_VERSIONS = ("2", "3")
 # the default experiment's end [s], and how long after the first contact it is at least
 END, AFTER_CONTACT = 1.0, 0.5
 
@@ -32,7 +32,8 @@ class Wanted:
         platforms: Which platforms it is for, this machine's (`own`) or all.
 
     Raises:
-        LandingError: `name` is no identifier of C, or FMI's version is not to be had.
+        LandingError: `name` is no identifier of C, FMI's version is not to be had, or flat names
+            are wanted in FMI 3.0.
     """
 
     parameters: Parameters = field(default_factory=Parameters)
@@ -57,6 +58,11 @@ class Wanted:
         if self.fmi not in FMI_VERSIONS:
             raise LandingError(
                 f"FMI {self.fmi} FMUs cannot be built; the versions are {', '.join(FMI_VERSIONS)}"
+            )
+        if self.flat_names and self.fmi == "3":
+            raise LandingError(
+                "flat names are for FMI 2.0, where each leg has variables of its own; in FMI 3.0 "
+                "they are arrays: leave one of the two out"
             )
 
     @property

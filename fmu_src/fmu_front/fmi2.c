@@ -59,13 +59,8 @@ static void send_message(const struct host *host, const char *name, enum status 
 {
     const fmi2CallbackFunctions *callbacks = host->callbacks;
     /* the host takes the message as a format, and a path or a value in it may hold a % */
-    char escaped[2 * sizeof(struct message)], *to = escaped;
-    for (; *text && to < escaped + sizeof escaped - 2; text++) {
-        if (*text == '%')
-            *to++ = '%';
-        *to++ = *text;
-    }
-    *to = '\0';
+    char escaped[2 * sizeof(struct message)];
+    double_character(text, '%', escaped, sizeof escaped);
     callbacks->logger(callbacks->componentEnvironment, name, (fmi2Status)status, category, escaped);
 }
 

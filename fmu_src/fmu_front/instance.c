@@ -143,7 +143,7 @@ enum status instance_exit_initialization(struct instance *c, const struct functi
         return STATUS_ERROR;
     enum status status = leave_call(c, slave_exit_initialization(c->slave));
     if (status < STATUS_ERROR) /* else the host may set other values and try again */
-        c->phase = STEPPING;
+        c->phase = c->host.event_mode ? EVENT_MODE : STEPPING;
     return status;
 }
 
@@ -154,6 +154,22 @@ enum status instance_step(struct instance *c, const struct function *f, double t
     enum status status = leave_call(c, slave_step(c->slave, time, step));
     if (status < STATUS_DISCARD)
         c->last_time = time + step;
+    c->last_step = status;
+    return status;
+}
+
+enum status instance_step_part(struct instance *c, const struct function *f, double time,
+                               double end, double stop, bool to_event, bool *event)
+{
+    struct part part = {.stop = stop < end ? stop : INFINITY, .to_event = to_event};
+    *event = false;
+    if (!enter_call(c, f))
+        return STATUS_ERROR;
+    enum status status = leave_call(c, slave_step_part(c->slave, time, end - time, &part));
+    if (status < STATUS_DISCARD) {
+        c->last_time = part.reached < end ? part.reached : end;
+        *event = part.event;
+    }
     c->last_step = status;
     return status;
 }

@@ -16,8 +16,19 @@
  */
 enum { RATES = 2000000 };
 
-/* The phase of an instance. SLAVE_LOST: an internal error has ended the slave; reset or free. */
-enum phase { INSTANTIATED = 1, INITIALIZING = 2, STEPPING = 4, TERMINATED = 8, SLAVE_LOST = 16 };
+/*
+ * The phase of an instance. SLAVE_LOST: an internal error has ended the slave; reset or free.
+ * EVENT_MODE and UPDATING, a callback within a step, are FMI 3.0's.
+ */
+enum phase {
+    INSTANTIATED = 1,
+    INITIALIZING = 2,
+    STEPPING = 4,
+    TERMINATED = 8,
+    SLAVE_LOST = 16,
+    EVENT_MODE = 32,
+    UPDATING = 64
+};
 enum { BEFORE_STEPS = INSTANTIATED | INITIALIZING, ANY = BEFORE_STEPS | STEPPING | TERMINATED };
 
 /* A function of the host's version of FMI: its name, and the phases in which it may be called. */
@@ -31,7 +42,9 @@ struct host {
     void (*send)(const struct host *host, const char *name, enum status status,
                  const char *category, const char *text);
     const void *callbacks;
+    bool event_mode; /* it handles events */
     bool logging;
+    bool takes_errors; /* whether they are of categories that it wants or not */
     unsigned categories; /* one bit for each of the description's; 0: all */
 };
 
@@ -65,11 +78,23 @@ enum status instance_setup(struct instance *c, const struct function *f, double 
 enum status instance_enter_initialization(struct instance *c, const struct function *f);
 enum status instance_exit_initialization(struct instance *c, const struct function *f);
 enum status instance_step(struct instance *c, const struct function *f, double time, double step);
+/*
+ * Step from `time` to `stop`, in what is left of a step that ends at `end`, or to the first event
+ * if `to_event`. `*event` tells whether there is one; the time reached is c->last_time.
+ */
+enum status instance_step_part(struct instance *c, const struct function *f, double time,
+                               double end, double stop, bool to_event, bool *event);
 enum status instance_terminate(struct instance *c, const struct function *f);
 enum status instance_reset(struct instance *c, const struct function *f);
 /* Choose the categories that are logged; one that does not exist is a Warning. */
 enum status instance_set_logging(struct instance *c, const struct function *f, bool logging,
                                  size_t n, const char *const categories[]);
+
+/* Check that a variable may be set in this phase; log an error that calls it `name` if not. */
+bool check_settable(const struct instance *c, const struct function *f, uint32_t vr,
+                    const char *name);
+/* A numeric output, which may be read as REAL, too. */
+bool is_numeric_output(uint32_t vr);
 
 /*
  * Read numbers of variables of the kind. Numeric outputs of the other kinds are read as REAL, too.
@@ -103,7 +128,7 @@ enum status instance_deserialize(struct instance *c, const struct function *f, c
 void free_states_of(struct instance *c);
 
 /*
- * Log a message if the host wants its category. An error that the host does not want goes to
+ * Log a message if the host wants its category. An error that the host does not take goes to
  * standard error.
  */
 #if defined(__GNUC__)
@@ -124,6 +149,9 @@ int category_index(const char *name);
  * may not be called. The cached outputs are invalid afterwards.
  */
 bool enter_call(struct instance *c, const struct function *f);
+
+/* The same for a call that reads: outputs that are valid stay so. */
+bool enter_reading(struct instance *c, const struct function *f);
 
 /* Leave the call after the slave's answer; returns the worst status. */
 enum status leave_call(struct instance *c, enum answer answer);

@@ -30,7 +30,8 @@ static void send_message(const struct instance *c, enum status status, const cha
 {
     if (!category || !*category)
         category = STATUS_CATEGORIES[status];
-    if (is_logged(&c->host, category))
+    const bool taken = status >= STATUS_ERROR && c->host.takes_errors && c->host.send;
+    if (taken || is_logged(&c->host, category))
         c->host.send(&c->host, c->name, status, category, text);
     else if (status >= STATUS_ERROR)
         fprintf(stderr, "%s (%s): %s\n", MODEL_NAME, c->name, text);
@@ -54,15 +55,19 @@ void log_from_slave(void *instance, enum status status, const char *category, co
     send_message(c, status, category, text);
 }
 
-static const char *description_of(enum phase phase)
+static const char *description_of(const struct instance *c)
 {
-    switch (phase) {
+    switch (c->phase) {
     case INSTANTIATED:
         return "before the initialization mode";
     case INITIALIZING:
         return "in initialization mode";
     case STEPPING:
-        return "after the initialization mode";
+        return c->host.event_mode ? "in step mode" : "after the initialization mode";
+    case EVENT_MODE:
+        return "in event mode";
+    case UPDATING:
+        return "in an intermediate update";
     case TERMINATED:
         return "after the termination";
     default:
@@ -78,8 +83,17 @@ bool enter_call(struct instance *c, const struct function *f)
     c->outputs_valid = false;
     if (c->phase & f->phases)
         return true;
-    log_message(c, STATUS_ERROR, "%s must not be called %s", f->name, description_of(c->phase));
+    log_message(c, STATUS_ERROR, "%s must not be called %s", f->name, description_of(c));
     return false;
+}
+
+bool enter_reading(struct instance *c, const struct function *f)
+{
+    bool valid = c && c->outputs_valid;
+    if (!enter_call(c, f))
+        return false;
+    c->outputs_valid = valid;
+    return true;
 }
 
 bool require(const struct instance *c, const struct function *f, const char *argument,

@@ -3,6 +3,7 @@
 #include "variables.h"
 #include "visit.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -25,7 +26,8 @@
     X(SET_STATE, _set_fmu_state) \
     X(STATE_TO_BYTES, _fmu_state_to_bytes) \
     X(STATE_FROM_BYTES, _fmu_state_from_bytes) \
-    X(GET_OUTPUTS, get_outputs) /* may be missing */
+    X(GET_OUTPUTS, get_outputs) /* this and the next may be missing */ \
+    X(STEP_PART, do_part)
 
 #define NUMBER(name, method) name,
 enum method { METHODS(NUMBER) METHOD_COUNT };
@@ -152,7 +154,7 @@ static bool find_methods(struct slave *s, PyObject *object)
 {
     for (int i = 0; i < METHOD_COUNT; i++) {
         s->methods[i] = py.PyObject_GetAttrString(object, METHOD_NAMES[i]);
-        if (!s->methods[i] && i != GET_OUTPUTS)
+        if (!s->methods[i] && i < GET_OUTPUTS)
             return false;
     }
     py.PyErr_Clear();
@@ -263,19 +265,6 @@ enum answer slave_terminate(struct slave *s)
     return do_call(s, TERMINATE);
 }
 
-enum answer slave_step(struct slave *s, double time, double step)
-{
-    struct visit v;
-    enum answer entry = visit_begin(&v, &s->listener, s->life);
-    if (entry != DONE)
-        return entry;
-    PyObject *result = call(s, STEP, py.Py_BuildValue("(dd)", time, step));
-    bool refused = result && py.PyObject_IsTrue(result) == 0;
-    release(result);
-    enum answer answer = end_call(&v, s, STEP);
-    return answer == DONE && refused ? REFUSED : answer;
-}
-
 static PyObject *references(const uint32_t vr[], size_t n)
 {
     PyObject *list = py.PyList_New((Py_ssize_t)n);
@@ -293,6 +282,44 @@ static void copy_numbers(PyObject *list, size_t n, double value[])
         if (value[i] == -1.0 && py.PyErr_Occurred())
             return;
     }
+}
+
+enum answer slave_step(struct slave *s, double time, double step)
+{
+    struct visit v;
+    enum answer entry = visit_begin(&v, &s->listener, s->life);
+    if (entry != DONE)
+        return entry;
+    PyObject *result = call(s, STEP, py.Py_BuildValue("(dd)", time, step));
+    bool refused = result && py.PyObject_IsTrue(result) == 0;
+    release(result);
+    enum answer answer = end_call(&v, s, STEP);
+    return answer == DONE && refused ? REFUSED : answer;
+}
+
+enum answer slave_step_part(struct slave *s, double time, double step, struct part *part)
+{
+    double found[] = {INFINITY, 0.0}; /* the time reached, and whether there is an event */
+    struct visit v;
+    if (!s->methods[STEP_PART]) {
+        part->reached = INFINITY;
+        part->event = false;
+        return slave_step(s, time, step);
+    }
+    enum answer entry = visit_begin(&v, &s->listener, s->life);
+    if (entry != DONE)
+        return entry;
+    PyObject *arguments =
+        py.Py_BuildValue("(dddd)", time, step, part->stop, part->to_event ? 1.0 : 0.0);
+    PyObject *list = call(s, STEP_PART, arguments);
+    bool refused = list && py.PyObject_IsTrue(list) == 0;
+    if (!refused)
+        copy_numbers(list, sizeof found / sizeof *found, found);
+    release(list);
+    part->reached = found[0];
+    part->event = found[1] > 0.0;
+    enum answer answer = end_call(&v, s, STEP_PART);
+    return answer == DONE && refused ? REFUSED : answer;
 }
 
 enum answer slave_read(struct slave *s, enum kind kind, const uint32_t vr[], size_t n,

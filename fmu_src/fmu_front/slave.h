@@ -2,8 +2,10 @@
  * The slave: an object in Python, of the class that the FMU's script defines.
  *
  * Only slave.c and visit.c, with python.c and libpython.c, call Python. The class is one of
- * pythonfmu's `Fmi2Slave`; its methods are called as pythonfmu's own binary calls them. One more is
- * called if it is there: `get_outputs()` gives all numeric outputs, in the order of the description.
+ * pythonfmu's `Fmi2Slave`; its methods are called as pythonfmu's own binary calls them. Two more
+ * are called if they are there: `get_outputs()` gives all numeric outputs, in the order of the
+ * description; `do_part(time, step, stop, to_event)` leaves a step at `stop`, or at an event, and
+ * gives the time reached and whether there is an event.
  */
 #ifndef SLAVE_H
 #define SLAVE_H
@@ -47,6 +49,15 @@ enum answer slave_setup(struct slave *s, double start, const double *stop, const
 enum answer slave_enter_initialization(struct slave *s);
 enum answer slave_exit_initialization(struct slave *s);
 enum answer slave_step(struct slave *s, double time, double step);
+/* A part of a step: where to leave it, and where it was left. */
+struct part {
+    double stop; /* infinite for the step's end */
+    bool to_event;
+    double reached; /* `stop`, or the time of an event before */
+    bool event;
+};
+/* Make a part of a step; a slave that has no parts makes the whole step. */
+enum answer slave_step_part(struct slave *s, double time, double step, struct part *part);
 enum answer slave_terminate(struct slave *s);
 
 /* Read `n` variables of the kind, which is not STRING. */

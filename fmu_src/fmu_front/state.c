@@ -122,7 +122,9 @@ enum status instance_set_state(struct instance *c, const struct function *f, voi
     const struct state *from = state;
     enum status status = leave_call(c, slave_set_state(c->slave, from->slave));
     if (status < STATUS_ERROR) {
-        c->phase = from->phase;
+        /* a host that handles no events has no such mode */
+        c->phase = from->phase == EVENT_MODE && !c->host.event_mode ? STEPPING
+                                                                    : (enum phase)from->phase;
         c->last_time = from->last_time;
         c->last_step = STATUS_OK;
     }
@@ -214,7 +216,7 @@ static const char *state_fault(const struct header *header, const char *bytes, s
     if (header->check != checksum(bytes + CHECK_START, sizeof *header + header->size - CHECK_START))
         return "are damaged";
     if (header->phase != INSTANTIATED && header->phase != INITIALIZING &&
-        header->phase != STEPPING && header->phase != TERMINATED)
+        header->phase != STEPPING && header->phase != TERMINATED && header->phase != EVENT_MODE)
         return "are damaged";
     return NULL;
 }

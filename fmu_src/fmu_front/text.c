@@ -14,6 +14,16 @@ void append_text(struct message *message, const char *format, ...)
     va_end(arguments);
 }
 
+void double_character(const char *text, char character, char *to, size_t size)
+{
+    for (; *text && size > 2; text++, size--) {
+        if (*text == character)
+            *to++ = character, size--;
+        *to++ = *text;
+    }
+    *to = '\0';
+}
+
 bool decode_utf8(const char *text, wchar_t *wide, size_t size)
 {
     const unsigned char *s = (const unsigned char *)text;

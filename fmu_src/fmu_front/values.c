@@ -13,7 +13,7 @@ static const char *kind_name(char kind)
                              : "a String";
 }
 
-static bool is_numeric_output(uint32_t vr)
+bool is_numeric_output(uint32_t vr)
 {
     return VARIABLES[vr].causality == 'o' && VARIABLES[vr].kind != STRING;
 }
@@ -44,16 +44,12 @@ static bool check_references(const struct instance *c, const struct function *f,
     return true;
 }
 
-/* Enter a getter. Reading changes nothing, so outputs that are valid stay so. */
 static bool enter_read(struct instance *c, const struct function *f, enum kind kind,
                        const uint32_t vr[], size_t n, const void *value)
 {
-    bool valid = c && c->outputs_valid;
-    if (!enter_call(c, f))
-        return false;
-    c->outputs_valid = valid;
-    return n == 0 || (require(c, f, "vr", vr) && require(c, f, "value", value) &&
-                      check_references(c, f, kind, true, vr, n));
+    return enter_reading(c, f) &&
+           (n == 0 || (require(c, f, "vr", vr) && require(c, f, "value", value) &&
+                       check_references(c, f, kind, true, vr, n)));
 }
 
 /* Read all numeric outputs that are of the kind, or, with 0, of any. */
@@ -154,20 +150,26 @@ enum status instance_read_strings(struct instance *c, const struct function *f,
     return n ? leave_call(c, slave_read_strings(c->slave, vr, n, value)) : STATUS_OK;
 }
 
-/* Check that all variables may be set in this phase; log the first that may not. */
-static bool check_settable(const struct instance *c, const struct function *f,
-                           const uint32_t vr[], size_t n)
+bool check_settable(const struct instance *c, const struct function *f, uint32_t vr,
+                    const char *name)
 {
-    for (size_t i = 0; i < n; i++) {
-        const struct variable *v = &VARIABLES[vr[i]];
-        if (v->causality == 'i' || (v->causality == 'p' && c->phase & BEFORE_STEPS))
-            continue;
-        log_message(c, STATUS_ERROR, "%s: %s %s", f->name, v->name,
-                    v->causality == 'p' ? "is a fixed parameter: set it before the end of the "
-                                          "initialization mode, or reset"
-                                        : "is no parameter or input");
-        return false;
-    }
+    const char causality = VARIABLES[vr].causality;
+    if (causality == 'i' || (causality == 'p' && c->phase & BEFORE_STEPS))
+        return true;
+    log_message(c, STATUS_ERROR, "%s: %s %s", f->name, name,
+                causality == 'p' ? "is a fixed parameter: set it before the end of the "
+                                   "initialization mode, or reset"
+                                 : "is no parameter or input");
+    return false;
+}
+
+/* Check that all variables may be set in this phase; log the first that may not. */
+static bool check_all_settable(const struct instance *c, const struct function *f,
+                               const uint32_t vr[], size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        if (!check_settable(c, f, vr[i], VARIABLES[vr[i]].name))
+            return false;
     return true;
 }
 
@@ -180,7 +182,8 @@ static bool enter_write(struct instance *c, const struct function *f, enum kind 
 {
     return enter_call(c, f) &&
            (n == 0 || (require(c, f, "vr", vr) && require(c, f, "value", value) &&
-                       check_references(c, f, kind, false, vr, n) && check_settable(c, f, vr, n)));
+                       check_references(c, f, kind, false, vr, n) &&
+                       check_all_settable(c, f, vr, n)));
 }
 
 enum status instance_write(struct instance *c, const struct function *f, enum kind kind,

@@ -20,31 +20,17 @@ from .commands.envelope import envelope
 from .commands.identify import identify
 from .commands.options import HELP_NAMES
 from .commands.parameters import parameters
+from .commands.printing import BAD_INPUT, FAILED, exit_code
 from .commands.sensitivity import sensitivity
 from .commands.simulate import simulate
 from .commands.sweep import sweep
 from .commands.validate import validate
 from .core import COMPILED, WHY_NOT_COMPILED
 from .errors import LandingError, nearest, one_line
+from .text.durable import NO_ROOM
 from .text.terminal import make_legible
 
-FAILED = 1
-BAD_INPUT = 2
 INTERRUPTED = 130
-# what the system says where a disk takes no more
-FULL = {errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno.ENOSPC)}
-# what the system says of a path that the user can change
-NOT_USABLE = {
-    errno.ENOENT,
-    errno.EACCES,
-    errno.EPERM,
-    errno.EEXIST,
-    errno.ENOTDIR,
-    errno.EISDIR,
-    errno.ENAMETOOLONG,
-    errno.ELOOP,
-    errno.EROFS,
-}
 
 
 class Commands(click.Group):
@@ -164,13 +150,14 @@ def run(group: click.Group, name: str | None = None) -> int:
 def _refuse_file(error: OSError) -> int:
     reason = error.strerror or str(error)
     if error.filename is None:
-        full = error.errno in FULL and _output_fails()
+        full = error.errno in {*NO_ROOM, errno.EIO} and _output_fails()
         where = "standard output cannot be written: " if full else ""
         return _refuse(f"{where}{reason}", FAILED)
     name = os.fsdecode(error.filename) if isinstance(error.filename, bytes) else error.filename
-    if error.errno in NOT_USABLE:
+    status = exit_code(error)
+    if status == BAD_INPUT:
         return _refuse(f"{name} cannot be used: {reason}; name another", BAD_INPUT)
-    return _refuse(f"{name}: {reason}", FAILED)
+    return _refuse(f"{name}: {reason}", status)
 
 
 def _output_fails() -> bool:

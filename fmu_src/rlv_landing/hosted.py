@@ -109,18 +109,31 @@ class HostedLanding:
         self._inputs, self._rates = {}, {}
         return max(now + step_size, landing.time)
 
-    def advance(self, end: float) -> None:
-        """Go on to the landing's time `end` [s].
+    def advance(self, end: float, stop: float = inf, *, to_event: bool = False) -> list[float]:
+        """Go on in a step that ends at the landing's time `end` [s].
+
+        Args:
+            end: The step's end, as `prepare_step` gives it [s].
+            stop: The host's time at which to leave the step at the latest [s].
+            to_event: Leave it at the first event.
+
+        Returns:
+            The host's time reached [s], which is `stop` or that of an event before; and 1 if there
+            is an event at it, else 0.
 
         Raises:
             LandingError: The integrator cannot go on; the landing has ended then.
         """
+        landing = self._current()
+        until = min(max(stop - self.start_time, landing.time), end)
         self._outputs = []
         try:
-            self._current().advance_to(end)
+            event = landing.advance_within_step(until, end, to_event=to_event)
         except LandingError as e:
             self.failure = f"{e}; the landing has ended there: restore a state, or reset"
             raise LandingError(self.failure) from e
+        reached = min(self.start_time + landing.time, stop) if landing.time < until else stop
+        return [reached, float(event)]
 
     def outputs(self) -> list[float]:
         """All outputs at the present time, in the order of OUTPUT_NAMES."""

@@ -13,7 +13,7 @@ from .core import DormandPrince, Exponential, Inputs, Solver
 from .errors import LandingError, unknown
 from .inputs.driven import RATE_INPUTS, DrivenInputs, Setting, changed_setting
 from .interruptible import advance, check_going, record
-from .outputs import Extreme, OutputReader
+from .outputs import Extreme, OutputReader, output_order
 from .parameters import Parameters
 from .quantities import INPUT_NAMES, OUTPUT_NAMES
 from .state import LATEST, load_state, state_of
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from numpy import float64
     from numpy.typing import NDArray
 
+    from .events.search import EventSearch
     from .history import History
 
 DEFAULT_RTOL = 1e-5
@@ -76,6 +77,7 @@ class Landing:
         self._solver.limit = self.parameters.solver.max_steps_per_second
         self._reader = OutputReader(self._solver, self.parameters.drop.mode)
         self._inputs = DrivenInputs(self._solver)
+        self._search: EventSearch | None = None
         self._first = changed_setting((NO_INPUTS, NO_INPUTS), inputs or {}, rates or {})
         self.reset()
 
@@ -140,9 +142,9 @@ class Landing:
         (of `step`, `advance_to`, or the first `every` of `run`). So positions without rates are a
         motion that is linear between them, one interval late, also if a position is set again at
         each step until it changes. If intervals vary, the longest counts, until one is less than
-        0.45 of it. After more than 0.25 s without a new position the interval from before counts,
-        or, if there was none, the next step. A position that is set again, unchanged, together with
-        its rate is no new position, unless the rate is 0.
+        0.45 of it. The start counts as a position, and an interval of more than 1 s as 1 s. A
+        position that is set again, unchanged, together with its rate is no new position, unless the
+        rate is 0.
 
         Raises LandingError for an unknown name, NaN, a value out of bounds, or, at time 0, a flight
         in which a footpad would pass below the ground; nothing is changed then.
@@ -182,31 +184,60 @@ class Landing:
         Results do not depend on the steps by which one gets there. The exception is a ground that
         reaches a new position over the next step: that is longer than the interval of positions.
         """
+        self.advance_within_step(time, time, to_event=False)
+
+    def advance_within_step(self, time: float, step_end: float, *, to_event: bool) -> bool:
+        """Go on to `time` [s] in a step that ends at `step_end` [s], not before `time`.
+
+        With `to_event`, go on to the first event before `time`, if there is one: a footpad touches
+        the ground or leaves it, a main strut comes to an end stop or leaves it, or `status.phase`
+        changes. It is found to 1e-9 s. Results do not depend on where a step is left and continued.
+
+        Returns whether there is an event at the time reached; False without `to_event`.
+        """
         if not self._time <= time <= LATEST:
             raise LandingError(
                 f"time = {time:g} s is not a time from {self._time:g} to {LATEST:g} s; "
                 "reset() starts again"
             )
-        self._move_ground(time)
-        self._go_on(time)
+        return self._move_ground(time, step_end, to_event=to_event) or self._go_on(
+            time, to_event=to_event
+        )
 
-    def _go_on(self, time: float) -> None:
-        """Go on to `time` [s]; the ground begins and ends no motion until then."""
+    def _go_on(self, time: float, *, to_event: bool) -> bool:
+        """Go on to `time` [s], or to an event; the ground begins and ends no motion until then."""
+        reached, found = time, False
         with self._until(time):
-            advance(self._solver, time)
-        self._time = time
+            if to_event:
+                reached, found = self._event_search().advance(self._time, time)
+            else:
+                advance(self._solver, time)
+        self._time = reached
+        return found
 
-    def _move_ground(self, time: float) -> None:
-        """Begin and end motions of the ground to new positions until `time` [s].
+    def _event_search(self) -> EventSearch:
+        if self._search is None:
+            from .events.search import EventSearch
 
-        The landing goes on to the last end before it.
+            stroke_max = self.parameters.main_strut.stroke_max
+            order = output_order(self.parameters.drop.mode)
+            self._search = EventSearch(self._solver, order, stroke_max)
+        return self._search
+
+    def _move_ground(self, time: float, step_end: float, *, to_event: bool) -> bool:
+        """Begin and end motions of the ground to new positions until `time` [s], or to an event.
+
+        The landing goes on to the last end before it. New motions end at `step_end` [s] at the
+        earliest. Returns whether there is an event at the time reached.
         """
         if not self._inputs.pending or time == self._time:
-            return
-        self._inputs.begin_step(self._time, time)
+            return False
+        self._inputs.begin_step(self._time, step_end)
         while (end := self._inputs.next_end(time)) is not None:
-            self._go_on(end)
-            self._inputs.begin_step(end, time)
+            if self._go_on(end, to_event=to_event):
+                return True
+            self._inputs.begin_step(end, step_end)
+        return False
 
     def values(self) -> list[float]:
         """All outputs at the present time, in the order of OUTPUT_NAMES.
@@ -311,7 +342,8 @@ class Landing:
             goal = min(reached + SLICE, samples)
             if self._inputs.pending:
                 goal = reached + 1
-                self._move_ground(start + reached * every)
+                sample = start + reached * every
+                self._move_ground(sample, sample, to_event=False)
             time = start + (goal - 1) * every
             with self._until(time):
                 record(self._solver, rows, start, every, reached, goal)

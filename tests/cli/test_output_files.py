@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import resource
 import subprocess
@@ -9,6 +10,9 @@ import sys
 from pathlib import Path
 
 import pytest
+
+from rlv_landing.commands.printing import exit_code
+from rlv_landing.text.durable import NO_ROOM, unwritable, write_durably
 
 STUDY = """[study]
 method = "sobol"
@@ -131,6 +135,48 @@ def test_a_disk_that_fills_ends_an_identification_with_a_code_of_its_own(folder)
         "best.json",
         "search.json",
     ]
+
+
+RESULTS = {
+    "e/boundary.csv": (*ENVELOPE, "--work", "e"),
+    "i/report.md": ("identify", *ONE, "--work", "i"),
+    "r/results.parquet": ("sweep", "s.toml", "--results", "r"),
+}
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_a_result_that_is_a_folder_is_refused_on_resume_and_no_room_is_asked_for(
+    folder, command, monkeypatch, name
+):
+    monkeypatch.chdir(folder)
+    assert command(*RESULTS[name]).code in (0, 1)
+    (folder / name).unlink()
+    (folder / name).mkdir()
+    done = command(*RESULTS[name], "--resume")
+    assert done.code == 2, done.err
+    assert name in done.err
+    assert "make room" not in done.err
+    assert len(done.err.strip().splitlines()) == 1
+
+
+@pytest.mark.parametrize("number", sorted(errno.errorcode))
+def test_room_is_asked_for_only_where_there_is_none(tmp_path, number):
+    for kept in (False, True):
+        text = str(unwritable(tmp_path, OSError(number, os.strerror(number)), kept=kept))
+        assert ("make room" in text) == (number in NO_ROOM), text
+        assert ("name another" in text) != (kept and number in NO_ROOM), text
+
+
+def test_a_folder_in_the_way_is_named(tmp_path):
+    (tmp_path / "boundary.csv").mkdir()
+    with pytest.raises(IsADirectoryError) as refused:
+        write_durably(tmp_path / "boundary.csv", b"x")
+    assert str(unwritable(tmp_path, refused.value)) == (
+        f"{tmp_path / 'boundary.csv'} cannot be written: Is a directory; "
+        "move it away, or name another"
+    )
+    assert exit_code(refused.value) == 2
+    assert [p.name for p in tmp_path.iterdir()] == ["boundary.csv"]
 
 
 @pytest.mark.parametrize(

@@ -5,10 +5,12 @@ from __future__ import annotations
 import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import fmpy
 import pytest
+from fmi3_instance import Instance3
 from fmu_instance import Instance
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -87,3 +89,28 @@ def header(binary, unpacked, tmp_path) -> Path:
     module = (unpacked / "resources" / "slavemodule.txt").read_text()
     (tmp_path / "variables.h").write_text(binary.variables_header(root, module))
     return tmp_path
+
+
+@pytest.fixture(scope="session")
+def description3(fmu3: Path):
+    return fmpy.read_model_description(str(fmu3))
+
+
+@pytest.fixture(scope="session")
+def unpacked3(fmu3: Path, tmp_path_factory) -> Path:
+    """The unpacked files of the FMU of FMI 3.0."""
+    return Path(fmpy.extract(str(fmu3), str(tmp_path_factory.mktemp("fmu3"))))
+
+
+@pytest.fixture
+def make3(description3, unpacked3: Path) -> Iterator[Callable[..., Instance3]]:
+    """Makes instances of FMI 3.0, which are freed after the test."""
+    made: list[Instance3] = []
+
+    def instance(**wishes: Any) -> Instance3:
+        made.append(Instance3(description3, unpacked3, **wishes))
+        return made[-1]
+
+    yield instance
+    for one in made:
+        one.free()

@@ -37,7 +37,7 @@ def test_build_script_prints_help_and_builds_nothing(tmp_path):
             ["./build_fmu.sh", option], cwd=ROOT, capture_output=True, text=True, env=environment
         )
         assert done.returncode == 0, done.stderr
-        assert done.stdout.startswith("usage: build_fmu.sh [-h] [--pure] [file]")
+        assert done.stdout.startswith("usage: build_fmu.sh [-h] [--fmi {2,3}] [--pure] [file]")
 
 
 @pytest.fixture(scope="module")
@@ -88,9 +88,14 @@ def test_the_front_compiles_without_a_warning_and_exports_fmi_functions_only(
         check=True,
     ).stdout
     names = {line.split()[-1] for line in listed.splitlines()}
-    declared = re.findall(
-        r"#define (fmi2\w+) +fmi2FullName", (binary.HEADERS / "fmi2Functions.h").read_text()
-    )
+    declared = [
+        name
+        for fmi in ("fmi2", "fmi3")
+        for name in re.findall(
+            rf"#define ({fmi}\w+) +{fmi}FullName",
+            (binary.HEADERS / f"{fmi}Functions.h").read_text(),
+        )
+    ]
     assert names == set(declared)
 
 

@@ -184,6 +184,23 @@ def test_every_vehicle_has_a_guid_and_modules_of_its_own_and_the_same_one_the_sa
     assert (folder / "again.fmu").read_bytes() == stage.read_bytes()
 
 
+def test_in_fmi_3_the_front_of_the_package_lands_the_vehicle_too(build, parameters):
+    folder, built = build
+    options = ("--parameters", "stage.toml", "--mode", "1-2-1", "--fmi", "3", "-o", "three.fmu")
+    done = built(*options)
+    assert done.returncode == 0, done.stdout + done.stderr
+    wanted = ["body.y", "leg.main_strut.force"]
+    result = fmpy.simulate_fmu(
+        str(folder / "three.fmu"), stop_time=0.7, output_interval=1e-2, output=wanted
+    )
+    landing = Landing(parameters)
+    landing.advance_to(result["time"][-1])
+    assert result["body.y"][-1] == landing.get("body.y")
+    assert list(result["leg.main_strut.force"][-1]) == [
+        landing.get(f"leg[{leg}].main_strut.force") for leg in (1, 2, 3, 4)
+    ]
+
+
 def test_flat_names_have_neither_dots_nor_brackets_and_land_equally(flat, stage):
     description = fmpy.read_model_description(
         str(flat), validate=True, validate_variable_names=True, validate_model_structure=True
@@ -211,7 +228,8 @@ def test_what_cannot_be_built_is_refused_in_one_line(command, stage, monkeypatch
         (["--name", "9x"], "model name '9x' must be letters, digits and underscores"),
         (["--name", "ä"], "must be letters"),
         (["--name", "a" * 65], "65 characters; at most 64"),
-        (["--fmi", "3.0"], "FMI 3 FMUs cannot be built; the versions are 2"),
+        (["--fmi", "4"], "FMI 4 FMUs cannot be built; the versions are 2, 3"),
+        (["--fmi", "3.0", "--flat-names"], "flat names are for FMI 2.0"),
         (["-o", "x.zip"], "x.zip must end in .fmu"),
         (["-o", "nosuch/x.fmu"], "there is no folder nosuch"),
         (["--set", "vehicle.mass=0"], "vehicle.mass = 0 kg is outside"),

@@ -33,7 +33,7 @@ def test_without_a_compiler_for_windows_the_fmu_has_no_binary_for_it(
         (tmp_path / name).write_bytes((unpacked / name).read_bytes())
     (tmp_path / "binaries" / "win64" / "RlvLanding.dll").write_bytes(b"MZ: pythonfmu's")
     monkeypatch.setattr(binary, "for_target", lambda target: None)
-    assert set(binary.replace_binaries(tmp_path, "all")) == {"linux64"}
+    assert set(binary.replace_binaries(tmp_path, platforms="all")) == {"linux64"}
     assert [p.name for p in (tmp_path / "binaries").rglob("*.*")] == ["RlvLanding.so"]
 
 
@@ -58,6 +58,6 @@ def test_windows_library_compiles_without_a_warning_exports_what_linuxs_does_and
         check=True,
     )
     of_linux = {line.split()[-1] for line in listed.stdout.splitlines()}
-    assert len(of_linux) == 44
+    assert {"fmi2DoStep", "fmi3DoStep"} < of_linux
     assert exports == of_linux
     assert {name for name in needs if not name.startswith("api-ms-win-crt-")} <= OF_WINDOWS

@@ -19,7 +19,7 @@ from rlv_landing.identification.vehicle_priors import following
 from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
 from rlv_landing.presets import read_toml, to_toml
 from rlv_landing.studies.sweep.responses import Measure
-from rlv_landing.studies.whole_landing import LATEST, whole_landing
+from rlv_landing.studies.whole_landing import whole_landing
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "validation"))
 from scaled import scaled
@@ -121,7 +121,7 @@ def mass(request: pytest.FixtureRequest) -> float:
 def landed(mass: float) -> History:
     """The landing whose numbers are to be found."""
     landing = Landing(vehicle(mass).with_values(truth(mass)), "2-2")
-    return whole_landing(landing, landing.parameters.drop.contact_time + LATEST, 2e-4)
+    return whole_landing(landing, every=2e-4)
 
 
 def test_numbers_of_another_vehicle_are_found_from_its_curves_and_scalars(

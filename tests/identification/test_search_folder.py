@@ -163,6 +163,23 @@ def test_files_that_contradict_themselves_are_refused(folder, name, change, mess
         SearchFolder(folder, objective()).load()
 
 
+@pytest.mark.parametrize("name", ["best.json", "search.json"])
+def test_a_changed_digit_that_is_still_a_number_or_a_lost_check_sum_is_refused(folder, name):
+    whole = (folder / name).read_text()
+    digits = [i for i, c in enumerate(whole) if c in "12345678"]
+    for i in digits[:: max(1, len(digits) // 100)]:
+        (folder / name).write_text(whole[:i] + str(int(whole[i]) + 1) + whole[i + 1 :])
+        with pytest.raises(
+            LandingError, match=rf"{name} (cannot be (read|resumed) \(|is of another)"
+        ):
+            SearchFolder(folder, objective()).load()
+    content = json.loads(whole)
+    del content["check"]
+    (folder / name).write_text(json.dumps(content))
+    with pytest.raises(LandingError, match="its check sum is another: it was changed"):
+        SearchFolder(folder, objective()).load()
+
+
 def test_without_a_state_the_search_begins_anew_from_the_best(folder):
     (folder / "search.json").unlink()
     best, search = SearchFolder(folder, objective()).load()

@@ -84,7 +84,8 @@ def test_two_landings_in_one_fmucontainer_do_not_mix(landed_by, job):
     assert_same(rows[:, [0, *range(1 + outputs, 1 + 2 * outputs)]], Job())
 
 
-def test_fmutool_check_finds_nothing(fmu):
-    output = fmutool("-input", str(fmu), "-check")
-    assert "This FMU seems to be compliant with FMI-2.0" in output
-    assert "No semantic error against the FMI-2 standard" in output
+@pytest.mark.parametrize("version", [2, 3])
+def test_fmutool_check_finds_nothing(fmu, fmu3, version):
+    output = fmutool("-input", str(fmu3 if version == 3 else fmu), "-check")
+    assert f"This FMU seems to be compliant with FMI-{version}.0" in output
+    assert f"No semantic error against the FMI-{version} standard" in output

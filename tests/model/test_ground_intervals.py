@@ -177,13 +177,15 @@ def place(landing: Landing) -> tuple[float, float]:
     return acting["ground.heave"], acting["ground.tilt"]
 
 
-def flying() -> Landing:
-    """A landing in free flight for half a second."""
-    return Landing(
-        load_preset("yue2022-figures").with_values(
-            {"drop.contact_time": 0.5, "drop.vertical_velocity": -6.0, "drop.pitch_rate": 0.0}
-        )
-    )
+def flying(time: float = 0.5, velocity: float = -6.0) -> Landing:
+    """A landing in free flight until the `time` [s], with the `velocity` [m/s] at its end."""
+    values = {"drop.contact_time": time, "drop.vertical_velocity": velocity, "drop.pitch_rate": 0.0}
+    return Landing(load_preset("yue2022-figures").with_values(values))
+
+
+def high() -> Landing:
+    """A landing in free flight for three seconds."""
+    return flying(3.0, -31.0)
 
 
 @settings(max_examples=20, deadline=None)
@@ -212,22 +214,43 @@ def test_a_step_longer_than_the_interval_ends_at_the_position():
 
 
 @pytest.mark.parametrize("known", [False, True])
-def test_after_a_stand_the_interval_from_before_it_counts_or_the_next_step(known):
-    landing = flying()
+@pytest.mark.parametrize("stand", [0.3, 2.0 * LONGEST_INTERVAL])
+def test_a_position_after_a_stand_is_reached_over_the_time_of_that(known, stand):
+    """At most over LONGEST_INTERVAL. The next one comes soon, and is reached as soon."""
+    landing, here = high(), 0.0
     if known:
         for k in range(1, 4):
             landing.step(10e-3)
             landing.set_inputs({"ground.heave": 1e-3 * k})
-    here = 3e-3 if known else 0.0
-    landing.step(LONGEST_INTERVAL + 0.05)
+        here = 3e-3
+        landing.step(10e-3)
+    landing.step(stand - 10e-3 if known else stand)
     assert place(landing)[0] == here
-    start = landing.time
+    interval = min(stand, LONGEST_INTERVAL)
     landing.set_inputs({"ground.heave": 0.02})
-    landing.step(2e-3)
-    part = 0.2 if known else 1.0
-    assert place(landing)[0] == approx(here + part * (0.02 - here), abs=1e-15)
-    landing.advance_to(start + 10e-3)
-    assert place(landing)[0] == approx(0.02, abs=1e-15)
+    landing.step(10e-3)
+    there = here + 10e-3 / interval * (0.02 - here)
+    assert place(landing)[0] == approx(there, abs=1e-14)
+    landing.set_inputs({"ground.heave": 0.021})
+    landing.step(5e-3)
+    assert place(landing)[0] == approx(0.5 * (there + 0.021), abs=1e-14)
+    landing.step(5e-3)
+    assert place(landing)[0] == approx(0.021, abs=1e-14)
+
+
+@pytest.mark.parametrize(("interval", "most"), [(200, 2.4), (50, 1.45)])
+@pytest.mark.parametrize("first", [0.0, 1e-9])
+def test_a_deck_of_seldom_positions_does_not_hammer(parked, interval, most, first):
+    """A host of 200 Hz gives positions at 1 Hz or 4 Hz, after `first` at two steps in a row."""
+    landing, forces = parked("2-2"), []
+    for k in range(2):
+        landing.set_inputs({"ground.heave": first * (k + 1)})
+        landing.advance_to(PARKED + (k + 1) * 5e-3)
+    for k in range(2, 1000):
+        landing.set_inputs({"ground.heave": heave(5e-3 * (k // interval) * interval)})
+        landing.advance_to(PARKED + (k + 1) * 5e-3)
+        forces.append(total([landing.outputs()], "y")[0])
+    assert max(forces) < most * WEIGHT
 
 
 def test_a_shorter_interval_of_another_source_counts_at_once():

@@ -102,6 +102,38 @@ def test_a_position_that_is_sent_again_with_its_velocity_does_not_move_the_groun
     assert ground.values(70 * STEP)[HEAVE] == 0.1
 
 
+def test_a_position_that_is_sent_again_alone_does_not_hurry_the_ground():
+    """Each 5 ms the deck's position comes, which changes once a second."""
+    ground, rates = CommandedGround(STEP), []
+    ground.command(0, {HEAVE: 0.0})
+    for now in range(STEP, 4_000_000_000, STEP):
+        ground.stop_at_goals(now)
+        if now % (5 * STEP) == 0:
+            ground.command(now, {HEAVE: 0.1 * (now // 1_000_000_000)})
+        rates.append(ground.values(now)[HEAVE_RATE])
+    assert max(rates) == pytest.approx(0.1, rel=0.2)
+    assert min(rates[1000:]) > 0.06
+
+
+def test_a_position_alone_brings_the_ground_back_from_where_a_velocity_led_it():
+    ground = CommandedGround(STEP)
+    ground.command(0, read_ground(heave(0.1, 0.5)))
+    assert ground.stop(20 * STEP)
+    ground.command(40 * STEP, read_ground(heave(0.1)))
+    assert ground.values(40 * STEP)[HEAVE] == pytest.approx(0.11)
+    ground.stop_at_goals(100 * STEP)
+    assert ground.values(100 * STEP)[HEAVE] == 0.1
+
+
+def test_a_stop_lets_the_ground_reach_the_position_that_it_is_on_its_way_to():
+    ground = CommandedGround(STEP)
+    ground.command(0, {HEAVE: 0.0})
+    ground.command(1000 * STEP, {HEAVE: 0.1})
+    assert not ground.stop(1500 * STEP)
+    ground.stop_at_goals(2500 * STEP)
+    assert ground.values(2500 * STEP)[HEAVE] == 0.1
+
+
 def test_of_two_messages_within_a_step_the_later_counts_joint_by_joint():
     first = {HEAVE: 0.1, HEAVE_RATE: 1.0, TILT: 0.2}
     assert merged(first, {HEAVE: 0.3}) == {HEAVE: 0.3, TILT: 0.2}

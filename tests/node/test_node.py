@@ -163,8 +163,9 @@ def test_a_frozen_subscriber_neither_slows_the_node_down_nor_makes_the_log_incom
         assert node.returncode == 0, err
         assert "finished: 5001 samples" in out
         walls.append(wall(out))
-    # Plain writes to a frozen subscriber would make each of the last three seconds take four.
-    assert walls[1] < 1.25 * walls[0] + 1.0
+    # Plain writes to a frozen subscriber would make each of the last three seconds take four: 9 s
+    # more. A busy machine takes some.
+    assert walls[1] < walls[0] + 6.0
     assert "not published in time" in err
     assert "not every reliable subscriber has acknowledged" in err
     assert len(list(LogReader(tmp_path / "log-True").messages(["/landing/struts"]))) == 5001

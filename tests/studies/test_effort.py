@@ -120,7 +120,7 @@ def test_landings_until_they_are_decided_are_refused_by_the_memory_that_they_may
     for name in ("sweep", "sensitivity"):
         done = command(name, str(study), "--workers", "1024", "--results", str(tmp_path / "r"))
         assert done.code == 2
-        assert "until 10 s at most, every = 1e-06 s, 1024 landings at once, may need" in done.err
+        assert "until 60 s at most, every = 1e-06 s, 1024 landings at once, may need" in done.err
         assert not (tmp_path / "r").exists()
 
 

@@ -152,7 +152,7 @@ FAULTS: dict[str, tuple[Callable[[Path, Path], object], str]] = {
     "study not UTF-8": (lambda f, m: (f / "study.json").write_bytes(b"\xff"), "cannot be read"),
     "parts is a file": (
         lambda f, m: (shutil.rmtree(f / "parts"), (f / "parts").write_text("x")),
-        "r cannot be written: File exists; name another folder by --results",
+        "r/parts cannot be written: File exists; name another folder by --results",
     ),
     "lock is a link": (
         lambda f, m: link_to(f.parent / "precious", f / ".lock"),

@@ -10,7 +10,7 @@ import builtins
 import pytest
 from study_tools import write_study
 
-from rlv_landing.tables.landing import new_table, render
+from rlv_landing.tables.rendering import new_table, render
 
 TILT = '[[factor]]\nname = "drop.tilt"\n'
 LHS = '[study]\nmethod = "lhs"\nsamples = 8\n'

@@ -98,6 +98,8 @@ def test_another_encoding_is_named_with_the_remedy(tmp_path, encoding, name):
         ("[vehicle]\nmass = 0x" + "f" * 100_000, "mass is a whole number of more than 64 bits"),
         ("[vehicle]\nmass = 1e999", "vehicle.mass = inf kg is outside"),
         ("[vehicle]\nmass = '1e999'", "beyond the largest number"),
+        ("[vehicle]\nmass = '1e-400'", "1e-400 is below the smallest number"),
+        ("[vehicle]\nmass = 1_0.5e-400", "1_0.5e-400 is below the smallest number"),
         ("[vehicle]\nmass = " + "[" * 100_000, "nested too deep"),
         ("[vehicle]\nmass = " + "{a=" * 100_000, "nested too deep"),
         ("[vehicle]\nmass = " + "[" * 60 + "]" * 60, "nested more than 32 deep"),

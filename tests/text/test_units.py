@@ -208,6 +208,9 @@ def test_a_text_has_its_right_value(text, unit, value):
         ("1e9999", "", "is not a number"),
         ("1e999", "", "beyond the largest number"),
         ("1e300 Qm", "m", "beyond the largest number"),
+        ("1e-400", "", "1e-400 is below the smallest number, 4.9e-324 in SI; write 0"),
+        ("-0.001e-400 m", "m", "below the smallest number"),
+        ("1e-300 qm", "m", "below the smallest number"),
         ("inf m", "m", "does not start with a number"),
         ("1 g", "kg", "gram or gravity"),
         ("1 g", "m/s2", "gram or gravity"),
@@ -337,3 +340,8 @@ def test_the_page_gives_right_values(texts, si):
 def test_the_page_gives_right_reasons(text, reason):
     with pytest.raises(LandingError, match=re.escape(reason)):
         to_si(quantity(""), text.strip("`"))
+
+
+@pytest.mark.parametrize("text", ["0", "-0.0", "0e-400", "0.000e5 m", "1e-320 m", "4.94e-324"])
+def test_zero_and_the_smallest_numbers_are_taken(text):
+    assert to_si(quantity("m"), text) == float(text.split()[0])

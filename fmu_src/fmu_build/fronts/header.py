@@ -9,10 +9,13 @@ from __future__ import annotations
 import sys
 from xml.etree.ElementTree import Element
 
+from ..arrays import variables
 from ..sources import source
 
 FRONT = source("fmu_src/fmu_front")
 CAUSALITIES = {"parameter": "p", "input": "i", "output": "o"}
+# kind, causality, name; and in FMI 3.0 count, stride and name of the array that it is the first of
+Row = tuple[str, str, str, int, int, str]
 MARK = b"rlv-landing: identity"
 # sizes of the identity's texts, a zero at the end of each included; the GUID's also in state.c
 MARK_SIZE, GUID_SIZE, TEXT_SIZE, NAME_SIZE = 24, 40, 72, 62
@@ -38,7 +41,9 @@ def variables_header(root: Element, module: str) -> str:
 def neutral_header(root: Element) -> str:
     """The header of a front that gets its identity later; the same for all FMUs that it fits."""
     count = len(_variables(root))
-    return _header(count, categories(root), _identity("", "", "", 0, [("-", "-", "")] * count))
+    return _header(
+        count, categories(root), _identity("", "", "", 0, [("-", "-", "", 0, 0, "")] * count)
+    )
 
 
 def front_identity(root: Element, module: str) -> bytes:
@@ -52,14 +57,18 @@ def front_identity(root: Element, module: str) -> bytes:
         SystemExit: The value references are not 0, 1, 2, ... in order, or a name is too long.
     """
     rows = []
-    for i, variable in enumerate(_variables(root)):
+    scalars = _variables(root)
+    first = {v.reference: v for v in variables([v.attrib["name"] for v in scalars])}
+    for i, variable in enumerate(scalars):
         name = variable.attrib["name"]
         if int(variable.attrib["valueReference"]) != i:
             raise SystemExit(
                 f"error: value reference of {name} is not {i}; the front needs them in order"
             )
         causality = CAUSALITIES.get(variable.attrib["causality"], "-")
-        rows.append((variable[0].tag[0], causality, name))
+        whole = first.get(i)
+        array = (len(whole.elements), whole.stride, whole.name) if whole else (0, 0, "")
+        rows.append((variable[0].tag[0], causality, name, *array))
     return _identity(
         root.attrib["guid"], root.attrib["modelName"], module, sys.version_info.minor, rows
     )
@@ -74,13 +83,12 @@ def _variables(root: Element) -> list[Element]:
     return root.findall("ModelVariables/ScalarVariable")
 
 
-def _identity(
-    guid: str, model: str, module: str, minor: int, variables: list[tuple[str, str, str]]
-) -> bytes:
+def _identity(guid: str, model: str, module: str, minor: int, rows: list[Row]) -> bytes:
     found = MARK.ljust(MARK_SIZE, b"\0") + _text(guid, GUID_SIZE)
     found += _text(model, TEXT_SIZE) + _text(module, TEXT_SIZE) + bytes([minor])
-    for kind, causality, name in variables:
-        found += kind.encode() + causality.encode() + _text(name, NAME_SIZE)
+    for kind, causality, name, count, stride, whole in rows:
+        found += f"{kind}{causality}".encode() + bytes([count, stride])
+        found += _text(name, NAME_SIZE) + _text(whole, NAME_SIZE)
     return found
 
 
@@ -96,7 +104,12 @@ def _text(text: str, size: int) -> bytes:
 def _header(count: int, log_categories: list[str], identity: bytes) -> str:
     lines = [
         "/* Made by fmu_build/fronts/header.py from modelDescription.xml. */",
-        f"struct variable {{ char kind, causality, name[{NAME_SIZE}]; }};",
+        "/* In FMI 3.0 it is the first of `count` elements of `whole`, `stride` apart. */",
+        "struct variable {",
+        "    char kind, causality;",
+        "    unsigned char count, stride; /* count 0: no variable of its own */",
+        f"    char name[{NAME_SIZE}], whole[{NAME_SIZE}];",
+        "};",
         f"enum {{ VARIABLE_COUNT = {count} }};",
         "struct identity {",
         f"    char mark[{MARK_SIZE}], guid[{GUID_SIZE}];",
@@ -133,10 +146,14 @@ def _values(identity: bytes) -> list[str]:
         at += size
     lines = [*texts, f"{identity[at]},", "{"]
     at += 1
-    for row in range(at, len(identity), NAME_SIZE + 2):
+    for row in range(at, len(identity), 4 + 2 * NAME_SIZE):
         kind, causality = identity[row : row + 2].decode()
-        name = identity[row + 2 : row + 2 + NAME_SIZE].rstrip(b"\0").decode()
-        lines.append(f"{{'{kind}', '{causality}', {quoted(name)}}},")
+        count, stride = identity[row + 2 : row + 4]
+        name, whole = (
+            quoted(identity[start : start + NAME_SIZE].rstrip(b"\0").decode())
+            for start in (row + 4, row + 4 + NAME_SIZE)
+        )
+        lines.append(f"{{'{kind}', '{causality}', {count}, {stride}, {name}, {whole}}},")
     return lines
 
 

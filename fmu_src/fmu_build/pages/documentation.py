@@ -22,6 +22,7 @@ from rlv_landing.landing import LOOSEST_RTOL
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.quantities import (
     INPUT_QUANTITIES,
+    LEGS,
     OUTPUT_QUANTITIES,
     PEAK_QUANTITIES,
     STATISTIC_QUANTITIES,
@@ -29,7 +30,8 @@ from rlv_landing.quantities import (
     flat_name,
 )
 
-from ..binary import makers
+from ..arrays import whole_meaning, whole_name
+from ..binary import compilers
 from ..dependencies import inputs_of
 from ..sources import source
 from ..targets import tried
@@ -39,6 +41,8 @@ from .drawing import vehicle_figure
 TEMPLATE = Path(__file__).with_name("documentation.html.j2")
 LICENCE_OF = "pythonfmu"
 DOTS_PER_INCH = 100
+# what the tables say of the legs, by the version of FMI
+OF_LEGS = {2: "leg[1] stands for every leg", 3: "[4]: arrays with an element for each leg"}
 
 
 def write_documentation(files: Path, description: Element, wanted: Wanted) -> None:
@@ -87,20 +91,23 @@ def render(files: Path, description: Element, wanted: Wanted) -> str:
     assert experiment is not None
     assert simulation is not None
     named = flat_name if wanted.flat_names else str
-    leg = named("leg[1]")
+    fmi = int(description.attrib["fmiVersion"][0])
+    of_legs = OF_LEGS[fmi].replace("leg[1]", named("leg[1]"))
     return environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
         version=__version__,
         wanted=wanted,
         named=named,
         loosest=LOOSEST_RTOL,
         model=description.attrib,
+        fmi=fmi,
+        identity=description.get("guid") or description.get("instantiationToken"),
         experiment=experiment.attrib,
         capabilities=simulation.attrib,
         cores=sorted(p.name for p in files.glob("resources/*/core/compiled.*")),
         cores_of_others=sorted(
             p.parent.name for p in files.glob("resources/*/core/compiled_for/*/compiled.*")
         ),
-        platforms={name: tried(name) for name in makers(description, wanted.platforms)},
+        platforms={name: tried(name) for name in compilers(wanted.platforms, wanted.fmi)},
         drawing=Markup(
             inline_svg(
                 vehicle_figure(wanted.parameters, named=True),
@@ -120,8 +127,8 @@ def render(files: Path, description: Element, wanted: Wanted) -> str:
             (
                 "outputs",
                 "Outputs",
-                f"calculated; {leg} stands for every leg, numbered as drawn",
-                rows(of_one_leg(OUTPUT_QUANTITIES)),
+                f"calculated; {of_legs}, numbered as drawn",
+                rows(of_one_leg(OUTPUT_QUANTITIES), fmi),
             ),
             (
                 "statistics",
@@ -132,8 +139,8 @@ def render(files: Path, description: Element, wanted: Wanted) -> str:
             (
                 "peaks",
                 "Peaks",
-                f"local; extremes since the start, between steps too; {leg} stands for every leg",
-                rows(of_one_leg(PEAK_QUANTITIES, "peak.")),
+                f"local; extremes since the start, between steps too; {of_legs}",
+                rows(of_one_leg(PEAK_QUANTITIES, "peak."), fmi),
             ),
         ],
     )
@@ -161,12 +168,19 @@ def of_one_leg(quantities: Iterable[Quantity], before: str = "") -> list[Quantit
     ]
 
 
-def rows(quantities: Any) -> list[dict[str, str]]:
+def names(q: Quantity, fmi: int) -> tuple[str, str]:
+    """Name and meaning of a quantity, or of the array whose first element it is in FMI 3.0."""
+    whole = whole_name(q.name)
+    if fmi == 3 and whole != q.name:
+        return f"{whole}[{len(LEGS)}]", whole_meaning(q.meaning)
+    return q.name, q.meaning
+
+
+def rows(quantities: Any, fmi: int = 2) -> list[dict[str, str]]:
     """One table row per quantity, all as text; bounds and default in its SI unit."""
     return [
         {
-            "name": q.name,
-            "meaning": q.meaning,
+            **dict(zip(("name", "meaning"), names(q, fmi))),
             "unit": q.unit or ("1" if q.kind == "real" else ""),
             "shown": q.display_unit,
             "type": q.kind.capitalize(),

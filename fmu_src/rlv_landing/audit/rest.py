@@ -15,8 +15,8 @@ from .bounds import TIGHT_RTOL, Check
 from .cases import Case, weight
 from .energy import largest_fall
 
-# a heavy or lightly damped vehicle rocks for longer than REST_AFTER; it gets LONGEST_WAIT to
-# settle and then DECAY
+# [s]: a heavy or lightly damped vehicle rocks for longer than REST_AFTER from its first contact; it
+# gets LONGEST_WAIT to settle, in studies too, and here DECAY after that
 REST_AFTER, LONGEST_WAIT, DECAY, DRIFT_TIME = 10.0, 60.0, 30.0, 5.0
 
 

@@ -12,17 +12,18 @@ import click
 
 from ..choices import parse_pairs, split_pair
 from ..errors import LandingError, one_line
-from ..text.durable import unwritable, writing
+from ..text.durable import refuse_no_files, unwritable, writing
 from .number_types import Number, WholeNumber
 from .options import HELP_NAMES, check_writable, parameter_options
-from .printing import print_json, print_warning
+from .printing import exit_code, print_json, print_warning
 
 if TYPE_CHECKING:
     from ..studies.envelope.search import Envelope
     from ..studies.envelope.store import Store
     from ..studies.envelope.study import EnvelopeStudy
 
-NO_BOUNDARY, FAILED, INTERRUPTED = 1, 1, 130
+NO_BOUNDARY, INTERRUPTED = 1, 130
+ANOTHER = "name another folder by --work"
 RESULTS = ("boundary.csv", "boundary.json")
 STUDY = click.Path(path_type=Path)
 
@@ -83,7 +84,7 @@ STUDY = click.Path(path_type=Path)
     "--until",
     type=Number("s"),
     metavar="S",
-    help="End of a landing that neither rests nor topples [default: 6].",
+    help="End of a landing that neither rests nor topples [default: 60 after contact].",
 )
 @click.option(
     "--work",
@@ -147,7 +148,8 @@ def envelope(
     except KeyboardInterrupt:
         _end("interrupted", INTERRUPTED, store, work)
     except OSError as e:
-        _end(f"error: {unwritable(work, e, 'make room')}", FAILED, store, work)
+        reason = unwritable(work, e, ANOTHER, kept=True)
+        _end(f"error: {reason}", exit_code(e), store, work)
     finally:
         store.close()
     if plot is not None:
@@ -195,7 +197,7 @@ def _override(document: dict[str, Any], options: dict[str, Any]) -> None:
         keys.pop("preset", None)
         keys.pop("parameters", None)
     top = {
-        "parameters": None if file is None else str(Path(file).resolve()),
+        "parameters": None if file is None else str(Path.cwd() / file),
         **{
             key: options[key] for key in ("preset", "mode", "criterion", "cells", "levels", "until")
         },
@@ -234,11 +236,10 @@ def _open_store(asked: EnvelopeStudy, work: Path, *, resume: bool) -> Store:
     from ..studies.envelope.store import Store
 
     path = work / "landings.jsonl"
+    refuse_no_files(work, RESULTS, ANOTHER)
     strange = [name for name in RESULTS if os.path.lexists(work / name)]
     if strange and not os.path.lexists(path):
-        raise LandingError(
-            f"{work / strange[0]} is there without {path.name}; name another folder by --work"
-        )
+        raise LandingError(f"{work / strange[0]} is there without {path.name}; {ANOTHER}")
     return Store(asked, path, resume=resume)
 
 

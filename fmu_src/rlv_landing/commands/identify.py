@@ -191,13 +191,10 @@ def identify(work: Path, *, list_priors: bool, **options: Any) -> None:
 
 
 def _print_priors(options: dict[str, Any]) -> None:
-    from ..identification.priors import quantity
     from ..identification.vehicle_priors import priors_of
+    from ..tables.prior_table import prior_table
 
     parameters, modes, _ = choose(
         options["preset"], options["file"], options["mode"], options["pairs"]
     )
-    for p in priors_of(parameters, modes[0]).values():
-        scope = "each mode; " if p.by_mode else ""
-        unit = quantity(p.name).unit
-        click.echo(f"{p.name:38s} {p.lo:10.4g} ... {p.hi:<10.4g} {unit:7s} {scope}{p.reason}")
+    click.echo(prior_table(priors_of(parameters, modes[0]).values()), nl=False)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..choices import split_pair
 from ..errors import LandingError
+from ..text.files import pipes_kept
 from .options import choose
 
 if TYPE_CHECKING:
@@ -26,11 +27,12 @@ def objective_of(options: dict[str, Any]) -> Objective:
     from ..identification.objective import Objective
     from ..identification.origins import with_origins
 
-    parameters, modes, _ = choose(
-        options["preset"], options["file"], options["mode"], options["pairs"]
-    )
     changed = [split_pair(pair, "--set")[0] for pair in options["pairs"]]
-    parameters = with_origins(parameters, options["preset"], options["file"], changed)
+    with pipes_kept():
+        parameters, modes, _ = choose(
+            options["preset"], options["file"], options["mode"], options["pairs"]
+        )
+        parameters = with_origins(parameters, options["preset"], options["file"], changed)
     wanted, curves = _data(options, parameters, modes)
     if options["count"] and not wanted:
         raise LandingError(

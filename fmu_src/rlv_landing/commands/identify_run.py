@@ -13,12 +13,12 @@ import click
 
 from ..errors import one_line
 from ..text.durable import unwritable, write_durably
+from .printing import FAILED, exit_code
 
 if TYPE_CHECKING:
     from ..identification.free_numbers import FreeNumbers
     from ..identification.identify import Search
 
-FAILED = 1
 # a process with the model and its targets beyond what it shares, and both modes' landings, at least
 BYTES_PER_PROCESS = 30e6
 SECONDS_PER_EVALUATION = 6e-3
@@ -92,12 +92,12 @@ def check_effort(options: dict[str, Any]) -> None:
 def _fail(error: Exception, work: Path) -> NoReturn:
     """End a search that the disk or the machine does not let go on."""
     reason = (
-        unwritable(work, error, "make room")
+        unwritable(work, error, "name another folder by --work", kept=True)
         if isinstance(error, OSError)
         else "a process of the search was killed; take fewer --workers, or free memory"
     )
     click.echo(one_line(f"error: {reason}; --resume goes on from what {work} holds"), err=True)
-    sys.exit(FAILED)
+    sys.exit(exit_code(error) if isinstance(error, OSError) else FAILED)
 
 
 def run(

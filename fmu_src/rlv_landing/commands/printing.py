@@ -9,8 +9,9 @@ from typing import Any
 import click
 
 from ..errors import one_line
+from ..text.durable import NOT_USABLE
 
-FAILED = 1
+FAILED, BAD_INPUT = 1, 2
 
 
 def print_json(record: Any) -> None:
@@ -27,6 +28,11 @@ def print_warning(text: str | None) -> None:
     """Print a warning on standard error, as one line; nothing where it is None."""
     if text is not None:
         click.echo(one_line(f"warning: {text}"), err=True)
+
+
+def exit_code(error: OSError) -> int:
+    """The exit code where the system refuses a file: 2 for a path that the user can change."""
+    return BAD_INPUT if error.errno in NOT_USABLE else FAILED
 
 
 def print_checked(

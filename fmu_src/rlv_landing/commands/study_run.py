@@ -16,7 +16,7 @@ from ..errors import LandingError, one_line
 from ..text.durable import unwritable
 from .number_types import NumberRange, WholeNumber
 from .options import add_options
-from .printing import print_warning
+from .printing import exit_code, print_warning
 
 if TYPE_CHECKING:
     from ..studies.sweep.result_files import Results
@@ -154,14 +154,13 @@ def _check_effort(task: Task, options: RunOptions) -> None:
         LandingError: They need too much. The time on a cluster is not known here.
     """
     from ..studies.study_effort import check_landings
-    from ..studies.whole_landing import LATEST
     from ..workers import default_workers
 
     plan = task.plan
     check_landings(
         len(task),
         options.workers or default_workers(),
-        LATEST if plan.until is None else plan.until,
+        plan.until,
         plan.every,
         decided=plan.until is None,
         timed=options.scheduler is None,
@@ -196,7 +195,8 @@ def _run_or_exit(task: Task, results: Results, engine: Engine, *, strict: bool) 
         except KeyboardInterrupt:
             reason, status = "interrupted", INTERRUPTED
         except OSError as e:
-            reason, status = f"error: {unwritable(results.folder, e, 'make room')}", FAILED
+            refused = unwritable(results.folder, e, "name another by --results", kept=True)
+            reason, status = f"error: {refused}", exit_code(e)
         except (LostError, LandingError) as e:
             reason, status = f"error: {e}", FAILED
     click.echo(

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from ..errors import LandingError
-from ..text.durable import FolderLock, write_durably
-from ..text.files import read_record
+from ..text.durable import FolderLock, refuse_no_files, write_durably
+from ..text.files import check_sum, read_record
 from .global_search import GlobalSearch
 from .objective import Objective
 
+T = TypeVar("T")
 NAN = float("nan")
 RESULTS = ("identified.toml", "report.md")
 ANOTHER = "name another folder by --work"
@@ -127,6 +128,7 @@ class SearchFolder:
             )
         self._lock = FolderLock(self.folder, ANOTHER)
         try:
+            refuse_no_files(self.folder, RESULTS, ANOTHER)
             return self._load()
         except LandingError:
             self.release()
@@ -134,7 +136,7 @@ class SearchFolder:
 
     def _load(self) -> tuple[Best, GlobalSearch | None]:
         try:
-            best = self._best_of(self._read(self._best))
+            best = self._read(self._best, self._best_of)
         except (OSError, ValueError, TypeError) as e:
             if isinstance(e, LandingError):
                 raise
@@ -144,7 +146,7 @@ class SearchFolder:
         if best.counting or not os.path.lexists(self._state):
             return best, None
         try:
-            return best, self._search_of(self._read(self._state))
+            return best, self._read(self._state, self._search_of)
         except (OSError, ValueError) as e:
             if isinstance(e, LandingError):
                 raise
@@ -153,8 +155,10 @@ class SearchFolder:
                 f"remove it, and --resume searches anew from {self._best.name}"
             ) from None
 
-    def _read(self, path: Path) -> dict[str, Any]:
+    def _read(self, path: Path, content: Callable[[dict[str, Any]], T]) -> T:
+        """The content of a file of this search, whose check sum is right."""
         kept = read_record(path)
+        whole, check = check_sum(kept), kept.pop("check", None)
         own = kept.pop("search", None)
         if not isinstance(own, dict) or own.keys() != self._search.keys():
             raise ValueError("it does not say of which search it is")
@@ -164,7 +168,10 @@ class SearchFolder:
                     f"{path} is of another search, with other {what}; "
                     "resume with the same, or name another folder by --work"
                 )
-        return kept
+        found = content(kept)
+        if check != whole:
+            raise ValueError("its check sum is another: it was changed")
+        return found
 
     def save_best(self, best: Best) -> None:
         """Write the best point."""
@@ -175,7 +182,8 @@ class SearchFolder:
         self._write(self._state, search.state())
 
     def _write(self, path: Path, content: Mapping[str, Any], indent: int | None = None) -> None:
-        text = json.dumps({**content, "search": self._search}, indent=indent)
+        record = {**content, "search": self._search}
+        text = json.dumps({**record, "check": check_sum(record)}, indent=indent)
         write_durably(path, text.encode())
 
     def _best_of(self, kept: dict[str, Any]) -> Best:

@@ -12,12 +12,12 @@ from functools import cached_property
 
 import numpy as np
 
-from ..history import History
+from ..history import History, joined
 from ..landing import Landing
 from ..parameters import Parameters
 from ..quantities import MODES
 from ..studies.sweep.responses import Measure
-from ..studies.whole_landing import LATEST, whole_landing
+from ..studies.whole_landing import whole_landing
 from ..text.units import DIMENSIONLESS, parse_unit
 from ..validation.paper import MEANINGS, RUN_AFTER_CONTACT, Reading, printed_scalars
 from ..validation.sensors import SAMPLING, through_sensors
@@ -134,12 +134,22 @@ class Landed:
 
     @cached_property
     def _whole(self) -> History:
-        """The landing until it is decided, as in sweeps; at most 10 s after the contact."""
+        """The landing until it is decided, as in sweeps."""
         own = self._parameters.for_mode(self._mode)
-        return self._sensed(whole_landing(Landing(own), own.drop.contact_time + LATEST, EVERY))
+        return self._sensed(whole_landing(Landing(own), every=EVERY))
 
     def _sensed(self, history: History) -> History:
-        return through_sensors(history) if self._sensors else history
+        """What the sensors recorded of a landing.
+
+        What still rocks when its samples become coarser is far slower than their filters, and is
+        joined as it is.
+        """
+        if not self._sensors:
+            return history
+        coarser = np.flatnonzero(np.diff(history.time) > 1.5 * EVERY)
+        last = int(coarser[0]) if len(coarser) else len(history) - 1
+        sensed = through_sensors(_part(history, 0, last + 1))
+        return joined([sensed, _part(history, last, len(history))])
 
     def read(self, wanted: Sequence[Wanted]) -> list[float]:
         """The numbers that stand beside those wanted, in their units; NaN where there is none.
@@ -154,6 +164,12 @@ class Landed:
     def _printed(self, wanted: Wanted) -> float:
         meaning, leg = MEANINGS[wanted.id]
         return meaning(self.reading, leg)
+
+
+def _part(history: History, first: int, last: int) -> History:
+    """The samples from `first` up to, not including, `last`."""
+    of = slice(first, last)
+    return History(history.time[of], history.names, history.data[of], history.parameters)
 
 
 def _in_unit(wanted: Wanted, value: float | None) -> float:

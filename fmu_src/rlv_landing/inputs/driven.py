@@ -26,8 +26,9 @@ class DrivenInputs:
 
     If heave or tilt is set to another value than the ground has, the ground moves there at a
     constant rate, on top of its own rates, and does not jump. That takes as long as the time since
-    the last such setting (see `ground_way.next_interval`), and at least the caller's next step. So
-    positions without rates are a motion that is linear between them, one interval late.
+    the last such setting, 1 s at most (see `ground_way.next_interval`), but not less than the
+    caller's next step. So positions without rates are a motion that is linear between them, one
+    interval late.
 
     The solver's `u` holds the ground's present position. Its `u_rate` holds, in the places of heave
     and tilt, the rates of the motion to a new position.

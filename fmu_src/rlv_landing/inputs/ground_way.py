@@ -9,13 +9,11 @@ from ..core import Inputs
 
 # the places of heave and tilt among the inputs
 POSITIONS = (Inputs._fields.index("heave"), Inputs._fields.index("tilt"))
-# longest time between two positions that counts as their interval [s]; longer, the ground stood
-LONGEST_INTERVAL = 0.25
+# longest time that the way to a position takes, unless a step of the caller is longer [s]
+LONGEST_INTERVAL = 1.0
 # A shorter part of the interval before is the interval of another source. Positions of one source
 # that the caller looks for at each step come n or n + 1 steps apart, so at least half.
 OTHER_SOURCE = 0.45
-# so much longer than the one before an interval may be; longer, the ground stood
-GROWTH = 2.0
 
 
 class Way(NamedTuple):
@@ -24,7 +22,7 @@ class Way(NamedTuple):
     goal: float  # heave or tilt as it was set, at the solver's t_input
     told: float  # the last value that was set
     since: float  # time at which the goal was last set to another place
-    interval: float  # time between such settings; 0 if it is not known
+    interval: float  # time between such settings; 0 before the first
     end: float  # time at which the ground is at the goal
 
 
@@ -32,18 +30,16 @@ def next_interval(before: float, spacing: float) -> float:
     """The time that the way to a new position takes [s].
 
     It is the spacing of positions. If that varies, the longest counts, until one is that of another
-    source: so the ground does not arrive early and stand. After a stand the interval from before
-    it counts, or 0 if there was none.
+    source: so the ground does not arrive early and stand. A stand counts as a spacing, so that no
+    position after it is reached faster than the vehicle bears. If positions come often from then
+    on, the second counts as that of another source.
 
     Args:
         before: That of the last way [s]; 0 if there was none.
-        spacing: Time since the last new position [s].
+        spacing: Time since the last new position, or since the start [s].
     """
-    if spacing > LONGEST_INTERVAL:
-        return before
-    if before == 0.0 or spacing < OTHER_SOURCE * before:
-        return spacing
-    return max(before, min(spacing, GROWTH * before))
+    spacing = min(spacing, LONGEST_INTERVAL)
+    return spacing if spacing < OTHER_SOURCE * before else max(before, spacing)
 
 
 def reached(end: float, t: float) -> bool:

@@ -31,7 +31,7 @@ INPUT_QUANTITIES: tuple[Quantity, ...] = (
     Quantity(
         "m",
         "lift of the ground along inertial y; a change after the start is spread over the time "
-        "since the last change, at least the next step",
+        "since the last change, at most 1 s, at least the next step",
         -100.0,
         100.0,
         name="ground.heave",
@@ -46,8 +46,8 @@ INPUT_QUANTITIES: tuple[Quantity, ...] = (
     Quantity(
         "rad",
         "tilt of the ground about its origin, on top of ground.slope, clockwise positive; "
-        "a change after the start is spread over the time since the last change, at least the "
-        "next step",
+        "a change after the start is spread over the time since the last change, at most 1 s, "
+        "at least the next step",
         -1.0,
         1.0,
         name="ground.tilt",

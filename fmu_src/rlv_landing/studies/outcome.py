@@ -214,13 +214,13 @@ def _joint_clearance(history: History, cosines: tuple[float, ...]) -> float:
     turned = history["body.pitch"] - slope
     height = height - depth * np.cos(turned)
     sine = np.sin(turned)
-    return min(_least(height - radius * c * sine) for c in cosines)
+    return min(_least(history.time, height - radius * c * sine) for c in cosines)
 
 
-def _least(values: Array) -> float:
-    """The least of a smooth quantity at even times, by the parabola through the three lowest."""
+def _least(time: Array, values: Array) -> float:
+    """The least of a smooth quantity, by the parabola through the three lowest at even times."""
     i = int(values.argmin())
-    if not 0 < i < len(values) - 1:
+    if not 0 < i < len(values) - 1 or time[i + 1] - time[i] > 1.5 * (time[i] - time[i - 1]):
         return float(values[i])
     before, least, after = values[i - 1 : i + 2].tolist()
     bend = before - 2.0 * least + after

@@ -5,10 +5,11 @@ What this machine does not have is refused before the first landing, see `rlv_la
 
 from __future__ import annotations
 
+from ..audit.rest import LONGEST_WAIT
 from ..effort import SECONDS_PER_SAMPLE, SECONDS_PER_SECOND, check_duration, check_memory
 from ..quantities import OUTPUT_NAMES
 from ..workers import default_workers
-from .whole_landing import CHECK_EVERY
+from .whole_landing import CHECK_EVERY, most_samples
 
 # a sample is there twice: as the integrator's row, and in the columns of the history
 BYTES_PER_SAMPLE = 16.0 * len(OUTPUT_NAMES)
@@ -19,14 +20,20 @@ BYTES_PER_VALUE = 32.0
 
 
 def check_landings(
-    count: int, workers: int, until: float, every: float, *, decided: bool, timed: bool = True
+    count: int,
+    workers: int,
+    until: float | None,
+    every: float,
+    *,
+    decided: bool,
+    timed: bool = True,
 ) -> None:
     """Refuse landings that this machine has not the memory or the time for.
 
     Args:
         count: The number of landings, the least where it is not known.
         workers: How many of them are made at once.
-        until: The end of each [s], the latest where it may be `decided`.
+        until: The end of each [s], the latest where it may be `decided`; None: 60 s.
         every: Time between samples [s].
         decided: Whether a landing ends where its outcome is decided, 0.25 s from its start on.
         timed: Whether the time is known; that on a cluster is not.
@@ -34,13 +41,15 @@ def check_landings(
     Raises:
         LandingError: They need too much.
     """
+    samples = most_samples(until, every, decided=decided)
+    until = LONGEST_WAIT if until is None else until
     at_once = min(workers, count)
     end = f"until {until:g} s at most" if decided else f"until = {until:g} s"
     what = f"{end}, every = {every:g} s"
     remedy = "land shorter, sample more seldom, or make fewer landings"
     check_memory(
         f"{what}, {at_once} landings at once,",
-        BYTES_PER_SAMPLE * until / every * at_once,
+        BYTES_PER_SAMPLE * samples * at_once,
         f"{remedy} at once (--workers)",
         at_most=decided,
     )

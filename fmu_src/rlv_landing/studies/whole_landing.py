@@ -3,31 +3,36 @@
 from __future__ import annotations
 
 from array import array
+from collections.abc import Callable, Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..audit.rest import LONGEST_WAIT, REST_AFTER
 from ..history import History, joined
 from ..landing import Landing
 from .outcome import SETTLED, TOPPLED
 from .replay import ReplayedHistory
 
 CHECK_EVERY = 0.25
-# the end [s after the first contact] of a landing that is not decided before
-LATEST = 10.0
+# time between samples [s], at least, of what still rocks at REST_AFTER from its first contact
+LATER_EVERY = 1e-2
 
 
 def whole_landing(
-    landing: Landing, until: float, every: float = 1e-3, *, decided: bool = True
+    landing: Landing, until: float | None = None, every: float = 1e-3, *, decided: bool = True
 ) -> ReplayedHistory:
     """Land from now until the vehicle is at rest, has toppled, or `until` [s].
 
     The state is checked every 0.25 s. The vehicle is at rest where `status.phase` is settled then.
     It has toppled where it was toppled at every sample of the last 0.25 s: one that is beyond its
-    feet for a moment may still come back.
+    feet for a moment may still come back. What is not decided 10 s after its first contact, such as
+    a heavy vehicle that rocks, is sampled every 10 ms from then on, or every `every` [s] if that is
+    longer, so that the samples of 60 s have little more memory than those of 10 s.
 
     Args:
         landing: The landing; its state moves on.
-        until: The latest end [s].
+        until: The latest end [s]; None: 60 s after the first contact, as long as `audit` waits.
         every: Time between samples [s].
         decided: Whether the landing may end before `until`.
 
@@ -39,16 +44,38 @@ def whole_landing(
     def keep(_time: float) -> None:
         states.append((landing.time, landing.state()))
 
+    contact = landing.parameters.drop.contact_time
+    if until is None:
+        until = contact + LONGEST_WAIT
     if not decided:
         return ReplayedHistory(landing.run(until, every, keep), landing, states)
-    samples = max(1, round(CHECK_EVERY / every))
-    start, checks = landing.time, 0
     parts: list[History] = []
-    while not parts or landing.time + 0.5 * every < until:
+    for end, step in ((min(until, contact + REST_AFTER), every), (until, max(every, LATER_EVERY))):
+        for part in _checked(landing, end, step, keep):
+            parts.append(part)
+            if _is_decided(part["status.phase"]):
+                return ReplayedHistory(joined(parts), landing, states)
+    return ReplayedHistory(joined(parts or [landing.run(until, every, keep)]), landing, states)
+
+
+def most_samples(until: float | None, every: float, *, decided: bool) -> float:
+    """The number of samples of a landing that is decided last, its first contact at its start."""
+    if not decided and until is not None:
+        return until / every
+    end = LONGEST_WAIT if until is None else until
+    later = max(0.0, end - REST_AFTER) / max(every, LATER_EVERY)
+    return min(end, REST_AFTER) / every + later
+
+
+def _checked(
+    landing: Landing, end: float, every: float, keep: Callable[[float], object]
+) -> Iterator[History]:
+    """The landing until `end` [s] in parts of 0.25 s, as far as whole intervals fit."""
+    start, samples, checks = landing.time, max(1, round(CHECK_EVERY / every)), 0
+    while end - landing.time > every * (1.0 - 1e-9):
         checks += 1
-        part = landing.run(min(start + checks * samples * every, until), every, keep)
-        parts.append(part)
-        phase = part["status.phase"]
-        if phase[-1] == SETTLED or np.all(phase == TOPPLED):
-            break
-    return ReplayedHistory(joined(parts), landing, states)
+        yield landing.run(min(start + checks * samples * every, end), every, keep)
+
+
+def _is_decided(phase: NDArray[np.float64]) -> bool:
+    return bool(phase[-1] == SETTLED or np.all(phase == TOPPLED))

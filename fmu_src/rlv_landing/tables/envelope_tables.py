@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from ..audit.rest import LONGEST_WAIT
 from ..quantities import shown
 from ..studies.envelope.results import NAMES, lost_text, stretches, verdict
 from ..studies.envelope.search import Envelope, Family
 from ..studies.sweep.factors import value_text
-from .landing import new_table, render
+from .rendering import new_table, render
 
 
 def envelope_tables(found: Envelope) -> str:
@@ -47,8 +48,8 @@ def envelope_tables(found: Envelope) -> str:
     ]
     if open_ended:
         parts.append(
-            f"{open_ended} landings were neither at rest nor toppled at {study.until:g} s "
-            "and count as not toppled\n"
+            f"{open_ended} landings were neither at rest nor toppled at "
+            f"{LONGEST_WAIT if study.until is None else study.until:g} s and count as not toppled\n"
         )
     parts.append(
         f"{found.landings} landings; a uniform grid of the same resolution takes {found.uniform}, "

@@ -1,47 +1,19 @@
-"""The tables of a landing and of parameters, and what all tables share."""
+"""The tables of a landing and of parameters, and numbers in tables."""
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Iterable
 from typing import Any
-
-from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
 
 from ..history import History
 from ..parameters import PARAMETER_QUANTITIES, Parameters
 from ..quantities import Quantity
 from ..summary import summarise, unfinished
 from ..validation.paper import Comparison, compare, counts, other_vehicle
+from .rendering import new_table, render
 
 FIRST_STROKE = "absorbed, dissipated and efficiency are of a damper's first compression and rebound"
-
-
-def render(table: Table, width: int = 140) -> str:
-    """A table as plain text."""
-    out = io.StringIO()
-    Console(file=out, width=width).print(table)
-    return out.getvalue()
-
-
-def new_table(
-    title: str, left: Iterable[str], right: Iterable[str], more: Iterable[str] = ()
-) -> Table:
-    """An empty table: columns aligned left, right (numbers), and left again.
-
-    A word that is wider than its column goes on in the next line; nothing is cut.
-    """
-    table = Table(title=escape(title), title_justify="left", title_style="bold")
-    for name in left:
-        table.add_column(escape(name), overflow="fold")
-    for name in right:
-        table.add_column(escape(name), justify="right", overflow="fold")
-    for name in more:
-        table.add_column(escape(name), overflow="fold")
-    return table
 
 
 def number(value: float | None, unit: str) -> str:

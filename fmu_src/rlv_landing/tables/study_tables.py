@@ -13,13 +13,12 @@ from .landing import (
     counts_line,
     decimals,
     near_zero_note,
-    new_table,
     number,
     other_vehicle_note,
     percent,
-    render,
     sampling_note,
 )
+from .rendering import new_table, render
 
 
 def validation_tables(found: Validation) -> str:
@@ -96,7 +95,7 @@ def measure_table(found: Validation) -> str:
             "dissipated [J]",
             "efficiency",
             "of measured: absorbed",
-            "dissipated",
+            "of measured: dissipated",
         ),
     )
     for mode, work in found.work.items():

@@ -8,7 +8,7 @@ from typing import Any
 from ..studies.sweep.sensitivity import WIDEST, Indices
 from ..studies.sweep.summary import Summary
 from ..studies.sweep.sweep_row import Task
-from .landing import new_table, render
+from .rendering import new_table, render
 
 FIRST_ROWS = 5
 

@@ -6,7 +6,7 @@ import errno
 import io
 import os
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from hashlib import sha256
 from pathlib import Path
@@ -18,6 +18,20 @@ from ..errors import LandingError
 LONGEST_NAME = 240
 PART = ".part"
 LOCK = ".lock"
+# what the system says where a disk, a user's share of it, or a file takes no more
+NO_ROOM = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
+# what it says of a path that the user can change
+NOT_USABLE = {
+    errno.ENOENT,
+    errno.EACCES,
+    errno.EPERM,
+    errno.EEXIST,
+    errno.ENOTDIR,
+    errno.EISDIR,
+    errno.ENAMETOOLONG,
+    errno.ELOOP,
+    errno.EROFS,
+}
 
 
 def temporary_name(path: Path, ending: str = PART) -> Path:
@@ -47,6 +61,8 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
         OSError: The disk refuses.
     """
     target = Path(os.path.realpath(path))
+    if target.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(target))
     temporary = temporary_name(target)
     # what a killed writer left, or somebody's link, is not written to
     temporary.unlink(missing_ok=True)
@@ -100,22 +116,53 @@ def _sync_folder(path: Path) -> None:
             os.close(folder)
 
 
-def unwritable(path: Path, error: OSError, remedy: str = "") -> LandingError:
+def unwritable(
+    path: Path, error: OSError, remedy: str = "name another", *, kept: bool = False, what: str = ""
+) -> LandingError:
     """The error for a file or folder that cannot be written.
+
+    Of a folder it names the file in it, where the system does.
 
     Args:
         path: The file or folder.
         error: Why.
-        remedy: What to do [default: make room, or name another].
+        remedy: What helps, beside making room on a disk that is full.
+        kept: Whether what was done is kept in the folder `path`, so that room alone helps.
+        what: The word for it, with a blank.
     """
+    named = error.filename2 or error.filename
+    name = os.fsdecode(named) if isinstance(named, (str, bytes)) and _is_folder(path) else path
     return LandingError(
-        f"{path} cannot be written: {error.strerror or error}; "
-        f"{remedy or 'make room, or name another'}"
+        f"{what}{name} cannot be written: {error.strerror or error}; "
+        f"{_remedy(error, remedy, kept=kept)}"
     )
 
 
+def _is_folder(path: Path) -> bool:
+    with suppress(OSError):
+        return path.is_dir()
+    return False
+
+
+def _remedy(error: OSError, remedy: str, *, kept: bool) -> str:
+    if error.errno in NO_ROOM:
+        return "make room" if kept else f"make room, or {remedy}"
+    return f"move it away, or {remedy}" if error.errno == errno.EISDIR else remedy
+
+
+def refuse_no_files(folder: Path, names: Iterable[str], remedy: str) -> None:
+    """Refuse names in `folder` that are there and are no files, such as folders.
+
+    Raises:
+        LandingError: One is; the error has the `remedy`.
+    """
+    for path in (folder / name for name in names):
+        if path.exists() and not path.is_file():
+            raise LandingError(f"{path} is there and is no file; move it away, or {remedy}")
+
+
 @contextmanager
-def writing(path: Path, remedy: str = "") -> Iterator[None]:
+def writing(path: Path, remedy: str = "name another") -> Iterator[None]:
     """The body writes `path`; what the disk refuses is `unwritable`'s error.
 
     Raises:

@@ -11,11 +11,16 @@ import csv
 import json
 import re
 import sys
-from collections.abc import Iterator, Sequence
+import zlib
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from io import TextIOWrapper
 from pathlib import Path
 from typing import Any, TextIO
 
 from ..errors import LandingError
+from .pipes import is_pipe, open_input
+from .units import is_zero
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -33,6 +38,8 @@ _BYTE_ORDER_MARKS = {
     codecs.BOM_UTF16_LE: "UTF-16",
     codecs.BOM_UTF16_BE: "UTF-16",
 }
+_keeping: list[bool] = []
+_kept: dict[Path, bytes] = {}
 _SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "strokes"}
 
 
@@ -49,8 +56,7 @@ def read_text(path: Path, what: str, missing: str = "") -> str:
             has NUL characters.
     """
     try:
-        with path.open("rb") as file:
-            data = file.read(LARGEST_TEXT + 1)
+        data = _content(path)
     except FileNotFoundError:
         raise LandingError(missing or f"there is no {what} {path}") from None
     except (OSError, ValueError) as e:
@@ -64,6 +70,29 @@ def read_text(path: Path, what: str, missing: str = "") -> str:
     if "\0" in text:
         raise _with_nuls(what, path)
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _content(path: Path) -> bytes:
+    """The bytes of a file, as far as a text may be large."""
+    if path in _kept:
+        return _kept[path]
+    pipe = is_pipe(path)
+    with open_input(path) as file:
+        data = file.read(LARGEST_TEXT + 1)
+    if pipe and _keeping:
+        _kept[path] = data
+    return data
+
+
+@contextmanager
+def pipes_kept() -> Iterator[None]:
+    """Texts of pipes that the body reads are kept, so that it can read them again."""
+    _keeping.append(True)
+    try:
+        yield
+    finally:
+        _keeping.pop()
+        _kept.clear()
 
 
 def unreadable(what: str, path: Path, error: Exception, start: bytes = b"") -> LandingError:
@@ -108,6 +137,15 @@ def read_record(path: Path) -> dict[str, Any]:
     return record
 
 
+def check_sum(record: Mapping[str, Any]) -> int:
+    """The CRC-32 of a record without its `check`, whatever the order of its keys.
+
+    A digit that is changed makes another number, which may be as good; the sum tells.
+    """
+    kept = {key: value for key, value in record.items() if key != "check"}
+    return zlib.crc32(json.dumps(kept, sort_keys=True).encode())
+
+
 def parse_document(text: str, name: str) -> dict[str, Any]:
     """The document of a TOML text.
 
@@ -124,7 +162,10 @@ def parse_document(text: str, name: str) -> dict[str, Any]:
     if max(part.count(".") for part in re.split(r"[\n,=\[\]{}#]", plain)) > DEEPEST:
         raise LandingError(f"{name}: TOML syntax: a key has more than {DEEPEST} parts")
     try:
-        document = tomllib.loads(text)
+        # a number that a float cannot tell from 0 is refused
+        document = tomllib.loads(text, parse_float=_toml_float)
+    except LandingError as e:
+        raise LandingError(f"{name}: {e}") from None
     except RecursionError:
         raise LandingError(f"{name}: tables and lists are nested too deep; {DEEPEST} fit") from None
     except tomllib.TOMLDecodeError as e:
@@ -134,6 +175,13 @@ def parse_document(text: str, name: str) -> dict[str, Any]:
         raise LandingError(f"{name} has {_TOO_LARGE}") from None
     _check_size(document, name)
     return document
+
+
+def _toml_float(text: str) -> float:
+    value = float(text)
+    if value == 0.0 and not is_zero(text):
+        raise LandingError(f"{text} is below the smallest number, 4.9e-324; write 0")
+    return value
 
 
 def _check_size(document: dict[str, Any], name: str) -> None:
@@ -182,7 +230,7 @@ def read_csv(path: Path, what: str, missing: str = "") -> Iterator[tuple[int, li
             its first row is separated by semicolons, tabs or strokes.
     """
     try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
+        with open_input(path) as data, TextIOWrapper(data, "utf-8-sig", newline="") as file:
             rows = csv.reader(_lines(file, what, path))
             first = True
             for row in rows:
@@ -217,6 +265,8 @@ def _with_nuls(what: str, path: Path) -> LandingError:
 
 def _start(path: Path) -> bytes:
     try:
+        if not path.is_file():
+            return b""
         with path.open("rb") as file:
             return file.read(4)
     except (OSError, ValueError):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import os
 import sys
 import unicodedata
 
@@ -23,6 +24,17 @@ def _in_ascii(character: str) -> str:
     upright = any(word in name for word in ("VERTICAL", "UP", "DOWN"))
     level = any(word in name for word in ("HORIZONTAL", "LEFT", "RIGHT"))
     return "+" if upright and level else "|" if upright else "-"
+
+
+def columns() -> int | None:
+    """The columns of the terminal: `COLUMNS`, else what the terminal says; None for a file."""
+    given = os.environ.get("COLUMNS", "")
+    if given.isascii() and given.isdecimal() and int(given) > 0:
+        return int(given)
+    try:
+        return os.get_terminal_size(sys.stdout.fileno()).columns or None
+    except (OSError, ValueError):
+        return None
 
 
 def make_legible() -> None:

@@ -125,12 +125,14 @@ class Unit:
             number: The number as text, by `split`, or a float's `repr`.
 
         Raises:
-            UnitError: The value is beyond the largest float.
+            UnitError: The value is beyond the largest float, or so small that a float of it is 0.
         """
         product = number if self.size == _ONE else _CONTEXT.multiply(Decimal(number), self.size)
         value = float(product)
         if isinf(value) and "inf" not in number.lower():
             raise UnitError(f"{number} is beyond the largest number, 1.8e308 in SI")
+        if value == 0.0 and not is_zero(number):
+            raise UnitError(f"{number} is below the smallest number, 4.9e-324 in SI; write 0")
         return value
 
     def from_si(self, value: float) -> float:
@@ -164,11 +166,16 @@ def split(text: str) -> tuple[str, str]:
     return found[0], rest.lstrip()
 
 
+def is_zero(number: str) -> bool:
+    """Whether a number, as text, is 0, and not just so small that a float of it is."""
+    return not any(c in "123456789" for c in number.lower().partition("e")[0])
+
+
 def parse_number(text: str) -> float:
     """A number without a unit; `nan` and `inf` are numbers.
 
     Raises:
-        UnitError: The text is no number, has a unit, or is beyond the largest float.
+        UnitError: The text is no number, has a unit, or is too large or small for a float.
     """
     number, unit = split(text)
     if unit:

@@ -95,15 +95,13 @@ def number_in_si(q: Quantity, number: float, unit: Unit) -> float:
     """A number of `q` in `unit`, in SI; NaN and infinity stay what they are.
 
     Raises:
-        LandingError: The value is beyond the largest float.
+        LandingError: The value is beyond the largest or the smallest float.
     """
     try:
         return unit.to_si(repr(float(number)))
-    except (OverflowError, UnitError):
-        raise LandingError(
-            f"{q.name} is beyond the largest number, 1.8e308; "
-            f"give it in {q.unit or 'plain numbers'}"
-        ) from None
+    except (OverflowError, UnitError) as e:
+        reason = e if isinstance(e, UnitError) else "it is beyond the largest number, 1.8e308"
+        raise LandingError(f"{q.name}: {reason}; give it in {q.unit or 'plain numbers'}") from None
 
 
 def split_heading(heading: str) -> tuple[str, str]:

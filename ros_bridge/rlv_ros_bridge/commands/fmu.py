@@ -59,7 +59,9 @@ def fmu() -> None:
     help="Variables without dots and brackets: leg1_main_strut_force. For hosts that make buses "
     "or arrays of them (Simulink, Hopsan).",
 )
-@click.option("--fmi", metavar="VERSION", default="2", show_default=True, help="Version of FMI.")
+@click.option(
+    "--fmi", metavar="VERSION", default="2", show_default=True, help="Version of FMI, 2 or 3."
+)
 @click.option(
     "--pure", is_flag=True, help="Leave the compiled core out: the same digits, ten times as slow."
 )

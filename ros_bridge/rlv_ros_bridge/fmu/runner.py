@@ -80,7 +80,7 @@ class FmuRunner:
         from fmpy import extract
         from fmpy.fmi2 import FMU2Slave
 
-        with writing(Path(gettempdir()), "make room, or name another folder by TMPDIR"):
+        with writing(Path(gettempdir()), "name another folder by TMPDIR"):
             self._folder = FmuFolder()
             unpacked = str(self._folder.path)
             try:

@@ -13,6 +13,7 @@ import numpy as np
 
 from rlv_landing.errors import LandingError
 from rlv_landing.history import History
+from rlv_landing.text.units import parse_number
 
 from ..fmu.peaks import known_extremes
 from ..messages.columns import READINGS
@@ -125,7 +126,7 @@ def _stamp(message: Any) -> int:
 def _seconds(reader: LogReader, nanoseconds: int) -> float:
     # The landing's own times are k * step; computed alike, they agree to the bit.
     try:
-        step = float(reader.metadata["step_size"])
+        step = parse_number(reader.metadata["step_size"])
         k, rest = divmod(nanoseconds, round(step * 1e9))
     except (KeyError, ValueError, OverflowError, ZeroDivisionError):
         return nanoseconds / 1e9

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rlv_landing.errors import LandingError
+from rlv_landing.text.durable import unwritable
 
 from ..messages.definitions import Definition, definition
 from ..messages.qos import Qos
@@ -93,10 +94,7 @@ class Recorder:
             raise
 
     def _unwritable(self, e: OSError) -> LandingError:
-        return LandingError(
-            f"log folder {self.folder} cannot be written: {e.strerror or e}; "
-            "name one that can be, or make room"
-        )
+        return unwritable(self.folder, e, what="log folder ")
 
     def _register(self, definitions: Mapping[str, Definition]) -> dict[str, int]:
         import yaml

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
 from functools import cache
+from math import isfinite, nan
 from pathlib import Path
 from typing import Any
 
 from rlv_landing.errors import LandingError
+from rlv_landing.text.durable import unwritable
 from rlv_landing.text.files import shown_name
+from rlv_landing.text.units import UnitError, parse_number
 
 from .bag_writer import BagTopic, BagWriter
 from .log_files import check_file, find_files, log_name
@@ -99,9 +102,7 @@ def recover(path: Path, folder: Path | None = None) -> Recovery:
     try:
         writer = BagWriter(target)
     except OSError as e:
-        raise LandingError(
-            f"log folder {target} cannot be written: {e.strerror or e}; name another"
-        ) from None
+        raise unwritable(target, e, what="log folder ") from None
     try:
         copy = _Copy(writer, found)
         for file in files:
@@ -112,10 +113,7 @@ def recover(path: Path, folder: Path | None = None) -> Recovery:
     except BaseException as e:
         writer.discard()
         if isinstance(e, OSError):
-            raise LandingError(
-                f"log folder {target} cannot be written: {e.strerror or e}; "
-                "make room, or name another"
-            ) from None
+            raise unwritable(target, e, what="log folder ") from None
         raise
     found.folder = str(target)
     return found
@@ -186,9 +184,10 @@ class _Copy:
         found, span = self._found, self._writer.bag.span
         found.start, found.end = (span.first or 0) / 1e9, span.last / 1e9
         try:
-            found.stop_time = float(self._our_metadata["stop_time"])
-        except (KeyError, ValueError):
-            found.stop_time = None
+            stop_time = parse_number(self._our_metadata["stop_time"])
+        except (KeyError, UnitError):
+            stop_time = nan
+        found.stop_time = stop_time if isfinite(stop_time) else None
         missing = "" if found.complete else found.text().split("\n", 1)[-1]
         recovery = {"recovered_from": shown_name(Path(found.path)), "recovery": missing}
         self._writer.mcap.add_metadata("rlv_landing", {**self._our_metadata, **recovery})

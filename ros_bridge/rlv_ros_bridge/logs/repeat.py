@@ -9,6 +9,7 @@ from pathlib import Path
 from rlv_landing import Landing, Parameters
 from rlv_landing.errors import LandingError
 from rlv_landing.quantities import OUTPUT_NAMES
+from rlv_landing.text.units import parse_number
 
 from ..messages.inputs import READINGS
 from ..messages.topics import APPLIED, resolve
@@ -148,7 +149,7 @@ def _inputs(reader: LogReader, step_ns: int, refusal: str) -> Inputs:
 
 def _seconds(reader: LogReader, name: str, refusal: str) -> float:
     try:
-        value = float(reader.metadata[name])
+        value = parse_number(reader.metadata[name])
     except KeyError:
         raise LandingError(
             refusal + f"its metadata do not say {name}; "

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from rlv_landing.inputs.ground_way import LONGEST_INTERVAL
+
 from ..messages.inputs import JOINTS
 
-# Longest time between two messages that counts as their spacing [ns of simulation time]: a message
-# after a longer pause must not take that long to act.
-LONGEST_SPACING = 500_000_000
+# a message after a longer pause must not take that long to act [ns of simulation time]
+LONGEST_SPACING = round(1e9 * LONGEST_INTERVAL)
 
 
 @dataclass
@@ -18,7 +19,7 @@ class _Joint:
 
     `position` [m or rad] is that at the simulation time `since` [ns], `rate` [m/s or rad/s] its
     rate. If `end` [ns] is not None, the rate ends there. `goal` [m or rad] is the position in the
-    last message, `commanded` [ns] the time of that message.
+    last message, `commanded` [ns] the time of the last message that was news.
     """
 
     position: float = 0.0
@@ -26,7 +27,7 @@ class _Joint:
     since: int = 0
     goal: float = 0.0
     end: int | None = None
-    commanded: int | None = None
+    commanded: int = 0
 
     def at(self, now: int) -> float:
         """The position at the simulation time `now` [ns]."""
@@ -44,9 +45,9 @@ class CommandedGround:
     A position with a velocity is the ground's from then on. If it is the last message's position
     again, with a velocity other than 0, the ground goes on from where it is at the velocity.
     Towards a position without a velocity the ground moves at a constant rate, over 1.5 times the
-    spacing of the last two messages, at least one step. So messages at uneven times still give one
-    motion without stops. Where there was no message before, the landing itself moves the ground
-    (see `Landing.set_inputs`). At time 0 the ground is where the message says.
+    time since the last one, at least one step. So messages at uneven times still give one motion
+    without stops. The start counts as a message, and the last position again is no news. At time 0
+    the ground is where the message says.
 
     Args:
         step_ns: the landing's step [ns].
@@ -75,9 +76,12 @@ class CommandedGround:
             if position not in values:
                 continue
             joint, goal = self._joints[position], values[position]
-            spacing = 0 if joint.commanded is None else min(now - joint.commanded, LONGEST_SPACING)
-            joint.commanded = now
             here, again, joint.goal = joint.at(now), joint.goal == goal, goal
+            stays = joint.end is not None or (joint.rate == 0.0 and here == goal)
+            if again and stays and rate not in values:
+                continue
+            spacing = min(now - joint.commanded, LONGEST_SPACING)
+            joint.commanded = now
             if rate in values or spacing == 0:
                 velocity = values.get(rate, 0.0)
                 held = again and velocity != 0.0
@@ -96,8 +100,14 @@ class CommandedGround:
         return bool(arrived)
 
     def stop(self, now: int) -> bool:
-        """Stops the ground where it is at the simulation time `now` [ns]; whether it moved."""
-        moving = [j for j in self._joints.values() if j.rate != 0.0]
+        """Stops what moves at a commanded velocity, at the simulation time `now` [ns].
+
+        What is on its way to a goal goes on to it.
+
+        Returns:
+            Whether anything is stopped.
+        """
+        moving = [j for j in self._joints.values() if j.rate != 0.0 and j.end is None]
         for joint in moving:
             joint.move(now, joint.at(now), 0.0)
         return bool(moving)

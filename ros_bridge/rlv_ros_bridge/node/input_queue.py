@@ -66,8 +66,8 @@ class InputQueue:
     count messages. Ground positions without velocities are handled by `CommandedGround`.
 
     Args:
-        timeout: wall time after a topic's last message [s] after which the wrench becomes 0, or the
-            ground stops where it is; 0: never.
+        timeout: wall time after a topic's last message [s] after which the wrench becomes 0, or a
+            velocity of the ground ends; 0: never.
         warn: called with a text when a message cannot be used, and after a timeout.
     """
 
@@ -163,7 +163,10 @@ class InputQueue:
         self._warn(f"input refused, the previous one stays in force: {reason}")
 
     def _end_input(self, topic: Topic, nanoseconds: int) -> bool:
-        """Sets the wrench to 0, or stops the ground, after a timeout; whether that is a change."""
+        """Ends an input after a timeout; whether that is a change.
+
+        The wrench becomes 0, and the ground no longer goes on at a velocity.
+        """
         if topic is APPLIED_WRENCH:
             if self._wrench == NO_WRENCH:
                 return False
@@ -172,5 +175,5 @@ class InputQueue:
             return True
         if not self._ground.stop(nanoseconds):
             return False
-        self._warn(f"no ground for {self.timeout:g} s: it stops where it is")
+        self._warn(f"no ground for {self.timeout:g} s: a velocity ends where the ground is")
         return True

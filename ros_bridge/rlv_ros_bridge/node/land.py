@@ -109,6 +109,9 @@ def main() -> int:
     except LandingError as e:
         print(f"error: {e}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        # while a parameter file was waited for
+        return 130
     if summary is None:
         return 128 + stop.number if stop.number else 0
     return 128 + summary.signal if summary.signal else 1 if summary.recording_error else 0

@@ -17,6 +17,8 @@ from rlv_landing import Parameters
 from rlv_landing.effort import check_duration
 from rlv_landing.errors import LandingError
 from rlv_landing.presets import DEFAULT_PRESET
+from rlv_landing.quantities import Quantity
+from rlv_landing.text.values import to_si
 
 from ..messages.qos import PROFILES
 from ..messages.topics import CLOCK, OCCASIONAL, SAMPLED, Topic
@@ -30,7 +32,7 @@ class Setting:
     """A setting of the node.
 
     `default` also gives the type. Numbers have the bounds `lo` and `hi`; texts may have `choices`.
-    `when` says when it may be changed.
+    `when` says when it may be changed, `unit` is the SI unit of a number.
     """
 
     default: Any
@@ -39,6 +41,7 @@ class Setting:
     hi: float = 0.0
     when: When = "paused"
     choices: tuple[str, ...] = ()
+    unit: str = ""
 
 
 def downsampling_setting(topic: Topic) -> str:
@@ -68,16 +71,18 @@ SETTINGS: dict[str, Setting] = {
         "communication step and publishing period [s], a whole number of nanoseconds",
         1e-6,
         1.0,
+        unit="s",
     ),
-    "stop_time": Setting(1.0, "end of the landing [s]", 0.0, 3600.0),
+    "stop_time": Setting(1.0, "end of the landing [s]", 0.0, 3600.0, unit="s"),
     "step_count": Setting(1, "steps that one call of ~/step does", 1.0, 1e6, "always"),
     "input_timeout": Setting(
         0.5,
-        "wall time [s] without a message after which external_wrench becomes 0 and ground stops; "
-        "0: never",
+        "wall time [s] without a message after which external_wrench becomes 0 and a velocity of "
+        "ground ends; 0: never",
         0.0,
         3600.0,
         "always",
+        unit="s",
     ),
     "qos": Setting(
         "telemetry",
@@ -103,7 +108,7 @@ SETTINGS: dict[str, Setting] = {
     "wait_for_subscribers": Setting(
         0, "subscriptions on `struts` to wait for before the landing starts", 0.0, 1000.0
     ),
-    "wait_timeout": Setting(30.0, "longest wait for them [s]", 0.0, 86400.0),
+    "wait_timeout": Setting(30.0, "longest wait for them [s]", 0.0, 86400.0, unit="s"),
     **{
         downsampling_setting(t): Setting(
             0,
@@ -210,10 +215,10 @@ def make_settings(values: Mapping[str, Any], parameters: Parameters, origin: str
 
 
 def check_setting(name: str, value: Any) -> Any:
-    """`value` converted to the type of the setting `name`.
+    """`value` converted to the type of the setting `name`; a number may be a text: "1 ms".
 
     Raises:
-        LandingError: wrong type, not finite, out of bounds, or not one of its choices.
+        LandingError: wrong type or unit, not finite, out of bounds, or not one of its choices.
     """
     s = SETTINGS[name]
     if isinstance(s.default, bool):
@@ -228,6 +233,9 @@ def check_setting(name: str, value: Any) -> Any:
                 f"{name} = {value!r} is not one of {', '.join(s.choices)} ({s.meaning})"
             )
         return value
+    if isinstance(value, str):
+        quantity = Quantity(s.unit, s.meaning, name=name, default=s.default)
+        value = to_si(quantity, value)
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise LandingError(f"{name} = {value!r} is not a number ({s.meaning})")
     if not (isfinite(value) and s.lo <= value <= s.hi):

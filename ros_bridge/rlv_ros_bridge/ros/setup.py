@@ -14,6 +14,7 @@ from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any
 
 from rlv_landing.errors import LandingError
+from rlv_landing.text.files import read_text
 
 if TYPE_CHECKING:
     from rclpy.executors import Executor
@@ -95,14 +96,35 @@ def ros_context(args: Sequence[str] = ()) -> Iterator[Any]:
     import rclpy
     from rclpy.signals import SignalHandlerOptions
 
-    try:
-        rclpy.init(args=["rlv-landing", *args], signal_handler_options=SignalHandlerOptions.NO)
-    except Exception as e:
-        raise LandingError(f"ROS 2 does not start: {' '.join(str(e).split())}") from None
+    with _regular_files(args) as own:
+        try:
+            rclpy.init(args=["rlv-landing", *own], signal_handler_options=SignalHandlerOptions.NO)
+        except Exception as e:
+            raise LandingError(f"ROS 2 does not start: {' '.join(str(e).split())}") from None
     try:
         yield rclpy
     finally:
         rclpy.try_shutdown()
+
+
+@contextmanager
+def _regular_files(args: Sequence[str]) -> Iterator[list[str]]:
+    """The arguments with parameter files that are pipes as regular files, which last for the body.
+
+    ROS 2 would wait for their writer without a word.
+
+    Raises:
+        LandingError: A pipe cannot be read as a parameter file.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        own = list(args)
+        for i, (option, name) in enumerate(zip(args, own[1:]), 1):
+            path = Path(name)
+            if option == "--params-file" and path.exists() and not path.is_file():
+                copy = Path(folder) / f"{i}.yaml"
+                copy.write_text(read_text(path, "parameter file"), encoding="utf-8")
+                own[i] = str(copy)
+        yield own
 
 
 def _ensure_log_folder() -> None:

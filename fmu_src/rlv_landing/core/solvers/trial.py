@@ -15,8 +15,9 @@ from .rest import Rest
 # [s]: what a shorter step loses is not judged, for it is at a force that jumps, and loses next to
 # nothing
 SHORTEST_JUDGED = 1e-10
-# part of the size of a step's ends that its interpolant may leave them by unseen
-BULGE = 0.1
+# part of the size of a step's ends that its interpolant may leave them by unseen: a pressure near
+# that of the liquid's stiffness holds much energy in little
+BULGE = 0.002
 # at looser tolerances the inside of every step is judged
 LOOSE = 1e-4
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import zlib
-from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -15,6 +13,7 @@ from typing import Any
 from ... import __version__
 from ...errors import LandingError
 from ...text.durable import FolderLock, unwritable
+from ...text.files import check_sum
 from .boundary import Point
 from .judged_landing import JudgedLanding
 from .study import EnvelopeStudy
@@ -95,7 +94,7 @@ class Store:
             landing = JudgedLanding.from_record(record["landed"])
             if not _same(self.found.setdefault(key, landing), landing):
                 raise ValueError("it contradicts a line before it")
-            if record["check"] != _check_sum(record):
+            if record["check"] != check_sum(record):
                 raise ValueError("its check sum is another")
         except (ValueError, RecursionError) as e:
             reason = str(e).split(": line")[0]
@@ -132,7 +131,7 @@ class Store:
         if self._file >= 0:
             record: dict[str, Any] = {"family": family, "i": point[0], "j": point[1]}
             record["landed"] = asdict(landing)
-            record["check"] = _check_sum(record)
+            record["check"] = check_sum(record)
             self._append((json.dumps(record) + "\n").encode())
         self.found[family, point] = landing
 
@@ -153,12 +152,6 @@ class Store:
             self._file = -1
         if self._lock is not None:
             self._lock.release()
-
-
-def _check_sum(record: Mapping[str, Any]) -> int:
-    """The CRC-32 of a line's other keys: a changed digit would be another number."""
-    kept = {key: value for key, value in record.items() if key != "check"}
-    return zlib.crc32(json.dumps(kept, sort_keys=True).encode())
 
 
 def _same(one: JudgedLanding, other: JudgedLanding) -> bool:

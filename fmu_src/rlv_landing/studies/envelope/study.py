@@ -37,17 +37,12 @@ FINEST = 20
 LEAST_SECONDS = 9e-3
 BYTES_PER_FAMILY = 1000.0
 TABLES = ("envelope", "set", "limits", "x", "y", "families")
+UNTIL = Quantity(
+    "s", "latest end of a landing that is neither at rest nor toppled", 0.1, 3600.0, name="until"
+)
 NUMBERS = {
     q.name: q
     for q in (
-        Quantity(
-            "s",
-            "latest end of a landing that is neither at rest nor toppled",
-            0.1,
-            3600.0,
-            name="until",
-            default=6.0,
-        ),
         Quantity("s", "time between samples", 1e-5, 0.1, name="every", default=1e-3),
         Quantity(
             "", "relative tolerance of the integrator", 1e-12, 1e-2, name="rtol", default=1e-5
@@ -55,7 +50,7 @@ NUMBERS = {
         SLIDE,
     )
 }
-KEYS = ("preset", "parameters", "mode", "criterion", "cells", "levels", *NUMBERS)
+KEYS = ("preset", "parameters", "mode", "criterion", "cells", "levels", "until", *NUMBERS)
 AXIS_KEYS = ("name", "low", "high", "tolerance")
 
 
@@ -118,7 +113,7 @@ class EnvelopeStudy:
     limits: Mapping[str, float] = field(default_factory=dict)
     cells: int = 8
     levels: int = 2
-    until: float = 6.0
+    until: float | None = None
     every: float = 1e-3
     rtol: float = 1e-5
     slide: float = DEFAULT_SLIDE
@@ -229,6 +224,7 @@ def study_from(document: Mapping[str, Any], folder: Path = Path()) -> EnvelopeSt
         limits={name: float(v) for name, v in limits.items()},
         cells=toml_keys.integer(keys, "cells", 8, 2, 256),
         levels=toml_keys.integer(keys, "levels", 2, 0, 6),
+        until=toml_keys.number(keys, UNTIL) if "until" in keys else None,
         **numbers,
     )
 

@@ -40,7 +40,7 @@ def read_states(path: Path, ignored: Collection[str], given: Collection[str]) ->
     """
     if path.suffix not in (".csv", ".parquet"):
         raise LandingError(f"table {path} must be a .csv or .parquet file")
-    if not path.is_file():
+    if not path.exists():
         raise LandingError(f"there is no table {path}")
     headings, units, cells = _csv(path) if path.suffix == ".csv" else _parquet(path)
     for name in ignored:

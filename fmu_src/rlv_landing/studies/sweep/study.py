@@ -11,6 +11,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from ...audit.rest import LONGEST_WAIT
 from ...choices import choose_parameters
 from ...effort import duration_text
 from ...errors import LandingError, unknown
@@ -21,7 +22,6 @@ from ...text.files import LARGEST_INTEGER
 from .. import toml_keys
 from ..limits import LIMITS
 from ..outcome import SLIDE
-from ..whole_landing import LATEST
 from .design import LEAST_SECONDS, Design, drawn, grid
 from .factors import LARGEST, VARIABLES, Factor, read_factor
 from .responses import expand
@@ -182,7 +182,7 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
     parameters = _parameters(keys, path, fixed)
     numbers = {name: toml_keys.number(keys, q) for name, q in NUMBERS.items()}
     until = toml_keys.number(keys, UNTIL) if "until" in keys else None
-    longest = LATEST if until is None else until
+    longest = LONGEST_WAIT if until is None else until
     if numbers["every"] > longest:
         raise LandingError(
             f"every = {numbers['every']:g} s is above until = {longest:g} s; "

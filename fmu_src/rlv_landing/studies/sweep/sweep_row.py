@@ -16,7 +16,7 @@ from ...history import History
 from ...landing import Landing
 from ...parameters import PARAMETER_QUANTITIES, Parameters
 from ...quantities import MODES, Quantity
-from ..whole_landing import LATEST, whole_landing
+from ..whole_landing import whole_landing
 from .design import Design
 from .factors import VARIABLES
 from .responses import Measure, known_responses
@@ -32,7 +32,7 @@ class Plan:
     Attributes:
         parameters: The parameters that are not varied.
         inputs: Constant inputs by name [SI].
-        until: End of each landing [s]; None: when it is decided, 10 s after contact at the latest.
+        until: End of each landing [s]; None: when it is decided, 60 s after contact at the latest.
         every: Time between samples [s].
         rtol: Relative tolerance of the integrator.
         responses: Names of the responses.
@@ -90,10 +90,7 @@ class Plan:
         Raises:
             LandingError: As `Landing.run`.
         """
-        if self.until is not None:
-            return whole_landing(landing, self.until, self.every, decided=False)
-        latest = landing.parameters.drop.contact_time + LATEST
-        return whole_landing(landing, latest, self.every)
+        return whole_landing(landing, self.until, self.every, decided=self.until is None)
 
     def sweep_row(self, values: Mapping[str, Any]) -> list[Any]:
         """Make the landing with these values and take its responses.

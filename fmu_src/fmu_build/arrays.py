@@ -1,0 +1,67 @@
+"""The variables of FMI 3.0: those of FMI 2.0, with the four legs' as one array.
+
+`leg[1].contact.force` to `leg[4].contact.force` are the elements of `leg.contact.force`. The value
+reference of a variable is that of its first element in FMI 2.0; `time`, which FMI 2.0 does not
+have, comes after all of them.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from itertools import pairwise
+
+TIME = "time"
+LEG = re.compile(r"(?<![^.])leg\[\d+\]")
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable of FMI 3.0.
+
+    Attributes:
+        name: Its name.
+        reference: Its value reference.
+        elements: The names of its elements in FMI 2.0; one if it is no array.
+        stride: How far apart their value references are.
+    """
+
+    name: str
+    reference: int
+    elements: tuple[str, ...]
+    stride: int = 0
+
+
+def whole_name(name: str) -> str:
+    """Name in FMI 3.0 of the variable that `name` is, or is an element of, in FMI 2.0."""
+    return LEG.sub("leg", name)
+
+
+def whole_meaning(meaning: str) -> str:
+    """What an array means, of whose first element this is the meaning."""
+    return "of each leg: " + meaning.replace("leg 1, ", "").replace("leg[1]", "leg")
+
+
+def variables(names: list[str]) -> list[Variable]:
+    """The variables of FMI 3.0 without `time`, in order.
+
+    Args:
+        names: Names in FMI 2.0, in the order of their value references 0, 1, 2, ...
+
+    Raises:
+        SystemExit: Value references of an array's elements are not equally far apart.
+    """
+    found: dict[str, list[int]] = {}
+    for reference, name in enumerate(names):
+        found.setdefault(whole_name(name), []).append(reference)
+    made = []
+    for whole, references in found.items():
+        strides = {b - a for a, b in pairwise(references)} or {0}
+        if len(strides) > 1:
+            raise SystemExit(
+                f"error: the value references of {whole} are {references}; the front needs them "
+                "equally far apart"
+            )
+        elements = tuple(names[i] for i in references)
+        made.append(Variable(whole, references[0], elements, strides.pop()))
+    return made

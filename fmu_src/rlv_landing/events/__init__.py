@@ -1,0 +1,1 @@
+"""Events: instants at which a landing's equations or discrete outputs change."""

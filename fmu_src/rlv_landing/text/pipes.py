@@ -1,0 +1,108 @@
+"""Input files that may be pipes or terminals, as `<(command)` gives: a wait for them is told.
+
+A pipe whose writer does not come, or writes nothing, would hold a command for ever without a word.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import select
+import signal
+import stat
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import BinaryIO, NoReturn
+
+# after this time [s] without a byte the user is told
+PATIENCE = 2.0
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+def open_input(path: Path) -> BinaryIO:
+    """A file, pipe or terminal, open to be read.
+
+    Reads of what is no regular file wait for its writer. Where nothing comes for 2 s, standard
+    error says so, once; Ctrl-C and SIGTERM end the wait.
+
+    Raises:
+        OSError: It is missing or cannot be read.
+    """
+    if not hasattr(select, "poll") or stat.S_ISREG(path.stat().st_mode):
+        return path.open("rb")
+    handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    if stat.S_ISDIR(os.fstat(handle).st_mode):
+        os.close(handle)
+        # which says why
+        return path.open("rb")
+    return io.BufferedReader(_Waiting(handle, path))
+
+
+def is_pipe(path: Path) -> bool:
+    """Whether it is a pipe, which gives what is in it once.
+
+    Raises:
+        OSError: It is missing.
+    """
+    return stat.S_ISFIFO(path.stat().st_mode)
+
+
+class _Waiting(io.RawIOBase):
+    """A pipe or device that is waited for, with a word on standard error."""
+
+    def __init__(self, handle: int, path: Path) -> None:
+        self._handle = handle
+        self._path = path
+        self._told = False
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: memoryview) -> int:  # type: ignore[override]
+        while True:
+            self._wait()
+            try:
+                return os.readv(self._handle, [buffer])
+            except BlockingIOError:
+                continue
+
+    def _wait(self) -> None:
+        poll = select.poll()
+        poll.register(self._handle, select.POLLIN)
+        with _interruptible():
+            if not self._told and not poll.poll(1000.0 * PATIENCE):
+                self._told = True
+                print(
+                    f"waiting for {self._path}, to which nothing is written yet; Ctrl-C ends this",
+                    file=sys.stderr,
+                    flush=True,
+                )
+            poll.poll()
+
+    def close(self) -> None:
+        if not self.closed:
+            os.close(self._handle)
+        super().close()
+
+
+@contextmanager
+def _interruptible() -> Iterator[None]:
+    """Signals whose handler only notes them raise KeyboardInterrupt."""
+    previous = {}
+    if threading.current_thread() is threading.main_thread():
+        previous = {n: h for n in SIGNALS if callable(h := signal.getsignal(n))}
+    try:
+        for number in previous:
+            signal.signal(number, _interrupt)
+        yield
+    finally:
+        for number, handler in previous.items():
+            signal.signal(number, handler)
+
+
+def _interrupt(_number: int, _frame: FrameType | None) -> NoReturn:
+    raise KeyboardInterrupt
