@@ -20,6 +20,8 @@ LARGEST_COUNT = 2.0**53
 MOST_STILL = 1e6
 # [s]: not long after it, a landing's first step would be nothing beside its time
 LATEST = 1e9
+# the last step's interpolant, in parts of its state's scale and size; that of landings comes to 1
+MOST_INSIDE = 1e6
 
 
 class StateHeader(NamedTuple):
@@ -99,7 +101,9 @@ def load_state(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequen
     header, ways = StateHeader(*state[:head]), state[head:at]
     rates = state[at + len(solver.u) :]
     for fault in itertools.chain(
-        _faults(header, len(solver.dense) // 2), way_faults(ways, rates, header.time)
+        _faults(header, len(solver.dense) // 2),
+        way_faults(ways, rates, header.time),
+        _step_faults(solver, header, state[at + 2 * len(solver.u) :]),
     ):
         raise LandingError(f"state holds {fault}; take one that state() gave")
     for target in targets:
@@ -116,6 +120,18 @@ def load_state(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequen
         setattr(solver, name, int(value) if name in WHOLE else value)
     solver.noted, solver.asleep = bool(header.noted), bool(header.asleep)
     return header, ways
+
+
+def _step_faults(solver: Solver, h: StateHeader, numbers: Sequence[float]) -> Iterator[str]:
+    """The faults of the last step's interpolant; `numbers` are those from the solver's `y` on."""
+    n, scale = solver.n, solver.system.scale
+    if h.dense_at not in (0, len(solver.dense) // 2):
+        return
+    start = n + int(h.dense_at)
+    for j, number in enumerate(numbers[start : start + len(solver.dense) // 2]):
+        size = scale[j % n] + abs(numbers[j % n])
+        if abs(number) > MOST_INSIDE * size:
+            yield f"an interpolant of {number:g} for a state of the size {size:g}"
 
 
 def _faults(h: StateHeader, dense: int) -> Iterator[str]:

@@ -6,6 +6,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from bridge_tools import one_error_line, run
 from log_tools import rewrite
@@ -13,11 +14,14 @@ from mcap.records import Metadata
 from pyarrow import parquet
 
 from rlv_landing import Landing, load_preset
-from rlv_landing.quantities import LEGS, PEAKS
+from rlv_landing.quantities import LEGS, OUTPUT_NAMES, PEAKS
 from rlv_landing.summary import summarise
 from rlv_landing.tables.landing import summary_table
+from rlv_ros_bridge.logs import landing_record
 from rlv_ros_bridge.logs.history import log_history
 from rlv_ros_bridge.logs.info import log_info
+from rlv_ros_bridge.logs.landing_record import LANDING, LandingRows, read_landing
+from rlv_ros_bridge.logs.landing_record import RECORD as LANDING_RECORD
 from rlv_ros_bridge.logs.peaks import RECORD, landing_peaks, read_peaks
 from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.logs.recover import recover
@@ -84,11 +88,71 @@ def test_the_tables_of_a_log_and_of_its_landing_have_the_same_peaks(log: Path, m
     assert told[-2] == expected[-2].partition(";")[0]
 
 
+@pytest.mark.parametrize("change", ["all", "no record", "no summary"])
+def test_info_by_the_summary_tells_what_reading_all_messages_tells(
+    log: Path, tmp_path: Path, change: str
+) -> None:
+    data = only_file(log).read_bytes()
+    file = tmp_path / "log.mcap"
+    file.write_bytes(data[:-1] if change == "no summary" else data)
+    if change == "no record":
+
+        def apply(record):
+            named = isinstance(record, Metadata) and record.name == LANDING_RECORD
+            return None if named else record
+
+        file = rewrite(file, tmp_path / "bare", apply)
+    found, checked = log_info(LogReader(file)), log_info(LogReader(file), check=True)
+    assert found.read == ("summary" if change == "all" else "whole")
+    assert replace(found, read="checked") == checked
+    assert found.complete == (change != "no summary")
+    assert found.landing["legs"][0]["acceleration_peak"] > 0.0
+    # One changed byte among the messages is found where all is read.
+    changed = bytearray(file.read_bytes())
+    changed[len(changed) // 2] ^= 1
+    file.write_bytes(changed)
+    assert not log_info(LogReader(file), check=True).complete
+
+
+def test_a_record_of_another_layout_is_not_believed(one_log: Path) -> None:
+    texts = read(one_log).landing
+    landing = json.loads(texts[LANDING])
+    assert read_landing(texts) == landing
+    for changed in (
+        {},
+        {**landing, "legs": landing["legs"][:3]},
+        {**landing, "outcome": "\x1b[2J"},
+        {**landing, "bottomed_out": [5]},
+        {**landing, "end_time": "1"},
+        {**landing, "legs": [{**leg, "contact_force_max": None} for leg in landing["legs"]]},
+        {**landing, "legs": [{**leg, "contact_time": "soon"} for leg in landing["legs"]]},
+        [],
+    ):
+        assert read_landing({LANDING: json.dumps(changed)}) is None
+    assert read_landing({}) is read_landing({LANDING: "[" * 100_000}) is None
+
+
+def test_no_record_is_made_of_a_landing_that_is_not_over_in_what_is_kept(monkeypatch) -> None:
+    landing = Landing(load_preset("yue2022-figures"))
+    history = landing.run(2.0)
+    peaks = {name.removeprefix("peak."): peak for name, peak in landing_peaks(landing).items()}
+    values = np.array([history[name] for name in OUTPUT_NAMES]).T.tolist()
+    for kept, made in ((2001, True), (1500, True), (150, False)):
+        monkeypatch.setattr(landing_record, "MOST_SAMPLES", kept)
+        rows = LandingRows(history.parameters)
+        for time, row in zip(history.time.tolist(), values, strict=True):
+            rows.add(time, row)
+        found = read_landing(rows.texts(peaks))
+        assert (found is not None) == made
+        if found is not None:
+            assert found["end_time"] == 2.0
+
+
 def test_a_log_without_the_record_has_the_peaks_of_its_messages_and_says_so(
     one_log: Path, tmp_path: Path
 ) -> None:
     bare = with_peaks(one_log, tmp_path / "bare", lambda texts: None)
-    info = log_info(LogReader(bare))
+    info = log_info(LogReader(bare), check=True)
     history = log_history(bare)
     assert history.extremes is None
     assert info.landing["peaks_of"] == "samples"

@@ -228,3 +228,19 @@ def test_the_limit_is_listed_as_other_parameters_are():
     q = PARAMETER_QUANTITIES[LIMIT]
     assert (q.unit, q.kind) == ("1/s", "real")
     assert load_preset("yue2022-figures")[LIMIT] == q.default == 5e5
+
+
+@pytest.mark.parametrize("part", range(5))
+@pytest.mark.parametrize("value", [-1e300, 1e300])
+def test_an_interpolant_that_no_landing_has_is_refused(part, value):
+    """From within such a step a landing would go on with the shortest steps to its limit."""
+    landing = Landing()
+    landing.advance_to(0.2)
+    before, solver = landing.state(), landing._solver
+    first = len(before) - sum(map(len, (solver.dense, solver.kept, *[solver.last] * 3)))
+    for i in range(solver.n):
+        spoiled = before[:]
+        spoiled[first + int(solver.dense_at) + part * solver.n + i] = value
+        with pytest.raises(LandingError, match="an interpolant of"):
+            landing.restore(spoiled)
+    assert landing.state() == before

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..quantities import Quantity, shown
 from ..studies.envelope.results import lost_text, stretches
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 MORE_COLOURS = (*COLOURS, "#7a4fa3", "#b8860b", "#3d3d3d")
+# more families than colours begin them anew in the next style
+STYLES = ("-", "--", ":")
 MARKERS = "osD^v<>Ph*X"
 # height of a line of the legend [inch]
 LEGEND_LINE = 0.2
@@ -52,8 +54,13 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
             # a boundary that others cover shows beside them
             later = len(families) - 1
             width = LINE + min(WIDER, WIDEST / max(later, 1)) * (later - k)
-            named[_name(family)] = Line2D([], [], color=colour, linewidth=width)
-            _draw(ax, envelope, family, colour, markers, width)
+            drawn: dict[str, Any] = {
+                "color": colour,
+                "linewidth": width,
+                "linestyle": STYLES[k // len(MORE_COLOURS) % len(STYLES)],
+            }
+            named[_name(family)] = Line2D([], [], **drawn)
+            _draw(ax, envelope, family, markers, drawn)
         ax.set_title(title, loc="left", fontsize="medium")
         ax.grid(visible=True, linewidth=0.3)
     for ax in axes[len(panels) :]:
@@ -129,10 +136,11 @@ def _draw(
     ax: Axes,
     envelope: Envelope,
     family: Family,
-    colour: str,
     markers: dict[str, str],
-    width: float,
+    drawn: dict[str, Any],
 ) -> None:
+    """A family's landings and boundaries, the latter `drawn` as matplotlib's keywords say."""
+    colour = drawn["color"]
     (_, sx), (_, sy) = shown(envelope.study.x.quantity), shown(envelope.study.y.quantity)
     for lost in (False, True):
         points = [
@@ -152,7 +160,7 @@ def _draw(
                 alpha=0.35,
             )
     for line in family.lines:
-        ax.plot([c.x / sx for c in line], [c.y / sy for c in line], color=colour, linewidth=width)
+        ax.plot([c.x / sx for c in line], [c.y / sy for c in line], **drawn)
         for stretch in stretches(line):
             marked = (stretch.points[0], stretch.points[len(stretch.points) // 2])
             xs, ys = [c.x / sx for c in marked], [c.y / sy for c in marked]

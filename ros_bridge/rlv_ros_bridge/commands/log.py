@@ -40,10 +40,12 @@ def log() -> None:
     is_flag=True,
     help="As JSON: times in s, forces in N, strokes in m, accelerations in m/s2.",
 )
-def info(log: Path, *, as_json: bool) -> None:
+@click.option("--check", is_flag=True, help="Read every byte, and find damage within it.")
+def info(log: Path, *, as_json: bool, check: bool) -> None:
     """Show the contents of a log: topics, parameters, outcome and peaks of the landing.
 
-    LOG may be cut, or damaged.
+    The log's summary and its record of the landing tell them. A log without, which is cut or of
+    another program, is read through, as is one with --check. LOG may be cut, or damaged.
 
     \b
     Examples:
@@ -55,7 +57,7 @@ def info(log: Path, *, as_json: bool) -> None:
     from ..logs.bag_reader import open_log
     from ..logs.info import log_info
 
-    found = log_info(open_log(log))
+    found = log_info(open_log(log), check=check)
     click.echo(json.dumps(found.as_dict(), indent=2) if as_json else found.text())
     if not found.complete:
         warn_incomplete_and_exit(log, found.damage)

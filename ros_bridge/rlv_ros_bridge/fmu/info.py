@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from rlv_landing.parameters import Parameters
-from rlv_landing.tables.landing import new_table, render
+from rlv_landing.tables.rendering import new_table, render
 from rlv_landing.touchdown import footpad_at_rest
 
 from .description import is_ours, open_description, vehicle_of

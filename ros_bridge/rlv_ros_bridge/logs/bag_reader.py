@@ -48,6 +48,7 @@ class BagReader(LogReader):
         self.path = path
         self.metadata: dict[str, str] = {}
         self.peaks: dict[str, str] = {}
+        self.landing: dict[str, str] = {}
         self.attachments: dict[str, bytes] = {}
         self.cut = False
         self.damage: list[str] = []
@@ -66,6 +67,10 @@ class BagReader(LogReader):
         return LandingError(
             f"{self.path} cannot be read as a rosbag2 recording: {' '.join(str(e).split())}"
         )
+
+    def read_summary(self) -> bool:
+        """False: such a recording has nothing of a landing in its metadata."""
+        return False
 
     def messages(self, topics: Iterable[str] | None = None) -> Iterator[LogMessage]:
         """The messages of all topics, or of `topics`, in the order of their times."""

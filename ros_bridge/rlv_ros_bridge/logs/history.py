@@ -52,7 +52,7 @@ def history_of(reader: LogReader) -> History:
 def read_history(reader: LogReader, topics: Sequence[str] = ()) -> tuple[History, list[str]]:
     """As `log_history`, with notes on what was left out."""
     reader.read_through()
-    chosen = _choose_topics(reader, topics)
+    chosen = choose_topics(reader, topics)
     names = [
         name
         for relative in READINGS
@@ -79,7 +79,7 @@ def read_history(reader: LogReader, topics: Sequence[str] = ()) -> tuple[History
     return history, _notes(reader, chosen, len(rows) - len(complete))
 
 
-def _choose_topics(reader: LogReader, topics: Sequence[str]) -> dict[str, str]:
+def choose_topics(reader: LogReader, topics: Sequence[str]) -> dict[str, str]:
     """The topics to read: full name -> name relative to the landing's namespace."""
     full = {resolve(reader.namespace, relative): relative for relative in READINGS}
     readable = {

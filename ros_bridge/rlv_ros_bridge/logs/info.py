@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
@@ -9,17 +10,23 @@ from typing import Any
 
 from rlv_landing.core import Phase
 from rlv_landing.errors import LandingError
-from rlv_landing.history import History
-from rlv_landing.summary import OUTCOMES, summarise, unfinished
+from rlv_landing.summary import OUTCOMES, unfinished
 from rlv_landing.tables.landing import decimals
-from rlv_landing.validation.paper import reading_of
 
 from ..messages.topics import DIAGNOSTICS
-from .history import read_history
+from .history import choose_topics, read_history
+from .landing_record import landing_summary, read_landing
 from .reader import Decoder, LogReader
 
 # The phases in `/diagnostics`, in the order of `rlv_landing.summary.OUTCOMES`.
 PHASES = tuple(phase.name.lower() for phase in Phase)
+
+
+STATES = {
+    "summary": "complete by its summary (--check reads all of it)",
+    "checked": "complete, every byte of it",
+    "whole": "complete; read through, as it has no record of the landing",
+}
 
 
 @dataclass
@@ -42,6 +49,9 @@ class LogInfo:
     the largest at the top within 12 ms after its contact, None if the log ends before. Its peaks
     are of the log's record of peaks (`peaks_of` is `landing`), without it of the messages
     (`samples`). `landing` is empty where the log holds no landing; `no_landing` is the reason.
+
+    `read` says what was read: the `summary`, or all messages (`checked` where that was asked for,
+    else `whole`, as the summary did not do).
     """
 
     path: str
@@ -56,6 +66,7 @@ class LogInfo:
     attachments: dict[str, int]
     landing: dict[str, Any] = field(default_factory=dict)
     no_landing: str = ""
+    read: str = "whole"
 
     def as_dict(self) -> dict[str, Any]:
         """The fields as plain values, for JSON."""
@@ -65,7 +76,7 @@ class LogInfo:
         """The fields as lines of text."""
         m = self.metadata
         state = (
-            "complete"
+            STATES[self.read]
             if self.complete
             else "damaged"
             if self.damage
@@ -156,14 +167,45 @@ def _leg_row(leg: Mapping[str, Any]) -> tuple[str, ...]:
     )
 
 
-def log_info(reader: LogReader) -> LogInfo:
-    """Reads the whole log, and summarises it."""
-    counts: dict[str, int] = {}
+def log_info(reader: LogReader, *, check: bool = False) -> LogInfo:
+    """Summarises the log by its summary and its record of the landing.
+
+    A log that lacks one of them is read through, as is each log with `check`.
+    """
+    if not check and reader.read_summary():
+        if (landing := read_landing(reader.landing)) is not None:
+            return _by_summary(reader, landing=landing)
+        try:
+            choose_topics(reader, ())
+        except LandingError as e:
+            return _by_summary(reader, no_landing=str(e))
+    return _by_messages(reader, checked=check)
+
+
+def _by_summary(reader: LogReader, **landing: Any) -> LogInfo:
+    counts: Counter[str] = Counter()
+    spans = []
+    for summary in reader.summaries or ():
+        statistics = summary.statistics
+        counts.update(
+            {
+                topic: statistics.channel_message_counts.get(number, 0)
+                for number, topic in summary.topics.items()
+            }
+        )
+        if statistics.message_count:
+            spans.append((statistics.message_start_time, statistics.message_end_time))
+    first, last = min((s[0] for s in spans), default=0), max((s[1] for s in spans), default=0)
+    return _info(reader, counts, first, last, read="summary", **landing)
+
+
+def _by_messages(reader: LogReader, *, checked: bool) -> LogInfo:
+    counts: Counter[str] = Counter()
     first, last = None, 0
     phase = ""
     decode = Decoder(reader)
     for message in reader.messages():
-        counts[message.topic] = counts.get(message.topic, 0) + 1
+        counts[message.topic] += 1
         first = message.log_time if first is None else min(first, message.log_time)
         last = max(last, message.log_time)
         if (
@@ -173,8 +215,20 @@ def log_info(reader: LogReader) -> LogInfo:
             # Another node's message may come without a definition.
             with suppress(LandingError):
                 phase = _phase(decode(message)) or phase
-    start = first or 0
-    duration = (last - start) / 1e9
+    read = "checked" if checked else "whole"
+    found = _info(reader, counts, first or 0, last, read=read)
+    try:
+        outcome = OUTCOMES[PHASES.index(phase)] if phase in PHASES else ""
+        found.landing = landing_summary(read_history(reader)[0], outcome)
+    except LandingError as e:
+        found.no_landing = str(e)
+    return found
+
+
+def _info(
+    reader: LogReader, counts: Mapping[str, int], first: int, last: int, **rest: Any
+) -> LogInfo:
+    duration = (last - first) / 1e9
     topics = [
         TopicInfo(
             c.topic,
@@ -184,37 +238,19 @@ def log_info(reader: LogReader) -> LogInfo:
         )
         for c in reader.channels.values()
     ]
-    found = LogInfo(
+    return LogInfo(
         path=str(reader.path),
         size=reader.size,
         complete=not reader.cut,
         damage=list(reader.damage),
-        start=start / 1e9,
+        start=first / 1e9,
         duration=duration,
         messages=sum(counts.values()),
         topics=topics,
         metadata=dict(reader.metadata),
         attachments={name: len(data) for name, data in reader.attachments.items()},
+        **rest,
     )
-    try:
-        found.landing = _landing(read_history(reader)[0], phase)
-    except LandingError as e:
-        found.no_landing = str(e)
-    return found
-
-
-def _landing(history: History, phase: str) -> dict[str, Any]:
-    landing = summarise(history)
-    if phase in PHASES:
-        landing["outcome"] = OUTCOMES[PHASES.index(phase)]
-    try:
-        reading = reading_of(history)
-    except LandingError:
-        return landing
-    for leg in landing["legs"]:
-        peak = reading.acceleration_peak(leg["leg"])
-        leg["acceleration_peak"] = peak if peak == peak else None
-    return landing
 
 
 def _phase(message: Any) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +12,10 @@ from rlv_landing.errors import LandingError, unknown
 from rlv_landing.parameters import Parameters
 
 from ..messages.topics import STRUTS
+from .landing_record import RECORD as LANDING_RECORD
 from .log_files import check_file, find_files
 from .mcap_files.stream import RecordStream
+from .mcap_files.summary import Summary, read_summary
 from .peaks import RECORD as PEAKS_RECORD
 
 
@@ -43,8 +46,8 @@ class LogReader:
 
     After the messages have been read, `cut` says that the log is incomplete or damaged, and
     `damage` what is wrong besides a missing end. `channels`, `metadata` and `attachments` are
-    filled while reading; in our logs all stand at the start. So is `peaks`, the texts of the record
-    of peaks, which stands at the end; a cut log lacks it.
+    filled while reading; in our logs all stand at the start. So are `peaks` and `landing`, the
+    texts of the records of peaks and of the landing, which stand at the end; a cut log lacks them.
 
     Args:
         path: the log.
@@ -59,6 +62,7 @@ class LogReader:
         self.channels: dict[str, Channel] = {}
         self.metadata: dict[str, str] = {}
         self.peaks: dict[str, str] = {}
+        self.landing: dict[str, str] = {}
         self.attachments: dict[str, bytes] = {}
         self.cut = False
         self.damage: list[str] = []
@@ -73,31 +77,64 @@ class LogReader:
 
     def messages(self, topics: Iterable[str] | None = None) -> Iterator[LogMessage]:
         """The whole messages of all topics, or of `topics`, in the log's order."""
-        from mcap.records import Attachment, Message, Metadata
+        from mcap.records import Message
 
-        wanted = None if topics is None else set(topics)
+        chosen = None if topics is None else set(topics)
         self.cut, self.damage = False, []
         for file in self.files:
-            stream = RecordStream(file)
             definitions = Definitions(file)
+
+            def is_wanted(number: int, definitions: Definitions = definitions) -> bool:
+                channel, schema = definitions.find(number)
+                if channel is not None:
+                    self._add_channel(channel, schema)
+                return channel is not None and (chosen is None or channel.topic in chosen)
+
+            stream = RecordStream(file, wanted=is_wanted)
             for record in stream:
                 if isinstance(record, Message):
-                    channel, schema = definitions.find(record.channel_id)
-                    if channel is not None:
-                        self._add_channel(channel, schema)
-                        if wanted is None or channel.topic in wanted:
-                            yield LogMessage(channel.topic, record.log_time, record.data)
-                elif isinstance(record, Attachment):
-                    self.attachments[record.name] = record.data
-                elif isinstance(record, Metadata):
-                    if record.name == "rlv_landing":
-                        self.metadata.update(record.metadata)
-                    elif record.name == PEAKS_RECORD:
-                        self.peaks.update(record.metadata)
-                elif definitions.add(record):
-                    self._add_channel(*definitions.find(record.id))
+                    channel, _ = definitions.find(record.channel_id)
+                    yield LogMessage(channel.topic, record.log_time, record.data)
+                else:
+                    self._take(record, definitions)
             self.cut = self.cut or not stream.finished or bool(stream.damage)
             self.damage += [f"{file.name}, {text}" for text in stream.damage]
+
+    def _take(self, record: Any, definitions: Definitions) -> None:
+        """Keeps a record other than a message."""
+        from mcap.records import Attachment, Metadata
+
+        if isinstance(record, Attachment):
+            self.attachments[record.name] = record.data
+        elif isinstance(record, Metadata):
+            if record.name == "rlv_landing":
+                self.metadata.update(record.metadata)
+            elif record.name == PEAKS_RECORD:
+                self.peaks.update(record.metadata)
+            elif record.name == LANDING_RECORD:
+                self.landing.update(record.metadata)
+        elif definitions.add(record):
+            self._add_channel(*definitions.find(record.id))
+
+    @cached_property
+    def summaries(self) -> list[Summary] | None:
+        """The summaries of all files; None where one has none that is whole and right."""
+        found = [read_summary(file) for file in self.files]
+        whole = [s for s in found if s is not None]
+        return whole if len(whole) == len(found) else None
+
+    def read_summary(self) -> bool:
+        """Fills every attribute from the summaries alone; whether the log has them.
+
+        Damage within the messages is not noticed.
+        """
+        if self.summaries is None:
+            return False
+        for summary in self.summaries:
+            definitions = Definitions(summary.file)
+            for record in (*summary.definitions, *summary.others):
+                self._take(record, definitions)
+        return True
 
     def read_through(self) -> None:
         """Reads the log to its end, so that every attribute is filled."""

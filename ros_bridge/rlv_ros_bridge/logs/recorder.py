@@ -13,6 +13,7 @@ from rlv_landing.text.durable import unwritable
 from ..messages.definitions import Definition, definition
 from ..messages.qos import Qos
 from .bag_writer import CHUNK_BYTES, BagTopic, BagWriter, media_type
+from .landing_record import RECORD as LANDING_RECORD
 from .mcap_files.chunk_buffer import RECORD_SIZE, ChunkBuffer, message_prefix
 from .peaks import RECORD as PEAKS_RECORD
 
@@ -192,13 +193,16 @@ class Recorder:
         except OSError as e:
             self._fail(e.strerror or str(e))
 
-    def close(self, peaks: Mapping[str, str] | None = None) -> None:
+    def close(
+        self, peaks: Mapping[str, str] | None = None, landing: Mapping[str, str] | None = None
+    ) -> None:
         """Finishes the file and writes `metadata.yaml`.
 
         After an error it only closes the file, which `rlv-landing log` can read.
 
         Args:
             peaks: the texts of the landing's peaks, see `peaks.peak_texts`; none: no such record.
+            landing: the texts of the landing's summary, see `landing_record`; none: no such record.
         """
         if not self._bag.is_open:
             return
@@ -208,8 +212,9 @@ class Recorder:
                 for topic in self._sampled:
                     self._entries[topic].count = self._samples
                 self._sampled = ()
-                if peaks:
-                    self._bag.mcap.add_metadata(PEAKS_RECORD, dict(peaks))
+                for name, texts in ((PEAKS_RECORD, peaks), (LANDING_RECORD, landing)):
+                    if texts:
+                        self._bag.mcap.add_metadata(name, dict(texts))
                 self._bag.finish()
         except OSError as e:
             self._fail(e.strerror or str(e))

@@ -17,6 +17,7 @@ from rlv_landing.presets import to_toml
 from rlv_landing.quantities import OUTPUT_NAMES
 
 from ..fmu.runner import FmuRunner
+from ..logs.landing_record import LandingRows
 from ..logs.peaks import peak_texts
 from ..logs.recorder import RecordedTopic, Recorder
 from ..messages import topics
@@ -94,6 +95,7 @@ class LandingRun:
         self._error_reported = False
         self._queue = publishing.queue
         self._set_packer(SampleBytes())
+        self._rows = LandingRows(settings.parameters)
         self._wireframe = Wireframe(settings.parameters)
         self._transforms = Transforms(settings.parameters)
         self._diagnostics = DiagnosticsMessage(identity.node, settings.mode)
@@ -224,6 +226,7 @@ class LandingRun:
         messages = self._packer.pack(stamp, values, k)
         if recorder is not None:
             recorder.write_sample(stamp, messages[self._recorded])
+            self._rows.add(k * s.step_size, values)
             recorder.flush()
             if recorder.error and not self._error_reported:
                 self._error_reported = True
@@ -317,18 +320,20 @@ class LandingRun:
             recording_error=recorder.error if recorder else "",
         )
 
-    def _peak_texts(self) -> dict[str, str]:
-        """The record of the landing's peaks; empty where the FMU has failed, or is freed."""
+    def _end_records(self) -> tuple[dict[str, str], dict[str, str]]:
+        """The records of peaks and landing; empty where the FMU has failed, or is freed."""
         try:
-            return peak_texts(self.fmu.peaks(), self.time)
+            peaks = self.fmu.peaks()
         except LandingError:
-            return {}
+            return {}, {}
+        found = {name.removeprefix("peak."): peak for name, peak in peaks.items()}
+        return peak_texts(peaks, self.time), self._rows.texts(found)
 
     def close_log(self) -> None:
         """Completes the log; removes it if no sample was recorded."""
         if self.recorder is not None:
             if self.samples:
-                self.recorder.close(self._peak_texts())
+                self.recorder.close(*self._end_records())
             else:
                 self.recorder.discard()
 

@@ -7,6 +7,7 @@ import math
 import sys
 import time
 from collections.abc import Callable, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -145,8 +146,6 @@ class ReplayNode(Node):
             stop,
         )
         played = rounds = 0
-        # One step of the log lies between the last message of a round and the first of the next.
-        period = selection.length + selection.step
         # tqdm makes its lock on first use, which takes milliseconds.
         tqdm.get_lock()  # type: ignore[no-untyped-call]
         gc.collect()
@@ -155,9 +154,11 @@ class ReplayNode(Node):
         try:
             self._replay_clock.start(time.perf_counter())
             while not self._ended:
-                count = self._play_round(rounds * period)
+                # One step of the log lies between the last message of a round and the first of the
+                # next.
+                count, whole = self._play_round(rounds * (selection.length + selection.step))
                 played += count
-                if count < len(selection.messages):
+                if not whole:
                     break
                 rounds += 1
                 if not o.loop:
@@ -186,31 +187,40 @@ class ReplayNode(Node):
     def _ended(self) -> bool:
         return bool(self._stop) or self._quit
 
-    def _play_round(self, epoch: int) -> int:
-        """Plays the selection once, with `epoch` [ns] added to the stamps; the messages played."""
+    def _play_round(self, epoch: int) -> tuple[int, bool]:
+        """Plays the selection once, with `epoch` [ns] added to the stamps.
+
+        Returns:
+            The messages played, and whether those were all.
+        """
         selection, clock = self._selection, self._replay_clock
         restamp = Restamper(self._types, epoch) if epoch else None
         next_tick = epoch / 1e9 if self._clock_publisher is not None else math.inf
-        with tqdm(
-            total=selection.length / 1e9,
-            disable=not sys.stderr.isatty(),
-            bar_format=BAR,
-            file=sys.stderr,
-            postfix=self._status,
-        ) as bar:
-            for i, message in enumerate(selection.messages):
+        count = 0
+        with (
+            closing(iter(selection)) as messages,
+            tqdm(
+                total=selection.length / 1e9,
+                disable=not sys.stderr.isatty(),
+                bar_format=BAR,
+                file=sys.stderr,
+                postfix=self._status,
+            ) as bar,
+        ):
+            for message in messages:
                 position = (epoch + message.log_time - selection.first) / 1e9
                 while next_tick <= position:
                     if not self._wait_until(next_tick, bar):
-                        return i
+                        return count, False
                     self._publish_clock(selection.first + round(next_tick * 1e9))
                     # Messages of /clock are even in wall time, at any rate.
                     next_tick += clock.rate / self._options.clock
                 if not self._wait_until(position, bar):
-                    return i
+                    return count, False
                 late = time.perf_counter() - clock.due(position)
                 data = message.data if restamp is None else restamp(message.topic, message.data)
                 self._publisher_of[message.topic].publish(data)
+                count += 1
                 if math.isfinite(late):
                     self._lateness.append(late)
                 clock.skip_stall(late)
@@ -218,7 +228,7 @@ class ReplayNode(Node):
                 played = (message.log_time - selection.first) / 1e9
                 if played - bar.n > 0.02 or clock.paused:
                     bar.update(played - bar.n)
-        return len(selection.messages)
+        return count, True
 
     def _wait_until(self, position: float, bar: Any) -> bool:
         """Waits until the time `position` [s] of the log is due; False if the replay is to end."""

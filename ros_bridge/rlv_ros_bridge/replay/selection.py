@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 
 from rlv_landing.errors import LandingError
 
+from ..logs.indexed import last_time, messages_between
 from ..logs.reader import LogMessage, LogReader
 from ..messages.message_types import is_installed
 from ..messages.topics import TF, resolve
@@ -60,51 +60,104 @@ class ReplayOptions:
 
 
 class Selection:
-    """The part of a log that is to be played, in memory.
+    """The part of a log that is to be played.
 
-    `messages` are in the log's order, from the time `first` on, over `length` [ns]. `names` gives
-    for each topic of the log the name under which it is played. `cut` says that the log is
-    incomplete.
+    A log that has its summary is read while it is iterated over, chunk by chunk, from the chunk of
+    the first message on; another is read into memory at once.
+
+    The messages come in the log's order, from the time `first` on, over `length` [ns]. `step` is
+    the smallest time between two of them [ns] in a row, as far as they were read; 1 ms where there
+    is none. `names` gives for each topic of the log the name under which it is played.
 
     Raises:
         LandingError: there is nothing to play, or a remap is not valid.
     """
 
     def __init__(self, reader: LogReader, options: ReplayOptions) -> None:
-        messages = list(reader.messages())
-        if not messages:
-            raise LandingError(
-                f"{reader.path} holds no message that can be read; there is nothing to play"
-            )
+        self._reader = reader
+        self._gap: int | None = None
+        self._messages: list[LogMessage] | None = None
+        indexed = reader.read_summary()
+        if not indexed:
+            self._messages = list(reader.messages())
+        begin, end = _span(reader, self._messages)
         chosen = {
             t
             for t in reader.select(options.topics)
             if options.topics or can_be_published(reader.channels[t].type_name)
         }
-        self.first = min(m.log_time for m in messages) + round(options.start * 1e9)
-        last = (
+        self.first = begin + round(options.start * 1e9)
+        self._last = (
             self.first + round(options.duration * 1e9)
             if math.isfinite(options.duration)
             else math.inf
         )
-        self.messages: list[LogMessage] = [
-            m for m in messages if m.topic in chosen and self.first <= m.log_time <= last
-        ]
-        if not self.messages:
-            length = (max(m.log_time for m in messages) - min(m.log_time for m in messages)) / 1e9
+        self._chosen = chosen
+        if self._messages is not None:
+            self._messages = [
+                m
+                for m in self._messages
+                if m.topic in chosen and self.first <= m.log_time <= self._last
+            ]
+        last = (
+            last_time(reader, chosen, self.first, self._last)
+            if self._messages is None
+            else max((m.log_time for m in self._messages), default=None)
+        )
+        if last is None:
             raise LandingError(
-                f"nothing to play from --start {options.start:g} s on: the log is {length:g} s long"
+                f"nothing to play from --start {options.start:g} s on: "
+                f"the log is {(end - begin) / 1e9:g} s long"
             )
         self.channels = [c for c in reader.channels.values() if c.topic in chosen]
         self.names = remapped_names(reader, sorted(chosen), options.remap)
-        self.length = max(m.log_time for m in self.messages) - self.first
-        self.cut = reader.cut
+        self.length = last - self.first
+
+    def __iter__(self) -> Generator[LogMessage, None, None]:
+        before = None
+        for message in (
+            self._messages
+            if self._messages is not None
+            else messages_between(self._reader, self._chosen, self.first, self._last)
+        ):
+            if before is not None and before != message.log_time:
+                gap = abs(message.log_time - before)
+                self._gap = gap if self._gap is None else min(gap, self._gap)
+            before = message.log_time
+            yield message
 
     @property
     def step(self) -> int:
-        """The smallest time between two instants [ns]; 1 ms if there is only one."""
-        times = sorted({m.log_time for m in self.messages})
-        return min((b - a for a, b in pairwise(times)), default=1_000_000)
+        """The smallest time between two messages in a row [ns]; 1 ms where there is none."""
+        return self._gap if self._gap is not None else 1_000_000
+
+    @property
+    def cut(self) -> bool:
+        """Whether the log is incomplete, or what was read of it is damaged."""
+        return self._reader.cut
+
+
+def _span(reader: LogReader, messages: Sequence[LogMessage] | None) -> tuple[int, int]:
+    """The first and the last time of a log [ns].
+
+    Raises:
+        LandingError: it has no message.
+    """
+    times = (
+        [m.log_time for m in messages]
+        if messages is not None
+        else [
+            time
+            for s in reader.summaries or ()
+            if s.statistics.message_count
+            for time in (s.statistics.message_start_time, s.statistics.message_end_time)
+        ]
+    )
+    if not times:
+        raise LandingError(
+            f"{reader.path} holds no message that can be read; there is nothing to play"
+        )
+    return min(times), max(times)
 
 
 def can_be_published(type_name: str) -> bool:

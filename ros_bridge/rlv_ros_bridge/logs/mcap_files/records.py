@@ -10,16 +10,19 @@ import io
 import re
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import IO, Any
 
 MAGIC = b"\x89MCAP0\r\n"
 # Before a record's body: opcode, length of the body.
 RECORD_HEAD = struct.Struct("<BQ")
 # A message's fields before its data: channel, sequence number, log time, publish time.
-MESSAGE_HEAD_BYTES = 22
+MESSAGE_FIELDS = struct.Struct("<HIQQ")
+MESSAGE_HEAD_BYTES = MESSAGE_FIELDS.size
 HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE = 1, 2, 3, 4, 5
-CHUNK, ATTACHMENT, STATISTICS, METADATA, DATA_END = 6, 9, 11, 12, 15
+CHUNK, CHUNK_INDEX, ATTACHMENT, ATTACHMENT_INDEX, STATISTICS = 6, 8, 9, 10, 11
+METADATA, METADATA_INDEX, DATA_END = 12, 13, 15
 # A chunk that claims to be larger than this, uncompressed, is damaged.
 LARGEST_CHUNK = 256 * 1024 * 1024
 # The start of a chunk: opcode, length below 4 GiB, two times, uncompressed size, CRC, name of the
@@ -104,15 +107,53 @@ def decode_record(opcode: int, body: bytes) -> Any:
     return record
 
 
-def records_of_chunk(chunk: Any, *, checksum_required: bool) -> list[Any]:
-    """The schemas, channels and messages in a chunk (`mcap.records.Chunk`).
+@dataclass(frozen=True)
+class OpenChunk:
+    """The records in a chunk without damage.
+
+    `data` are its uncompressed bytes, `definitions` its schemas and channels, `count` is the number
+    of its messages.
+    """
+
+    data: bytes
+    definitions: list[Any]
+    count: int
+
+    def messages(self, wanted: Callable[[int], bool] | None = None) -> Iterator[Any]:
+        """The messages, or those of the channels that are `wanted`, asked once for each."""
+        from mcap.records import Message
+
+        data, position, known = self.data, 0, {}
+        while position < len(data):
+            opcode, length = RECORD_HEAD.unpack_from(data, position)
+            start = position + RECORD_HEAD.size
+            position = start + length
+            if opcode != MESSAGE:
+                continue
+            channel, sequence, log_time, publish_time = MESSAGE_FIELDS.unpack_from(data, start)
+            if wanted is not None:
+                if channel not in known:
+                    known[channel] = wanted(channel)
+                if not known[channel]:
+                    continue
+            body = data[start + MESSAGE_HEAD_BYTES : position]
+            yield Message(
+                channel_id=channel,
+                log_time=log_time,
+                data=body,
+                publish_time=publish_time,
+                sequence=sequence,
+            )
+
+
+def open_chunk(chunk: Any, *, checksum_required: bool) -> OpenChunk:
+    """Opens a chunk (`mcap.records.Chunk`).
 
     Raises:
         DamageError: anything in it is wrong.
     """
     import zstandard
-    from mcap.records import Chunk
-    from mcap.stream_reader import breakup_chunk, get_chunk_data_stream
+    from mcap.stream_reader import get_chunk_data_stream
 
     try:
         promised = (
@@ -127,27 +168,36 @@ def records_of_chunk(chunk: Any, *, checksum_required: bool) -> list[Any]:
         data = stream.read(length)
         if checksum_differs(chunk.uncompressed_crc, zlib.crc32(data), required=checksum_required):
             raise DamageError("a chunk's checksum is wrong")
-        whole = sum(len(record) for record in split_records(data))
+        definitions, whole, count = [], 0, 0
+        for opcode, start, end in record_places(data):
+            whole = end
+            count += opcode == MESSAGE
+            if opcode in (SCHEMA, CHANNEL):
+                definitions.append(decode_record(opcode, data[start:end]))
         if whole != len(data) or len(data) != size:
             raise DamageError("a chunk's sizes contradict each other")
-        return breakup_chunk(
-            Chunk("", data, chunk.message_end_time, chunk.message_start_time, 0, len(data))
-        )
+        return OpenChunk(data, definitions, count)
     except Exception as e:
         raise DamageError("a chunk's bytes were changed") from e
 
 
+def record_places(data: bytes) -> Iterator[tuple[int, int, int]]:
+    """Opcode, start and end of the body of each whole record in a chunk's uncompressed bytes."""
+    position, size = 0, len(data)
+    while position + RECORD_HEAD.size <= size:
+        opcode, length = RECORD_HEAD.unpack_from(data, position)
+        start = position + RECORD_HEAD.size
+        position = start + length
+        too_short = opcode == MESSAGE and length < MESSAGE_HEAD_BYTES
+        if opcode == 0 or position > size or too_short:
+            return
+        yield opcode, start, position
+
+
 def split_records(data: bytes) -> Iterator[bytes]:
     """The whole records, heads included, in the uncompressed bytes of a chunk, from its start."""
-    position = 0
-    while position + RECORD_HEAD.size <= len(data):
-        opcode, length = RECORD_HEAD.unpack_from(data, position)
-        end = position + RECORD_HEAD.size + length
-        too_short = opcode == MESSAGE and length < MESSAGE_HEAD_BYTES
-        if opcode == 0 or end > len(data) or too_short:
-            return
-        yield data[position:end]
-        position = end
+    for _, start, end in record_places(data):
+        yield data[start - RECORD_HEAD.size : end]
 
 
 def records_of_cut_chunk(file: IO[bytes], position: int, size: int) -> list[Any]:
@@ -205,7 +255,7 @@ def find_chunk(
                 continue
             try:
                 chunk = decode_record(*read_record(file, at, size))
-                records_of_chunk(chunk, checksum_required=checksum_required)
+                open_chunk(chunk, checksum_required=checksum_required)
             except DamageError:
                 continue
             return at

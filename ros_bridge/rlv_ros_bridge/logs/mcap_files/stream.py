@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
+from itertools import chain
 from pathlib import Path
 from typing import IO, Any
 
@@ -25,8 +26,8 @@ from .records import (
     checksum_differs,
     decode_record,
     find_chunk,
+    open_chunk,
     read_record,
-    records_of_chunk,
     records_of_cut_chunk,
 )
 
@@ -53,15 +54,19 @@ class RecordStream:
     Args:
         path: the file.
         summary: also give the schemas, channels and metadata that the summary repeats.
+        wanted: whether messages of a channel's number are given; None: all are. What is not wanted
+            is checked and counted all the same.
     """
 
-    def __init__(self, path: Path, *, summary: bool = False) -> None:
+    def __init__(
+        self, path: Path, *, summary: bool = False, wanted: Callable[[int], bool] | None = None
+    ) -> None:
         self.path = path
         self.finished = False
         self.damage: list[str] = []
         self.lost_bytes = 0
         self.summary_is_valid = False
-        self._with_summary = summary
+        self._with_summary, self._wanted = summary, wanted
         self._in_summary, self._summary_start = False, 0
         # Checksum of the file so far, and without the last record.
         self._crc = self._crc_before = 0
@@ -70,6 +75,8 @@ class RecordStream:
         self._checksums_required: bool | None = None
 
     def __iter__(self) -> Iterator[Any]:
+        from mcap.records import Message
+
         with self.path.open("rb") as file:
             size = os.fstat(file.fileno()).st_size
             self._crc = zlib.crc32(file.read(len(MAGIC)))
@@ -77,7 +84,7 @@ class RecordStream:
             while True:
                 following: int | None = None
                 opcode = 0
-                records: list[Any] = []
+                records: Iterable[Any] = ()
                 try:
                     opcode, body = read_record(file, position, size)
                     self._add_to_crc(opcode, body)
@@ -89,12 +96,13 @@ class RecordStream:
                     if following is None:
                         # Nothing behind can be read: the file is cut.
                         rest = [] if self._ours else records_of_cut_chunk(file, position, size)
-                        yield from self._count(rest)
+                        self._messages += sum(isinstance(r, Message) for r in rest)
+                        yield from rest
                         self.lost_bytes += size - position
                         return
                     self.damage.append(f"byte {position}: {e}")
                     self.lost_bytes += following - position
-                yield from self._count(records)
+                yield from records
                 position = following
                 if opcode == FOOTER:
                     self._check_end(file, position, size)
@@ -122,7 +130,7 @@ class RecordStream:
 
     def _records(
         self, opcode: int, body: bytes, file: IO[bytes], position: int, size: int
-    ) -> list[Any]:
+    ) -> Iterable[Any]:
         """The record at `position`, or the records in it if it is a chunk.
 
         Raises:
@@ -151,7 +159,13 @@ class RecordStream:
         elif opcode == STATISTICS and record.message_count != self._messages and not self.damage:
             self.damage.append(f"{self._messages} of {record.message_count} messages are there")
         if opcode == CHUNK:
-            return records_of_chunk(record, checksum_required=required)
+            chunk = open_chunk(record, checksum_required=required)
+            self._messages += chunk.count
+            return chain(chunk.definitions, chunk.messages(self._wanted))
+        if opcode == MESSAGE:
+            self._messages += 1
+            if self._wanted is not None and not self._wanted(record.channel_id):
+                return ()
         return [] if self._in_summary and not self._with_summary else [record]
 
     def _check_summary(self, footer: Any, file: IO[bytes], position: int) -> None:
@@ -170,13 +184,6 @@ class RecordStream:
             found = find_chunk(file, len(MAGIC), size, checksum_required=True, with_checksum=True)
             self._checksums_required = found is not None
         return self._checksums_required
-
-    def _count(self, records: list[Any]) -> Iterator[Any]:
-        from mcap.records import Message
-
-        for record in records:
-            self._messages += isinstance(record, Message)
-            yield record
 
     def _check_end(self, file: IO[bytes], position: int, size: int) -> None:
         file.seek(position)

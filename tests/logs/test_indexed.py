@@ -1,0 +1,92 @@
+"""Messages found by a log's index are those that reading the whole log finds."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+from log_tools import messages_of, small_log
+
+from rlv_landing.errors import LandingError
+from rlv_ros_bridge.logs.indexed import last_time, messages_between
+from rlv_ros_bridge.logs.mcap_files.summary import read_summary
+from rlv_ros_bridge.logs.reader import LogReader
+from rlv_ros_bridge.replay.selection import ReplayOptions, Selection
+
+CHUNKS, PER_CHUNK = 6, 12
+SPANS = [(0, math.inf), (13_000, 29_000), (23_000, 23_000), (24_500, 24_900), (60_000, math.inf)]
+
+
+@pytest.mark.parametrize("topics", [("/a",), ("/a", "/b"), ()])
+@pytest.mark.parametrize("span", SPANS)
+def test_a_span_of_topics_is_found_by_the_index(
+    tmp_path: Path, topics: tuple[str, ...], span: tuple[int, float]
+) -> None:
+    reader = LogReader(small_log(tmp_path / "log", CHUNKS, PER_CHUNK))
+    first, last = span
+    expected = [m for m in reader.messages(topics) if first <= m.log_time <= last]
+    assert list(messages_between(reader, topics, first, last)) == expected
+    assert not reader.cut
+    times = [m.log_time for m in expected]
+    assert last_time(reader, topics, first, last) == max(times, default=None)
+
+
+def test_only_the_chunks_of_the_span_are_read_and_a_damaged_one_is_left_out(
+    tmp_path: Path,
+) -> None:
+    file = small_log(tmp_path / "log", CHUNKS, PER_CHUNK)
+    whole = LogReader(file)
+    wanted = list(whole.messages())
+    summary = read_summary(file)
+    assert summary is not None
+    data = bytearray(file.read_bytes())
+    hit = summary.chunks[2]
+    data[hit.position + hit.length - 1] ^= 1
+    file.write_bytes(data)
+    reader = LogReader(file)
+    assert list(messages_between(reader, ["/a", "/b"], 36_000, math.inf)) == wanted[36:]
+    assert not reader.cut
+    assert list(messages_between(reader, ["/a", "/b"], 0, math.inf)) == wanted[:24] + wanted[36:]
+    assert reader.cut
+    assert [text.rpartition(": ")[2] for text in reader.damage] == ["a chunk's bytes were changed"]
+
+
+def test_a_file_whose_end_was_changed_in_any_byte_has_no_summary(tmp_path: Path) -> None:
+    file = small_log(tmp_path / "log", 2, PER_CHUNK)
+    data = file.read_bytes()
+    summary = read_summary(file)
+    assert summary is not None
+    behind = max(c.position + c.length for c in summary.chunks)
+    start = data.index(b"\x0f" + (4).to_bytes(8, "little"), behind)
+    # The four bytes of the data's checksum are no part of the summary.
+    for at in (*range(start, start + 9), *range(start + 13, len(data))):
+        changed = bytearray(data)
+        changed[at] ^= 0x10
+        file.write_bytes(changed)
+        assert read_summary(file) is None
+    for length in range(0, len(data), 7):
+        file.write_bytes(data[:length])
+        assert read_summary(file) is None
+
+
+@pytest.mark.parametrize("cut", [False, True])
+def test_a_selection_is_the_same_from_a_log_with_summary_and_from_one_cut_behind_its_messages(
+    tmp_path: Path, *, cut: bool
+) -> None:
+    file = small_log(tmp_path / "log", CHUNKS, PER_CHUNK)
+    wanted = messages_of(file)
+    if cut:
+        file.write_bytes(file.read_bytes()[:-1])
+    options = ReplayOptions(file, start=20e-6, duration=30e-6, topics=("/b",))
+    selection = Selection(LogReader(file), options)
+    played = [(m.topic, m.log_time, m.data) for m in selection]
+    assert played == [
+        (topic, time, data)
+        for topic, time, _, data in wanted
+        if topic == "/b" and 20_000 <= time <= 50_000
+    ]
+    assert (selection.first, selection.length, selection.step) == (20_000, 30_000, 1000)
+    assert selection.cut == cut
+    with pytest.raises(LandingError, match="nothing to play from --start 1 s on: the log is"):
+        Selection(LogReader(file), ReplayOptions(file, start=1.0))
