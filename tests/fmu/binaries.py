@@ -38,7 +38,7 @@ def front_library(path: Path) -> Library:
     if isinstance(found, lief.ELF.Binary):
         machine = found.header.machine_type.name
         exports = {s.name for s in found.exported_symbols}
-        lacks = {s.name for s in found.imported_symbols}
+        lacks = {s.name for s in found.dynamic_symbols if s.shndx == 0}
     elif isinstance(found, lief.PE.Binary):
         machine = found.header.machine.name
         exports = {e.name for e in found.get_export().entries}
