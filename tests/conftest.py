@@ -23,8 +23,8 @@ from rlv_landing.validation.validate import Validation, validate
 ROOT = Path(__file__).resolve().parent.parent
 # the example's modules, as its `run.py` finds them
 sys.path.insert(0, str(ROOT / "examples" / "ship_deck"))
-# what the tests of the bridge share
-sys.path.insert(0, str(ROOT / "tests" / "bridge"))
+# what tests of several folders share, and those of the bridge
+sys.path[:0] = [str(ROOT / "tests" / "shared"), str(ROOT / "tests" / "bridge")]
 
 from bridge_tools import domain, log, one_log, processes  # noqa: E402, F401
 

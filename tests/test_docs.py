@@ -62,3 +62,18 @@ def test_the_map_names_every_folder_of_the_packages():
         name_of(init.parent) for package in PACKAGES for init in package.rglob("__init__.py")
     }
     assert folders - PATHS == set()
+
+
+def test_each_test_folder_imports_its_own_modules_and_shared_ones():
+    """A test can be run alone then, and one pytest takes any folders together.
+
+    `conftest` is one of many, whichever pytest has loaded last.
+    """
+    tests = ROOT / "tests"
+    shared = {p.stem for folder in ("shared", "bridge") for p in (tests / folder).glob("*.py")}
+    own = {p.stem for p in tests.glob("*/*.py")} - shared | {"conftest"}
+    imports = re.compile(r"^\s*(?:from|import) (\w+)(?: import .*)?$", re.M)
+    for file in tests.glob("*/*.py"):
+        wanted = own.intersection(imports.findall(file.read_text(encoding="utf-8")))
+        beside = {p.stem for p in file.parent.glob("*.py")} - {"conftest"}
+        assert wanted <= beside, name_of(file)

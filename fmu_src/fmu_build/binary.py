@@ -1,50 +1,77 @@
 """Puts the front (`fmu_front/`), the binary that hosts load, into the FMU.
 
-For Linux, and for Windows if there is a compiler for it: compiled, or one that the installed
-package has. pythonfmu's own binaries are left out.
+For this machine's platform, or for all that there is a compiler for: compiled, or one that the
+installed package has. pythonfmu's own binaries are left out.
 """
 
 from __future__ import annotations
 
 import hashlib
-import platform
 import shlex
 import shutil
 import sysconfig
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from importlib.util import find_spec
 from pathlib import Path
 from xml.etree import ElementTree
 
-from .compilers import Compiler, for_linux, for_windows, run
+from .compilers import Compiler, for_linux, for_target, run
+from .cross import universal
 from .fronts import prebuilt
 from .fronts.header import FRONT, front_identity, neutral_header, variables_header
+from .targets import ALL, FMI2, OWN, TARGETS, of_platform, own_machine, own_platform
 
 # FMI's C headers, which FMPy has; it takes long to import
 _FMPY = find_spec("fmpy")
 HEADERS = Path((_FMPY.origin if _FMPY else None) or "fmpy").parent / "c-code"
-# the folder of a platform's binary in FMI 3.0, by that in FMI 2.0
-FOLDERS_OF_FMI3 = {"linux64": f"{platform.machine()}-linux", "win64": "x86_64-windows"}
 FLAGS = ["-std=c11", "-O2", "-fvisibility=hidden", "-Wall", "-Wextra", "-g0", "-s", "-shared"]
+# of the sources, those that are for one system or two
+SYSTEMS = {
+    "posix.c": ("linux", "darwin"),
+    "linux.c": ("linux",),
+    "macos.c": ("darwin",),
+    "windows.c": ("windows",),
+}
+SYSTEM_ARGS = {
+    "linux": ["-fPIC", "-ldl"],
+    "darwin": ["-fPIC", "-install_name", "@rpath/front.dylib"],
+    "windows": [],
+}
+SYSTEM_OF_SUFFIX = {".so": "linux", ".dylib": "darwin", ".dll": "windows"}
 
 
-def compilers() -> dict[str, Compiler]:
-    """The compiler for each of FMI's platforms that there is one for."""
-    windows = for_windows()
-    return {"linux64": for_linux(), **({"win64": windows} if windows else {})}
+def compilers(platforms: str = OWN, fmi: str = "2") -> dict[str, list[Compiler]]:
+    """The compilers for each of FMI's platforms that there are all for, one for each architecture.
+
+    Args:
+        platforms: This machine's or all.
+        fmi: The version of FMI, whose names the platforms have.
+    """
+    found = {own_platform(fmi): [for_linux()]}
+    names: Iterable[str] = FMI2 if fmi == "2" else TARGETS
+    for platform in names if platforms == ALL else ():
+        targets = of_platform(platform)
+        chosen = [c for c in map(for_target, targets) if c]
+        if len(chosen) == len(targets) and own_machine() not in {t.name for t in targets}:
+            found.setdefault(platform, chosen)
+    return found
 
 
-def makers(root: ElementTree.Element) -> dict[str, str]:
+def makers(root: ElementTree.Element, platforms: str = OWN) -> dict[str, str]:
     """What makes the front for each platform: the compiler with its options, or what it made.
 
     Args:
         root: Root of the FMU's modelDescription.xml.
+        platforms: This machine's or all.
     """
-    ready = prebuilt.fronts(made_of(root))
+    ready = prebuilt.fronts(made_of(root)) if platforms == OWN else []
     if ready:
         return {f.platform: hashlib.sha256(f.content).hexdigest() for f in ready}
-    return {system: repr((c.name, c.flags, FLAGS)) for system, c in compilers().items()}
+    return {
+        platform: repr([(c.name, c.command[1:], c.flags, FLAGS) for c in chosen])
+        for platform, chosen in compilers(platforms).items()
+    }
 
 
 def front_sources() -> list[Path]:
@@ -53,13 +80,17 @@ def front_sources() -> list[Path]:
 
 
 def replace_binaries(
-    files: Path, root: ElementTree.Element | None = None, fmi: str = "2"
+    files: Path,
+    root: ElementTree.Element | None = None,
+    platforms: str = OWN,
+    fmi: str = "2",
 ) -> dict[str, str]:
     """Replace pythonfmu's binaries by the front.
 
     Args:
         files: Folder of the unpacked FMU.
         root: Root of its description in FMI 2.0; by default that of its modelDescription.xml.
+        platforms: Which platforms it is for, this machine's or all.
         fmi: The FMU's version of FMI, 2 or 3. The front has the functions of both.
 
     Returns:
@@ -76,23 +107,25 @@ def replace_binaries(
     module = (files / "resources" / "slavemodule.txt").read_text().strip()
     shutil.rmtree(files / "binaries")
 
-    def place(system: str) -> Path:
-        folder = files / "binaries" / (FOLDERS_OF_FMI3[system] if fmi == "3" else system)
+    def place(platform: str) -> Path:
+        folder = files / "binaries" / platform
         folder.mkdir(parents=True)
-        return folder / f"{name}{suffix(system)}"
+        return folder / f"{name}{suffix(platform)}"
 
-    ready = prebuilt.fronts(made_of(root))
+    ready = prebuilt.fronts(made_of(root)) if platforms == OWN else []
     if not ready:
-        return compile_fronts(variables_header(root, module), place)
+        return compile_fronts(variables_header(root, module), place, compilers(platforms, fmi))
     identity = front_identity(root, module)
-    for front in ready:
-        place(front.platform).write_bytes(prebuilt.identified(front.content, identity))
-    return {front.platform: front.compiler for front in ready}
+    found = {own_platform(fmi): front for front in ready if front.platform == own_platform()}
+    for platform, front in found.items():
+        place(platform).write_bytes(prebuilt.identified(front.content, identity))
+    return {platform: front.compiler for platform, front in found.items()}
 
 
 def suffix(system: str) -> str:
     """The ending of a shared library of one of FMI's platforms."""
-    return ".dll" if system.startswith("win") else ".so"
+    targets = of_platform(system)
+    return targets[0].library if targets else ".so"
 
 
 def made_of(root: ElementTree.Element) -> bytes:
@@ -108,12 +141,15 @@ def made_of(root: ElementTree.Element) -> bytes:
     )
 
 
-def compile_fronts(header: str, place: Callable[[str], Path]) -> dict[str, str]:
-    """Compile the front for each platform that there is a compiler for.
+def compile_fronts(
+    header: str, place: Callable[[str], Path], wanted: dict[str, list[Compiler]]
+) -> dict[str, str]:
+    """Compile the front for each platform.
 
     Args:
         header: Text of `variables.h`.
         place: The library's file for a platform.
+        wanted: The compilers for each platform, one for each architecture.
 
     Returns:
         The compiler for each platform.
@@ -125,11 +161,15 @@ def compile_fronts(header: str, place: Callable[[str], Path]) -> dict[str, str]:
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         folder = Path(name)
         (folder / "variables.h").write_text(header)
-        for system, compiler in compilers().items():
-            made = folder / f"front{suffix(system)}"
-            compile_front(made, folder, compiler)
-            shutil.copy(made, place(system))
-            used[system] = compiler.name
+        for platform, chosen in wanted.items():
+            made = folder / f"front{suffix(platform)}"
+            libraries = []
+            for compiler in chosen:
+                compile_front(made, folder, compiler)
+                libraries.append(made.read_bytes())
+            one = libraries[0] if len(libraries) == 1 else universal.joined(libraries)
+            place(platform).write_bytes(one)
+            used[platform] = chosen[0].name
     return used
 
 
@@ -137,15 +177,15 @@ def compile_front(target: Path, include: Path, compiler: Compiler) -> None:
     """Compile the front to a shared library.
 
     Args:
-        target: The library, for Windows if it is a `.dll`.
+        target: The library, for Windows if it is a `.dll`, for macOS if a `.dylib`.
         include: Folder that holds `variables.h`.
         compiler: A compiler for that system.
 
     Raises:
         SystemExit: The front does not compile; the message has the compiler's output.
     """
-    windows = target.suffix == ".dll"
-    other_system = "posix.c" if windows else "windows.c"
+    system = SYSTEM_OF_SUFFIX[target.suffix]
+    sources = [p for p in front_sources() if p.suffix == ".c"]
     command = [
         *compiler.command,
         *FLAGS,
@@ -156,8 +196,8 @@ def compile_front(target: Path, include: Path, compiler: Compiler) -> None:
         str(HEADERS),
         "-o",
         str(target),
-        *(str(p) for p in front_sources() if p.suffix == ".c" and p.name != other_system),
-        *([] if windows else ["-fPIC", "-ldl"]),
+        *(str(p) for p in sources if system in SYSTEMS.get(p.name, (system,))),
+        *SYSTEM_ARGS[system],
     ]
     if not (HEADERS / "fmi2Functions.h").is_file():
         raise SystemExit(

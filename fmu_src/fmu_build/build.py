@@ -26,17 +26,21 @@ from pythonfmu.builder import FmuBuilder
 from rlv_landing.text.durable import unwritable, write_durably, writing
 
 from .binary import record_libpython, replace_binaries
+from .cross.cores import compile_cores
 from .description import describe
 from .description3 import describe3
 from .identity import NO_GUID, identify
 from .pages.documentation import write_documentation
 from .sources import ROOT, compiled_cores, copy_sources, source_date
+from .targets import ALL, OWN, TARGETS, Target, own_machine, tried
 from .terminals import write_terminals
 from .trial import check, expected
 from .wanted import FMI_VERSIONS, MODEL_NAME, Wanted
 
 # what the system says where a disk takes no more
 FULL = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
+# endings of files that can be run, or be loaded
+LIBRARIES = (".so", ".dll", ".dylib", ".pyd")
 # pythonfmu's command line, CSV tool and builder, which no slave needs
 NOT_NEEDED = ("__main__.py", "csvbuilder.py", "deploy.py", "builder.py", "osutil.py")
 # the line of pythonfmu's `__init__.py` that imports the builder, and with it argparse, logging and
@@ -134,7 +138,7 @@ def pack(files: Path, target: Path, date: datetime) -> None:
             entry = zipfile.ZipInfo(name, date.timetuple()[:6])
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.create_system = 3  # Unix, whose modes these are
-            entry.external_attr = (0o100755 if name.endswith((".so", ".dll")) else 0o100644) << 16
+            entry.external_attr = (0o100755 if name.endswith(LIBRARIES) else 0o100644) << 16
             archive.writestr(entry, (files / name).read_bytes())
 
 
@@ -159,6 +163,13 @@ def _workshop() -> Iterator[Path]:
         raise unwritable(Path(tempfile.gettempdir()), error, remedy) from None
 
 
+def other_targets(wanted: Wanted) -> list[Target]:
+    """The platforms besides this machine's that the wanted FMU has a compiled core for."""
+    if wanted.pure or wanted.platforms == OWN:
+        return []
+    return [target for target in TARGETS.values() if target.name != own_machine()]
+
+
 def build(target: Path, wanted: Wanted) -> list[str]:
     """Build and check the FMU, then put it at `target` in one step.
 
@@ -178,6 +189,9 @@ def build(target: Path, wanted: Wanted) -> list[str]:
     date = source_date()
     with _workshop() as folder:
         files, package, script = build_with_pythonfmu(folder, wanted)
+        core_names = [] if wanted.pure else [file.name for file in compiled_cores()]
+        others = other_targets(wanted)
+        compile_cores(others, package / "core" / "compiled_for")
         record_libpython(files)
         root = complete_description(files, date, wanted)
         description = describe3(root) if wanted.fmi == "3" else root
@@ -185,18 +199,21 @@ def build(target: Path, wanted: Wanted) -> list[str]:
         write_documentation(files, description, wanted)
         if wanted.fmi == "3":
             write_terminals(files, description)
-        root.set("guid", identify(files, package.name, script, root))
-        compilers = replace_binaries(files, root, wanted.fmi)
+        root.set("guid", identify(files, package.name, script, root, wanted.platforms))
+        compilers = replace_binaries(files, root, wanted.platforms, wanted.fmi)
         made = folder / "made.fmu"
         pack(files, made, date)
         found = check(made, wanted, ends)
         with writing(target):
             target.parent.mkdir(parents=True, exist_ok=True)
             write_durably(target, made.read_bytes())
-    cores = [] if wanted.pure else [file.name for file in compiled_cores()]
     return [
-        *(f"{platform}: front compiled by {compiler}" for platform, compiler in compilers.items()),
-        f"core: {', '.join(cores) or 'not compiled, as --pure asks for'}",
+        *(
+            f"{platform}: front compiled by {compiler}; {tried(platform)}"
+            for platform, compiler in compilers.items()
+        ),
+        f"core: {', '.join(core_names) or 'not compiled, as --pure asks for'}",
+        *(f"{target.name}: core compiled by Zig; {target.tried}" for target in others),
         f"{target}: {found}",
     ]
 
@@ -227,8 +244,15 @@ def main() -> None:
         action="store_true",
         help="leave the compiled core out: the same digits, ten times as slow",
     )
+    parser.add_argument(
+        "--platforms",
+        choices=(OWN, ALL),
+        default=OWN,
+        help="binaries for this machine's platform, or for all that Zig compiles for: Linux on "
+        "x86-64 and Arm, Windows, macOS [default: own]",
+    )
     arguments = parser.parse_args()
-    wanted = Wanted(fmi=arguments.fmi, pure=arguments.pure)
+    wanted = Wanted(fmi=arguments.fmi, pure=arguments.pure, platforms=arguments.platforms)
     name = f"{MODEL_NAME}{'3' if wanted.fmi == '3' else ''}.fmu"
     for line in build(arguments.file or ROOT / "build" / name, wanted):
         print(line)

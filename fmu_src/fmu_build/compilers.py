@@ -1,15 +1,14 @@
 """Chooses the C compilers of front and compiled core.
 
 The release build uses Zig's, from the PyPI package `ziglang`: its libraries need glibc 2.17 or
-newer, whatever this machine has, and it compiles for Windows too. Where it is not installed, gcc
-compiles for Linux and mingw-w64, if it is there, for Windows. CC in the environment names another
-compiler for Linux.
+newer, whatever this machine has, and it compiles for other platforms too. Where it is not
+installed, gcc compiles for this machine and mingw-w64, if it is there, the front for Windows. CC in
+the environment names another compiler for this machine.
 """
 
 from __future__ import annotations
 
 import os
-import platform
 import shlex
 import shutil
 import subprocess
@@ -20,13 +19,12 @@ from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
-GLIBC = "2.17"
+from .targets import TARGETS, Target, own_machine
+
 ZIG = (sys.executable, "-m", "ziglang")
 MINGW = "x86_64-w64-mingw32-gcc"
 # undefined behaviour is tested for, and not checked in what users run
 ZIG_FLAGS = ("-fno-sanitize=undefined",)
-# no DLL of mingw needed, C11's printf
-WINDOWS_FLAGS = ("-D__USE_MINGW_ANSI_STDIO=1",)
 # the same bytes at any time and in any folder
 MINGW_FLAGS = ("-static", "-Wl,--no-insert-timestamp,--disable-auto-image-base")
 
@@ -79,10 +77,6 @@ def has_zig() -> bool:
     return find_spec("ziglang") is not None
 
 
-def _zig(target: str) -> tuple[str, ...]:
-    return (*ZIG, "cc", "-target", target)
-
-
 def for_linux() -> Compiler:
     """The compiler for this machine's Linux.
 
@@ -92,8 +86,9 @@ def for_linux() -> Compiler:
     named = os.environ.get("CC", "").strip()
     if named:
         return Compiler(_words(named))
-    if has_zig() and platform.machine() == "x86_64":
-        return Compiler(_zig(f"x86_64-linux-gnu.{GLIBC}"), ZIG_FLAGS)
+    own = TARGETS.get(own_machine())
+    if has_zig() and own:
+        return _zig(own)
     return Compiler(("gcc",))
 
 
@@ -106,13 +101,19 @@ def _words(command: str) -> tuple[str, ...]:
         ) from None
 
 
-def for_windows() -> Compiler | None:
-    """The compiler for Windows; None if there is none."""
+def for_target(target: Target) -> Compiler | None:
+    """The compiler for a platform; None if there is none."""
+    if target.name == own_machine():
+        return for_linux()
     if has_zig():
-        return Compiler(_zig("x86_64-windows-gnu"), (*ZIG_FLAGS, *WINDOWS_FLAGS))
-    if shutil.which(MINGW):
-        return Compiler((MINGW,), (*WINDOWS_FLAGS, *MINGW_FLAGS))
+        return _zig(target)
+    if target.system == "windows" and shutil.which(MINGW):
+        return Compiler((MINGW,), (*target.flags, *MINGW_FLAGS))
     return None
+
+
+def _zig(target: Target) -> Compiler:
+    return Compiler((*ZIG, "cc", "-target", target.triple), (*ZIG_FLAGS, *target.flags))
 
 
 def environment() -> dict[str, str]:

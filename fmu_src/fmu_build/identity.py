@@ -13,21 +13,23 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from .binary import made_of, makers
+from .targets import OWN
 
 # what stands in the files until the GUID is known
 NO_GUID = "00000000-0000-0000-0000-000000000000"
 TAG_LENGTH = 12
 
 
-def digest(files: Path, root: ElementTree.Element) -> bytes:
+def digest(files: Path, root: ElementTree.Element, platforms: str = OWN) -> bytes:
     """SHA-256 of the FMU's files, without pythonfmu's binaries, and of the front's sources.
 
     Args:
         files: Folder of the unpacked FMU, with NO_GUID for the GUID.
         root: Root of its description in FMI 2.0.
+        platforms: Which platforms it is for, this machine's or all.
     """
     made_from = {"front": made_of(root)} | {
-        f"compiler/{platform}": text.encode() for platform, text in makers(root).items()
+        f"compiler/{platform}": text.encode() for platform, text in makers(root, platforms).items()
     }
     carried = {
         p.relative_to(files).as_posix(): p.read_bytes()
@@ -41,7 +43,9 @@ def digest(files: Path, root: ElementTree.Element) -> bytes:
     return found.digest()
 
 
-def identify(files: Path, package: str, script: str, root: ElementTree.Element) -> str:
+def identify(
+    files: Path, package: str, script: str, root: ElementTree.Element, platforms: str = OWN
+) -> str:
     """Put the GUID in its places, and the tag of the build at the end of the modules' names.
 
     Args:
@@ -49,11 +53,12 @@ def identify(files: Path, package: str, script: str, root: ElementTree.Element) 
         package: Name of the package in `resources`.
         script: Name of pythonfmu's script there, without `.py`, which imports the package.
         root: Root of the description in FMI 2.0.
+        platforms: Which platforms the FMU is for, this machine's or all.
 
     Returns:
         The GUID.
     """
-    found = digest(files, root)
+    found = digest(files, root, platforms)
     guid = str(uuid.UUID(bytes=found[:16], version=5))
     tag = found.hex()[:TAG_LENGTH]
     for path in (files / "modelDescription.xml", files / "documentation" / "index.html"):

@@ -9,6 +9,8 @@ from math import ceil
 from rlv_landing.errors import LandingError
 from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
 
+from .targets import OWN
+
 MODEL_NAME = "RlvLanding"
 LONGEST_NAME = 64
 FMI_VERSIONS = ("2", "3")
@@ -33,6 +35,7 @@ class Wanted:
         flat_names: Whether the variables' names have neither dots nor brackets.
         fmi: The version of FMI.
         pure: Whether to leave the compiled core out.
+        platforms: Which platforms it is for, this machine's (`own`) or all.
 
     Raises:
         LandingError: `name` is no identifier of C or no name of a file, FMI's version is not to be
@@ -45,6 +48,7 @@ class Wanted:
     flat_names: bool = False
     fmi: str = "2"
     pure: bool = False
+    platforms: str = OWN
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", self.name, re.ASCII):

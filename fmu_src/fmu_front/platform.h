@@ -1,7 +1,8 @@
 /*
  * Functions that differ between operating systems: shared libraries, folders, a lock.
  *
- * posix.c has them for Linux, windows.c for Windows. Paths are UTF-8 and use /.
+ * posix.c has them for Linux and macOS, together with linux.c or macos.c; windows.c for Windows.
+ * Paths are UTF-8 and use /.
  */
 #ifndef PLATFORM_H
 #define PLATFORM_H
@@ -42,6 +43,10 @@ bool environment_path(const char *name, char value[PATH_SIZE]);
  * Returns false if there is none.
  */
 bool installed_python(int oldest, int newest, char path[PATH_SIZE]);
+#ifndef _WIN32
+/* The same of what is in this system's usual places, a part of installed_python. */
+bool usual_python(int oldest, int newest, char path[PATH_SIZE]);
+#endif
 /*
  * One recursive lock for the whole process, other copies of this library included.
  *

@@ -10,12 +10,11 @@ from xml.etree import ElementTree
 
 import fmpy
 import pytest
+from c_hosts import HEADERS, HOSTS
 from fmi3_instance import Instance3
 from fmu_instance import Instance
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-HOSTS = Path(__file__).parent / "host"
-HEADERS = Path(fmpy.__file__).parent / "c-code"
 
 
 @pytest.fixture(scope="session")

@@ -37,7 +37,9 @@ def test_build_script_prints_help_and_builds_nothing(tmp_path):
             ["./build_fmu.sh", option], cwd=ROOT, capture_output=True, text=True, env=environment
         )
         assert done.returncode == 0, done.stderr
-        assert done.stdout.startswith("usage: build_fmu.sh [-h] [--fmi {2,3}] [--pure] [file]")
+        usage = done.stdout.partition("\n\n")[0].split()
+        assert usage[:2] == ["usage:", "build_fmu.sh"]
+        assert {"[--fmi", "[--pure]", "[--platforms", "[file]"} <= set(usage)
 
 
 @pytest.fixture(scope="module")

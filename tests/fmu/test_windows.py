@@ -1,4 +1,4 @@
-"""The FMU's Windows library, read by objdump. It is there if a compiler for Windows is."""
+"""The FMU's Windows library, read by objdump. It is there if all platforms are asked for."""
 
 import re
 import subprocess
@@ -32,8 +32,8 @@ def test_without_a_compiler_for_windows_the_fmu_has_no_binary_for_it(
     for name in ("modelDescription.xml", "resources/slavemodule.txt"):
         (tmp_path / name).write_bytes((unpacked / name).read_bytes())
     (tmp_path / "binaries" / "win64" / "RlvLanding.dll").write_bytes(b"MZ: pythonfmu's")
-    monkeypatch.setattr(binary, "for_windows", lambda: None)
-    assert set(binary.replace_binaries(tmp_path)) == {"linux64"}
+    monkeypatch.setattr(binary, "for_target", lambda target: None)
+    assert set(binary.replace_binaries(tmp_path, platforms="all")) == {"linux64"}
     assert [p.name for p in (tmp_path / "binaries").rglob("*.*")] == ["RlvLanding.so"]
 
 
@@ -43,7 +43,9 @@ def test_windows_library_compiles_without_a_warning_exports_what_linuxs_does_and
     unpacked,
     monkeypatch,
 ):
-    compiler = binary.for_windows()
+    from fmu_build.targets import TARGETS
+
+    compiler = binary.for_target(TARGETS["x86_64-windows"])
     if compiler is None:
         pytest.skip("neither ziglang nor mingw-w64 is installed")
     monkeypatch.setattr(binary, "FLAGS", [*binary.FLAGS, "-Werror", "-Wpedantic"])

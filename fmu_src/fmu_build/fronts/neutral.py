@@ -7,14 +7,14 @@ import sys
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
-from ..binary import compile_fronts, made_of
+from ..binary import compile_fronts, compilers, made_of
 from ..sources import HERE, source
 from .header import neutral_header
 from .prebuilt import keep
 
 
 def compile_neutral(folder: Path) -> list[str]:
-    """Compile a front for each platform that there is a compiler for.
+    """Compile the front of this machine's platform.
 
     Args:
         folder: The folder for them, which is made.
@@ -28,7 +28,7 @@ def compile_neutral(folder: Path) -> list[str]:
     """
     root = _description()
     folder.mkdir(parents=True, exist_ok=True)
-    used = compile_fronts(neutral_header(root), lambda platform: folder / platform)
+    used = compile_fronts(neutral_header(root), lambda platform: folder / platform, compilers())
     keep(folder, made_of(root), used)
     return list(used)
 

@@ -31,8 +31,10 @@ from rlv_landing.quantities import (
 )
 
 from ..arrays import whole_meaning, whole_name
+from ..binary import compilers
 from ..dependencies import inputs_of
 from ..sources import source
+from ..targets import tried
 from ..wanted import Wanted
 from .drawing import vehicle_figure
 
@@ -102,6 +104,10 @@ def render(files: Path, description: Element, wanted: Wanted) -> str:
         experiment=experiment.attrib,
         capabilities=simulation.attrib,
         cores=sorted(p.name for p in files.glob("resources/*/core/compiled.*")),
+        cores_of_others=sorted(
+            p.parent.name for p in files.glob("resources/*/core/compiled_for/*/compiled.*")
+        ),
+        platforms={name: tried(name) for name in compilers(wanted.platforms, wanted.fmi)},
         drawing=Markup(
             inline_svg(
                 vehicle_figure(wanted.parameters, named=True),

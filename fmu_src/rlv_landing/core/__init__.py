@@ -4,11 +4,15 @@ Both give the same digits. The classes come from the compiled module if there is
 Python, else from the plain files. RLV_LANDING_PURE=1 in the environment asks for the plain files.
 Records and laws' names are those of the plain files always. WHY_NOT_COMPILED is empty where the
 core is compiled, or where the plain files were asked for; else it is the reason.
+
+An FMU for several platforms has their compiled modules in folders of `compiled_for`, by FMI 3.0's
+names of the platforms.
 """
 
 from __future__ import annotations
 
 import os
+import sys
 from typing import TYPE_CHECKING
 
 from .ground.kinds import FRICTION_LAWS
@@ -25,6 +29,16 @@ from .records import (
 )
 from .struts.kinds import AUXILIARY_STRUTS, MAIN_STRUTS
 
+
+def _platform() -> str:
+    """FMI 3.0's name of this platform; of Windows and macOS, of the Python that runs."""
+    if sys.platform == "win32":
+        # Python for Arm has (ARM64) there
+        return f"{'x86_64' if '(AMD64)' in sys.version else 'other'}-windows"
+    machine = os.uname().machine
+    return f"{'aarch64' if machine == 'arm64' else machine}-{sys.platform}"
+
+
 COMPILED = False
 WHY_NOT_COMPILED = ""
 if not TYPE_CHECKING and os.environ.get("RLV_LANDING_PURE") != "1":
@@ -32,6 +46,9 @@ if not TYPE_CHECKING and os.environ.get("RLV_LANDING_PURE") != "1":
     # crashes
     import inspect  # noqa: F401
 
+    _own = os.path.join(os.path.dirname(__file__), "compiled_for", _platform())  # noqa: PTH118, PTH120
+    if os.path.isdir(_own):  # noqa: PTH112
+        __path__.insert(0, _own)
     try:
         from .compiled import DormandPrince, Exponential, Planar, Solver, System
 

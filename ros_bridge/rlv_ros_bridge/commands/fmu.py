@@ -68,6 +68,14 @@ def fmu() -> None:
     "--pure", is_flag=True, help="Leave the compiled core out: the same digits, ten times as slow."
 )
 @click.option(
+    "--platforms",
+    type=click.Choice(["own", "all"]),
+    default="own",
+    show_default=True,
+    help="Binaries for this machine's platform, or for all that Zig compiles for: Linux on x86-64 "
+    "and Arm, Windows, macOS.",
+)
+@click.option(
     "-o",
     "--output",
     metavar="FILE.fmu",

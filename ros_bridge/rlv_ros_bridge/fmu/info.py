@@ -16,7 +16,7 @@ from rlv_landing.touchdown import footpad_at_rest
 from .description import is_ours, open_description, vehicle_of
 
 # our compiled cores in the FMU
-CORE = re.compile(r"resources/[^/]+/core/(compiled\.[^/]+)")
+CORE = re.compile(r"resources/[^/]+/core/(?:compiled_for/)?((?:[^/]+/)?compiled\.[^/]+)")
 BINARY = re.compile(r"binaries/([^/]+)/[^/]+\.(?:so|dll|dylib)")
 KINDS = {"coSimulation": "co-simulation", "modelExchange": "model exchange"}
 

@@ -10,7 +10,7 @@ static int has_compiled_core(void)
     int found = 0;
     FILE *maps = fopen("/proc/self/maps", "r");
     while (maps && fgets(line, sizeof line, maps))
-        found |= strstr(line, "/core/compiled.") != NULL;
+        found |= strstr(line, "/compiled.abi3.so") != NULL;
     if (maps)
         fclose(maps);
     return found;

@@ -1,0 +1,1 @@
+"""Compiled cores for other platforms, made on this machine."""
