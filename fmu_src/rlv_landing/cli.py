@@ -26,7 +26,7 @@ from .commands.simulate import simulate
 from .commands.sweep import sweep
 from .commands.validate import validate
 from .core import COMPILED, WHY_NOT_COMPILED
-from .errors import LandingError, nearest, one_line
+from .errors import LandingError, nearest, one_line, reason_of
 from .text.durable import NO_ROOM
 from .text.terminal import make_legible
 
@@ -148,7 +148,7 @@ def run(group: click.Group, name: str | None = None) -> int:
 
 
 def _refuse_file(error: OSError) -> int:
-    reason = error.strerror or str(error)
+    reason = reason_of(error)
     if error.filename is None:
         full = error.errno in {*NO_ROOM, errno.EIO} and _output_fails()
         where = "standard output cannot be written: " if full else ""

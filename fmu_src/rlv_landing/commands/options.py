@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from ..errors import LandingError
+from ..errors import LandingError, reason_of
 
 if TYPE_CHECKING:
     from ..parameters import Parameters
@@ -104,7 +104,7 @@ def check_writable(path: Path | None, ending: str, *, force: bool) -> None:
         exists, folder = os.path.lexists(path), path.resolve().parent.is_dir()
         file = not path.exists() or path.is_file()
     except OSError as e:
-        raise LandingError(f"{path} cannot be written: {e.strerror or e}") from None
+        raise LandingError(f"{path} cannot be written: {reason_of(e)}") from None
     if not file:
         raise LandingError(f"{path} is there and is no file; name another")
     if exists and not force:

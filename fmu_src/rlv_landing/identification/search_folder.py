@@ -10,7 +10,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, TypeVar
 
-from ..errors import LandingError
+from ..errors import LandingError, reason_of
 from ..text.durable import FolderLock, refuse_no_files, write_durably
 from ..text.files import check_sum, read_record
 from .global_search import GlobalSearch
@@ -141,7 +141,8 @@ class SearchFolder:
             if isinstance(e, LandingError):
                 raise
             raise LandingError(
-                f"{self._best} cannot be read ({e}); there is nothing to resume: {ANOTHER}"
+                f"{self._best} cannot be read ({reason_of(e)}); "
+                f"there is nothing to resume: {ANOTHER}"
             ) from None
         if best.counting or not os.path.lexists(self._state):
             return best, None
@@ -151,7 +152,7 @@ class SearchFolder:
             if isinstance(e, LandingError):
                 raise
             raise LandingError(
-                f"{self._state} cannot be resumed ({e}); "
+                f"{self._state} cannot be resumed ({reason_of(e)}); "
                 f"remove it, and --resume searches anew from {self._best.name}"
             ) from None
 

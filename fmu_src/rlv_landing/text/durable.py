@@ -12,7 +12,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import BinaryIO, TextIO
 
-from ..errors import LandingError
+from ..errors import LandingError, reason_of
 
 # file systems take names of 255 bytes; a temporary name is longer than the file's own
 LONGEST_NAME = 240
@@ -133,8 +133,7 @@ def unwritable(
     named = error.filename2 or error.filename
     name = os.fsdecode(named) if isinstance(named, (str, bytes)) and _is_folder(path) else path
     return LandingError(
-        f"{what}{name} cannot be written: {error.strerror or error}; "
-        f"{_remedy(error, remedy, kept=kept)}"
+        f"{what}{name} cannot be written: {reason_of(error)}; {_remedy(error, remedy, kept=kept)}"
     )
 
 

@@ -13,7 +13,7 @@ import click
 
 from rlv_landing.commands.number_types import WholeNumber
 from rlv_landing.commands.options import check_writable, parameter_options
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, reason_of
 
 from ..messages.topics import check_namespace
 from ..ros.interruption import exit_on_sigterm
@@ -117,7 +117,8 @@ def require_viewer() -> None:
         import rerun_cli  # noqa: F401
     except ImportError as e:
         raise LandingError(
-            f'the viewer is missing ({e}); install it with pip install "rlv-landing[view]"'
+            f"the viewer is missing ({reason_of(e)}); "
+            'install it with pip install "rlv-landing[view]"'
         ) from None
 
 
