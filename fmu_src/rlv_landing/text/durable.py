@@ -18,6 +18,8 @@ from ..errors import LandingError, reason_of
 LONGEST_NAME = 240
 PART = ".part"
 LOCK = ".lock"
+# the remedy where the folder of a search or an envelope cannot be used
+ANOTHER_WORK = "name another folder by --work"
 # what the system says where a disk, a user's share of it, or a file takes no more
 NO_ROOM = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
 # what it says of a path that the user can change

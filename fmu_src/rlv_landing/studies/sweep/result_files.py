@@ -154,7 +154,7 @@ class Results:
         raise LandingError(
             f"{self.folder} holds rows of another study: {', '.join(changed)} changed since. "
             f"Resume with the study as it was ({self.folder / COPY} is a copy of it), "
-            "or name another folder by --results"
+            f"or {ANOTHER}"
         )
 
     def _load(self) -> list[tuple[int, int]]:
