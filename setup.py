@@ -77,7 +77,7 @@ class BuildWithFmuSources(build_py):
             package = Path(self.build_lib) / "fmu_build"
             carry(package)
             try:
-                from fmu_build.fronts.neutral import compile_neutral
+                from fmu_build.neutral_fronts import compile_neutral
 
                 made = ", ".join(compile_neutral(package / "fronts" / "compiled"))
             except (ImportError, SystemExit) as e:

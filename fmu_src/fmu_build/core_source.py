@@ -21,6 +21,8 @@ Laws = dict[str, list[dict[str, str]]]
 
 CORE = Path(__file__).parent.parent / "rlv_landing" / "core"
 MODULE = "compiled"
+# what loads the core, and decides no digit
+LOADING = ("__init__.py", "freshness.py")
 DIRECTIVES = {
     "language_level": 3,
     "cdivision": True,
@@ -52,7 +54,7 @@ ZIG_ARGS = ["-mllvm", "-inline-threshold=5000", "-mllvm", "-inlinecold-threshold
 
 def files(core: Path = CORE) -> list[Path]:
     """All files of the core that decide its digits, in the order of their names."""
-    return sorted(path for path in core.rglob("*.py") if path.name != "__init__.py")
+    return sorted(path for path in core.rglob("*.py") if path.name not in LOADING)
 
 
 def kernels(core: Path = CORE) -> list[Path]:
@@ -159,13 +161,17 @@ def check_names(sources: list[Path]) -> None:
                 )
 
 
-def digest(core: Path = CORE) -> str:
-    """SHA-256 of the kernels' texts; the compiled core carries that of its own sources."""
-    texts = [
-        path.relative_to(core).as_posix().encode() + b"\0" + path.read_bytes()
+def source_hashes(core: Path = CORE) -> dict[str, str]:
+    """The SHA-256 of each kernel's text by its path; the compiled core carries those of its own."""
+    return {
+        path.relative_to(core).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
         for path in files(core)
-    ]
-    return hashlib.sha256(b"".join(texts)).hexdigest()
+    }
+
+
+def digest(core: Path = CORE) -> str:
+    """The SHA-256 of all kernels: of `source_hashes`."""
+    return hashlib.sha256(repr(source_hashes(core)).encode()).hexdigest()
 
 
 def package_name(core: Path = CORE) -> str:
@@ -186,18 +192,18 @@ def write_source(folder: Path, core: Path = CORE) -> Path:
     Raises:
         ValueError: Two kernel files use the same name.
     """
-    sources = kernels(core)
-    check_names(sources)
-    laws = tables(sources)
+    paths = kernels(core)
+    check_names(paths)
+    laws = tables(paths)
     texts = "".join(
-        f"# {p.relative_to(core).as_posix()}\n{translated(p.read_text(), laws)}" for p in sources
+        f"# {p.relative_to(core).as_posix()}\n{translated(p.read_text(), laws)}" for p in paths
     )
     imports = "from array import array\n\nfrom cython import nogil\n\n"
-    python = f'{imports}{MEMORY}\n{texts}SOURCE_DIGEST = "{digest(core)}"\n'
+    python = f"{imports}{MEMORY}\n{texts}SOURCES = {source_hashes(core)!r}\n"
     package = folder / package_name(core)
     package.mkdir(parents=True, exist_ok=True)
     (package / "__init__.py").touch()
-    for name, text in ((f"{MODULE}.pxd", declarations(core, sources)), (f"{MODULE}.py", python)):
+    for name, text in ((f"{MODULE}.pxd", declarations(core, paths)), (f"{MODULE}.py", python)):
         target = package / name
         if not target.exists() or target.read_text() != text:
             target.write_text(text)

@@ -9,6 +9,7 @@ import fmpy
 from fmpy.validation import validate_fmu
 
 from rlv_landing import Landing
+from rlv_landing.errors import reason_of
 from rlv_landing.quantities import OUTPUT_QUANTITIES, flat_name
 
 from .arrays import whole_name
@@ -66,7 +67,7 @@ def check(fmu: Path, wanted: Wanted, ends: Expected) -> str:
     except Exception as e:
         if isinstance(e.__context__, KeyboardInterrupt):  # it has ended the slave
             raise e.__context__ from None
-        raise SystemExit(f"error: the FMU does not land: {' '.join(str(e).split())}") from None
+        raise SystemExit(f"error: the FMU does not land: {reason_of(e)}") from None
     for q in OUTPUT_QUANTITIES:
         ours, its = ends.values[q.name], float(_column(result, q.name, names)[-1])
         if not abs(its - ours) <= TOLERANCE * max(abs(ours), q.nominal):

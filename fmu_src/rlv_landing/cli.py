@@ -10,7 +10,6 @@ import os
 import sys
 from contextlib import suppress
 from importlib.metadata import entry_points
-from typing import Any
 
 import click
 
@@ -18,22 +17,20 @@ from . import __version__
 from .commands.audit import audit
 from .commands.envelope import envelope
 from .commands.identify import identify
-from .commands.options import HELP_NAMES
+from .commands.options import HELP_NAMES, Group
 from .commands.parameters import parameters
-from .commands.printing import BAD_INPUT, FAILED, exit_code
+from .commands.printing import BAD_INPUT, FAILED, INTERRUPTED, exit_code
 from .commands.sensitivity import sensitivity
 from .commands.simulate import simulate
 from .commands.sweep import sweep
 from .commands.validate import validate
 from .core import COMPILED, WHY_NOT_COMPILED
-from .errors import LandingError, nearest, one_line
+from .errors import LandingError, one_line, reason_of
 from .text.durable import NO_ROOM
 from .text.terminal import make_legible
 
-INTERRUPTED = 130
 
-
-class Commands(click.Group):
+class Commands(Group):
     """The package's commands, and those of other packages, loaded when they are called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -54,19 +51,6 @@ class Commands(click.Group):
             command: click.Command = entry.load()
             return command
         return None
-
-    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
-        """The command that the arguments name, as click expects it.
-
-        Raises:
-            LandingError: There is no such command.
-        """
-        if args and self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
-            raise LandingError(
-                f"there is no command {args[0]!r}{nearest(args[0], self.list_commands(ctx))}; "
-                "`rlv-landing --help` lists them"
-            )
-        return super().resolve_command(ctx, args)
 
 
 @click.group(cls=Commands, context_settings=HELP_NAMES)
@@ -148,7 +132,7 @@ def run(group: click.Group, name: str | None = None) -> int:
 
 
 def _refuse_file(error: OSError) -> int:
-    reason = error.strerror or str(error)
+    reason = reason_of(error)
     if error.filename is None:
         full = error.errno in {*NO_ROOM, errno.EIO} and _output_fails()
         where = "standard output cannot be written: " if full else ""

@@ -37,6 +37,15 @@ def one_line(text: str, longest: int = LONGEST_LINE) -> str:
     return _cut(line, longest)
 
 
+def reason_of(error: BaseException) -> str:
+    """What an exception says, in one line of words.
+
+    An OSError says what the system says; an exception without a text its own name.
+    """
+    text = (error.strerror if isinstance(error, OSError) else None) or str(error)
+    return " ".join(text.split()) or type(error).__name__
+
+
 def _cut(text: str, longest: int) -> str:
     if len(text) <= longest:
         return text

@@ -7,6 +7,7 @@ import sys
 import click
 
 from rlv_landing.cli import run as run_group
+from rlv_landing.commands.options import HELP_NAMES, Group
 
 from .commands.animate import animate
 from .commands.fmu import fmu
@@ -16,7 +17,7 @@ from .commands.replay import replay
 from .commands.view import view
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=Group, context_settings=HELP_NAMES)
 def main() -> None:
     """Land, record and replay with ROS 2."""
 

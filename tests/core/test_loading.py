@@ -1,4 +1,7 @@
-"""How the core is loaded: what is missing or interrupted there is an error; its absence is told."""
+"""How the core is loaded.
+
+What is missing or interrupted there is an error; absence or age of the compiled core is told.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,8 @@ import sys
 from pathlib import Path
 
 import pytest
+
+from rlv_landing import core
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 
@@ -70,3 +75,38 @@ def test_what_is_there_or_asked_for_is_told_by_the_version_only(pure, core):
     done = run(MAIN, "--version", RLV_LANDING_PURE=pure)
     assert done.stdout.rstrip().endswith(f", {core} core")
     assert done.stderr == ""
+
+
+CHANGED = "from rlv_landing import core; print(core.COMPILED, core.Planar.__module__)"
+
+
+@pytest.mark.skipif(not core.COMPILED, reason="there is no compiled core")
+@pytest.mark.parametrize(
+    ("script", "arguments", "said"),
+    [
+        (CHANGED, (), "False rlv_landing.core.bodies.planar"),
+        (MAIN, ("--version",), ", uncompiled core"),
+        ("from fmu_build.build import main; main()", ("made.fmu",), ""),
+    ],
+    ids=["import", "command", "build of an FMU"],
+)
+def test_a_compiled_core_of_other_files_is_told_in_one_line_and_does_not_run(
+    script, arguments, said, tmp_path
+):
+    ignored = shutil.ignore_patterns("__pycache__")
+    for package in ("rlv_landing", "fmu_build"):
+        shutil.copytree(ROOT / "fmu_src" / package, tmp_path / package, ignore=ignored)
+    with (tmp_path / "rlv_landing" / "core" / "leg.py").open("a") as file:
+        file.write("# changed\n")
+    done = run(script, *arguments, PYTHONPATH=str(tmp_path), RLV_LANDING_PURE="")
+    first, *others = done.stderr.splitlines()
+    assert ": RuntimeWarning: the core was compiled before leg.py changed: the present " in first
+    assert first.endswith("; python setup.py build_ext --inplace compiles them")
+    if said:
+        assert (done.returncode, others) == (0, [])
+        assert done.stdout.rstrip().endswith(said)
+    else:
+        assert done.returncode == 1
+        (refusal,) = others
+        assert refusal.startswith("error: there is no compiled core of the present kernels: ")
+        assert not (tmp_path / arguments[0]).exists()

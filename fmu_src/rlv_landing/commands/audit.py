@@ -7,14 +7,14 @@ from typing import Any
 import click
 
 from ..errors import LandingError
-from .options import choose, parameter_options
+from .options import choose, json_option, parameter_options
 from .printing import print_checked
 
 
 @click.command()
 @click.argument("name", metavar="[PRESET]", required=False)
 @parameter_options
-@click.option("--json", "as_json", is_flag=True, help="Print as JSON.")
+@json_option()
 def audit(name: str | None, *, as_json: bool, **choice: Any) -> int:
     """Audit energy, liquid mass, momentum, rest and convergence of a landing.
 

@@ -12,18 +12,25 @@ import click
 
 from ..choices import parse_pairs, split_pair
 from ..errors import LandingError, one_line
-from ..text.durable import refuse_no_files, unwritable, writing
+from ..text.durable import ANOTHER_WORK, refuse_no_files, unwritable, writing
 from .number_types import Number, WholeNumber
-from .options import HELP_NAMES, check_writable, parameter_options
-from .printing import exit_code, print_json, print_warning
+from .options import (
+    HELP_NAMES,
+    check_writable,
+    force_option,
+    input_option,
+    json_option,
+    parameter_options,
+    workers_option,
+)
+from .printing import INTERRUPTED, exit_code, print_json, print_warning
 
 if TYPE_CHECKING:
     from ..studies.envelope.search import Envelope
     from ..studies.envelope.store import Store
     from ..studies.envelope.study import EnvelopeStudy
 
-NO_BOUNDARY, INTERRUPTED = 1, 130
-ANOTHER = "name another folder by --work"
+NO_BOUNDARY = 1
 RESULTS = ("boundary.csv", "boundary.json")
 STUDY = click.Path(path_type=Path)
 
@@ -59,13 +66,7 @@ STUDY = click.Path(path_type=Path)
     multiple=True,
     help='A load limit: main_strut.force="20 kN". Repeat.',
 )
-@click.option(
-    "--input",
-    "inputs",
-    metavar="NAME=VALUE",
-    multiple=True,
-    help="A constant input: external.force_x=500. Repeat.",
-)
+@input_option()
 @click.option(
     "--criterion",
     metavar="NAME",
@@ -94,15 +95,15 @@ STUDY = click.Path(path_type=Path)
     help="Folder for landings and results.",
 )
 @click.option("--resume", is_flag=True, help="Continue with the landings in --work.")
-@click.option("--workers", type=WholeNumber(1, 1024), help="Threads [default: all cores].")
+@workers_option()
 @click.option(
     "--plot",
     metavar="FILE.png|.svg",
     type=click.Path(path_type=Path),
     help="Draw boundaries, landings and critical conditions.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print the whole result as JSON.")
-@click.option("--force", is_flag=True, help="Overwrite a picture that exists.")
+@json_option("Print the whole result as JSON.")
+@force_option("Overwrite a picture that exists.")
 def envelope(
     study: Path | None,
     work: Path,
@@ -148,7 +149,7 @@ def envelope(
     except KeyboardInterrupt:
         _end("interrupted", INTERRUPTED, store, work)
     except OSError as e:
-        reason = unwritable(work, e, ANOTHER, kept=True)
+        reason = unwritable(work, e, ANOTHER_WORK, kept=True)
         _end(f"error: {reason}", exit_code(e), store, work)
     finally:
         store.close()
@@ -236,10 +237,10 @@ def _open_store(asked: EnvelopeStudy, work: Path, *, resume: bool) -> Store:
     from ..studies.envelope.store import Store
 
     path = work / "landings.jsonl"
-    refuse_no_files(work, RESULTS, ANOTHER)
+    refuse_no_files(work, RESULTS, ANOTHER_WORK)
     strange = [name for name in RESULTS if os.path.lexists(work / name)]
     if strange and not os.path.lexists(path):
-        raise LandingError(f"{work / strange[0]} is there without {path.name}; {ANOTHER}")
+        raise LandingError(f"{work / strange[0]} is there without {path.name}; {ANOTHER_WORK}")
     return Store(asked, path, resume=resume)
 
 

@@ -11,10 +11,10 @@ import click
 from .identify_data import objective_of
 from .identify_run import Interrupts, check_effort, run, start_note
 from .number_types import NumberRange, WholeNumber
-from .options import HELP_NAMES, choose, parameter_options
-from .printing import print_warning
+from .options import HELP_NAMES, choose, parameter_options, workers_option
+from .printing import INTERRUPTED, print_warning
 
-NOTHING_BETTER, INTERRUPTED = 1, 130
+NOTHING_BETTER = 1
 
 
 @click.command(context_settings=HELP_NAMES)
@@ -110,7 +110,7 @@ NOTHING_BETTER, INTERRUPTED = 1, 130
     type=WholeNumber(1, 2**31 - 1),
     help="Seed of the search.",
 )
-@click.option("--workers", type=WholeNumber(1, 1024), help="Processes [default: all cores].")
+@workers_option("Processes")
 @click.option("--resume", is_flag=True, help="Continue with the search in --work.")
 @click.option(
     "--priors",

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from ..errors import one_line
-from ..text.durable import unwritable, write_durably
+from ..text.durable import ANOTHER_WORK, unwritable, write_durably
 from .printing import FAILED, exit_code
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def check_effort(options: dict[str, Any]) -> None:
 def _fail(error: Exception, work: Path) -> NoReturn:
     """End a search that the disk or the machine does not let go on."""
     reason = (
-        unwritable(work, error, "name another folder by --work", kept=True)
+        unwritable(work, error, ANOTHER_WORK, kept=True)
         if isinstance(error, OSError)
         else "a process of the search was killed; take fewer --workers, or free memory"
     )

@@ -1,22 +1,107 @@
-"""Options that several commands share, and the parameters that they choose."""
+"""Options and settings that several commands share, and the parameters that they choose."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import click
 
-from ..errors import LandingError
+from ..errors import LandingError, nearest, reason_of
+from .number_types import Number, WholeNumber
 
 if TYPE_CHECKING:
     from ..parameters import Parameters
 
 F = TypeVar("F", bound=Callable[..., Any])
 # command groups and commands answer to both
-HELP_NAMES = {"help_option_names": ["-h", "--help"]}
+HELP_NAMES: dict[str, Any] = {"help_option_names": ["-h", "--help"]}
+# the same, for commands whose help has long examples
+WIDE: dict[str, Any] = {**HELP_NAMES, "max_content_width": 120}
+MOST_WORKERS = 1024
+
+
+class Group(click.Group):
+    """A group of commands that names the nearest where there is no such command."""
+
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+        """The command that the arguments name, as click expects it.
+
+        Raises:
+            LandingError: There is no such command.
+        """
+        if args and self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
+            group = f"rlv-landing {self.name}" if ctx.parent else "rlv-landing"
+            raise LandingError(
+                f"there is no command {args[0]!r}{nearest(args[0], self.list_commands(ctx))}; "
+                f"`{group} --help` lists them"
+            )
+        return super().resolve_command(ctx, args)
+
+
+class Option(Protocol):
+    """Adds an option to a command."""
+
+    def __call__(self, command: F, /) -> F:
+        """The command with the option."""
+
+
+def json_option(help_text: str = "Print as JSON.") -> Option:
+    """`--json`, which is the parameter `as_json`."""
+    return click.option("--json", "as_json", is_flag=True, help=help_text)
+
+
+def force_option(help_text: str = "Overwrite files that exist.") -> Option:
+    """`--force`, for what `check_writable` refuses."""
+    return click.option("--force", is_flag=True, help=help_text)
+
+
+def plot_option() -> Option:
+    """`--plot`: the overview of a landing."""
+    return click.option(
+        "--plot",
+        metavar="FILE.png",
+        type=click.Path(path_type=Path),
+        help="Draw forces, strokes and acceleration.",
+    )
+
+
+def start_option() -> Option:
+    """`--start` of the part of a landing that is drawn or written [s]."""
+    return click.option(
+        "--start", type=Number("s"), metavar="SECONDS", help="From this simulation time on."
+    )
+
+
+def set_option() -> Option:
+    """`--set`, which is the parameter `pairs`."""
+    return click.option(
+        "--set",
+        "pairs",
+        metavar="NAME=VALUE",
+        multiple=True,
+        help='One parameter, SI or with a unit: drop.tilt="-2 deg". Repeat.',
+    )
+
+
+def input_option() -> Option:
+    """`--input` of constant inputs, which is the parameter `inputs`."""
+    return click.option(
+        "--input",
+        "inputs",
+        metavar="NAME=VALUE",
+        multiple=True,
+        help="A constant input: external.force_x=500, ground.tilt='2 deg'. Repeat.",
+    )
+
+
+def workers_option(what: str = "Threads") -> Option:
+    """`--workers`, None where all cores are meant; `what` is what is counted."""
+    return click.option(
+        "--workers", type=WholeNumber(1, MOST_WORKERS), help=f"{what} [default: all cores]."
+    )
 
 
 def parameter_options(command: F) -> F:
@@ -35,18 +120,12 @@ def parameter_options(command: F) -> F:
             metavar="MODE",
             help="Landing mode: 2-2 or 1-2-1 (legs that touch first, second, third).",
         ),
-        click.option(
-            "--set",
-            "pairs",
-            metavar="NAME=VALUE",
-            multiple=True,
-            help='One parameter, SI or with a unit: drop.tilt="-2 deg". Repeat.',
-        ),
+        set_option(),
     )
     return add_options(command, options)
 
 
-def add_options(command: F, options: tuple[Callable[[F], F], ...]) -> F:
+def add_options(command: F, options: tuple[Option, ...]) -> F:
     """Add options to a command in the order in which its help lists them."""
     for option in reversed(options):
         command = option(command)
@@ -104,7 +183,7 @@ def check_writable(path: Path | None, ending: str, *, force: bool) -> None:
         exists, folder = os.path.lexists(path), path.resolve().parent.is_dir()
         file = not path.exists() or path.is_file()
     except OSError as e:
-        raise LandingError(f"{path} cannot be written: {e.strerror or e}") from None
+        raise LandingError(f"{path} cannot be written: {reason_of(e)}") from None
     if not file:
         raise LandingError(f"{path} is there and is no file; name another")
     if exists and not force:

@@ -6,14 +6,14 @@ from typing import Any
 
 import click
 
-from .options import HELP_NAMES, chosen_parameters, parameter_options
+from .options import HELP_NAMES, chosen_parameters, json_option, parameter_options
 from .printing import print_json
 
 
 @click.command(context_settings=HELP_NAMES)
 @parameter_options
 @click.option("--toml", is_flag=True, help="As a TOML file that --parameters takes back.")
-@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+@json_option()
 @click.option("--inputs", "what", flag_value="inputs", help="List the inputs instead.")
 @click.option("--outputs", "what", flag_value="outputs", help="List the outputs instead.")
 def parameters(*, toml: bool, as_json: bool, what: str | None, **choice: Any) -> None:

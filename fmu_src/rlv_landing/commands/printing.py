@@ -11,7 +11,7 @@ import click
 from ..errors import one_line
 from ..text.durable import NOT_USABLE
 
-FAILED, BAD_INPUT = 1, 2
+FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
 
 def print_json(record: Any) -> None:

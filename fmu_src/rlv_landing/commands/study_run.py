@@ -14,9 +14,9 @@ import click
 
 from ..errors import LandingError, one_line
 from ..text.durable import unwritable
-from .number_types import NumberRange, WholeNumber
-from .options import add_options
-from .printing import exit_code, print_warning
+from .number_types import NumberRange
+from .options import add_options, json_option, workers_option
+from .printing import FAILED, INTERRUPTED, exit_code, print_warning
 
 if TYPE_CHECKING:
     from ..studies.sweep.result_files import Results
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from ..studies.sweep.sweep_row import Plan, Task
 
 F = TypeVar("F", bound=Callable[..., Any])
-FAILED, INTERRUPTED = 1, 130
 
 
 @dataclass(frozen=True)
@@ -58,7 +57,7 @@ def run_options(command: F) -> F:
             is_flag=True,
             help="Continue with the study in --results; refused if the study has changed.",
         ),
-        click.option("--workers", type=WholeNumber(1, 1024), help="Threads [default: all cores]."),
+        workers_option(),
         click.option(
             "--scheduler",
             metavar="ADDRESS",
@@ -82,7 +81,7 @@ def run_options(command: F) -> F:
             is_flag=True,
             help="Print number of landings, first rows and estimated time; run nothing.",
         ),
-        click.option("--json", "as_json", is_flag=True, help="Print as JSON."),
+        json_option(),
     )
     return add_options(command, options)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import LandingError, unknown
-from .options import check_writable, choose, parameter_options
+from .options import check_writable, choose, force_option, json_option, parameter_options
 from .printing import print_checked
 
 if TYPE_CHECKING:
@@ -47,8 +47,8 @@ TESTS_PRESET = "yue2022-tests"
     help="Least counts within 5, 10, 20 % of the simulation, or none "
     "[default: those that the preset is stated to reach].",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print as JSON.")
-@click.option("--force", is_flag=True, help="Overwrite the report if it exists.")
+@json_option()
+@force_option("Overwrite the report if it exists.")
 def validate(
     tests: tuple[str, ...], html: Path | None, *, as_json: bool, force: bool, **options: Any
 ) -> int:

@@ -1,9 +1,10 @@
 """The kernels: plain Python on `math` alone, compiled where there was a compiler.
 
 Both give the same digits. The classes come from the compiled module if there is one for this
-Python, else from the plain files. RLV_LANDING_PURE=1 in the environment asks for the plain files.
-Records and laws' names are those of the plain files always. WHY_NOT_COMPILED is empty where the
-core is compiled, or where the plain files were asked for; else it is the reason.
+Python and for the present files, else from the plain files. RLV_LANDING_PURE=1 in the environment
+asks for the plain files. Records and laws' names are those of the plain files always.
+A compiled module of other files is told by a RuntimeWarning. WHY_NOT_COMPILED is the reason why
+there is none; it is empty where the plain files were asked for.
 
 An FMU for several platforms has their compiled modules in folders of `compiled_for`, by FMI 3.0's
 names of the platforms.
@@ -13,6 +14,7 @@ from __future__ import annotations
 
 import os
 import sys
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 from .ground.kinds import FRICTION_LAWS
@@ -50,11 +52,18 @@ if not TYPE_CHECKING and os.environ.get("RLV_LANDING_PURE") != "1":
     if os.path.isdir(_own):  # noqa: PTH112
         __path__.insert(0, _own)
     try:
-        from .compiled import DormandPrince, Exponential, Planar, Solver, System
-
-        COMPILED = True
+        compiled = import_module(".compiled", __name__)
     except ImportError as e:
         WHY_NOT_COMPILED = str(e)
+    else:
+        COMPILED = True
+        # an FMU's copy has another name, and the build has compared it
+        if __name__ == "rlv_landing.core":
+            from .freshness import is_fresh
+
+            COMPILED = is_fresh(compiled)
+        if COMPILED:
+            from .compiled import DormandPrince, Exponential, Planar, Solver, System
 if not COMPILED:
     from .bodies.planar import Planar
     from .bodies.system import System

@@ -10,8 +10,8 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, TypeVar
 
-from ..errors import LandingError
-from ..text.durable import FolderLock, refuse_no_files, write_durably
+from ..errors import LandingError, reason_of
+from ..text.durable import ANOTHER_WORK, FolderLock, refuse_no_files, write_durably
 from ..text.files import check_sum, read_record
 from .global_search import GlobalSearch
 from .objective import Objective
@@ -19,7 +19,6 @@ from .objective import Objective
 T = TypeVar("T")
 NAN = float("nan")
 RESULTS = ("identified.toml", "report.md")
-ANOTHER = "name another folder by --work"
 
 
 @dataclass
@@ -93,7 +92,7 @@ class SearchFolder:
             LandingError: It holds an identification already, or files that have the names of an
                 identification's, or it is in use or cannot be written.
         """
-        self._lock = FolderLock(self.folder, ANOTHER)
+        self._lock = FolderLock(self.folder, ANOTHER_WORK)
         try:
             if os.path.lexists(self._best):
                 raise LandingError(
@@ -103,7 +102,7 @@ class SearchFolder:
             for name in (self._state.name, *RESULTS):
                 if os.path.lexists(self.folder / name):
                     raise LandingError(
-                        f"{self.folder / name} is there without {self._best.name}; {ANOTHER}"
+                        f"{self.folder / name} is there without {self._best.name}; {ANOTHER_WORK}"
                     )
         except LandingError:
             self.release()
@@ -124,11 +123,11 @@ class SearchFolder:
         if not self._best.is_file():
             raise LandingError(
                 f"there is no {self._best}; there is nothing to resume: leave --resume out, "
-                f"or {ANOTHER}"
+                f"or {ANOTHER_WORK}"
             )
-        self._lock = FolderLock(self.folder, ANOTHER)
+        self._lock = FolderLock(self.folder, ANOTHER_WORK)
         try:
-            refuse_no_files(self.folder, RESULTS, ANOTHER)
+            refuse_no_files(self.folder, RESULTS, ANOTHER_WORK)
             return self._load()
         except LandingError:
             self.release()
@@ -141,7 +140,8 @@ class SearchFolder:
             if isinstance(e, LandingError):
                 raise
             raise LandingError(
-                f"{self._best} cannot be read ({e}); there is nothing to resume: {ANOTHER}"
+                f"{self._best} cannot be read ({reason_of(e)}); "
+                f"there is nothing to resume: {ANOTHER_WORK}"
             ) from None
         if best.counting or not os.path.lexists(self._state):
             return best, None
@@ -151,7 +151,7 @@ class SearchFolder:
             if isinstance(e, LandingError):
                 raise
             raise LandingError(
-                f"{self._state} cannot be resumed ({e}); "
+                f"{self._state} cannot be resumed ({reason_of(e)}); "
                 f"remove it, and --resume searches anew from {self._best.name}"
             ) from None
 
@@ -166,7 +166,7 @@ class SearchFolder:
             if own[what] != wanted:
                 raise LandingError(
                     f"{path} is of another search, with other {what}; "
-                    "resume with the same, or name another folder by --work"
+                    f"resume with the same, or {ANOTHER_WORK}"
                 )
         found = content(kept)
         if check != whole:

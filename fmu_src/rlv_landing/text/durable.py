@@ -12,12 +12,14 @@ from hashlib import sha256
 from pathlib import Path
 from typing import BinaryIO, TextIO
 
-from ..errors import LandingError
+from ..errors import LandingError, reason_of
 
 # file systems take names of 255 bytes; a temporary name is longer than the file's own
 LONGEST_NAME = 240
 PART = ".part"
 LOCK = ".lock"
+# the remedy where the folder of a search or an envelope cannot be used
+ANOTHER_WORK = "name another folder by --work"
 # what the system says where a disk, a user's share of it, or a file takes no more
 NO_ROOM = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
 # what it says of a path that the user can change
@@ -133,8 +135,7 @@ def unwritable(
     named = error.filename2 or error.filename
     name = os.fsdecode(named) if isinstance(named, (str, bytes)) and _is_folder(path) else path
     return LandingError(
-        f"{what}{name} cannot be written: {error.strerror or error}; "
-        f"{_remedy(error, remedy, kept=kept)}"
+        f"{what}{name} cannot be written: {reason_of(error)}; {_remedy(error, remedy, kept=kept)}"
     )
 
 

@@ -18,7 +18,7 @@ from io import TextIOWrapper
 from pathlib import Path
 from typing import Any, TextIO
 
-from ..errors import LandingError
+from ..errors import LandingError, reason_of
 from .pipes import is_pipe, open_input
 from .units import is_zero
 
@@ -101,8 +101,7 @@ def unreadable(what: str, path: Path, error: Exception, start: bytes = b"") -> L
         name = next((n for mark, n in _BYTE_ORDER_MARKS.items() if start.startswith(mark)), "")
         found = f"it is {name}" if name else "it is not UTF-8"
         return LandingError(f"{what} {path} cannot be read: {found}; save it as UTF-8")
-    reason = error.strerror if isinstance(error, OSError) and error.strerror else error
-    return LandingError(f"{what} {path} cannot be read: {reason}")
+    return LandingError(f"{what} {path} cannot be read: {reason_of(error)}")
 
 
 def is_utf8(text: str) -> bool:
@@ -169,7 +168,7 @@ def parse_document(text: str, name: str) -> dict[str, Any]:
     except RecursionError:
         raise LandingError(f"{name}: tables and lists are nested too deep; {DEEPEST} fit") from None
     except tomllib.TOMLDecodeError as e:
-        raise LandingError(f"{name}: TOML syntax: {e}") from None
+        raise LandingError(f"{name}: TOML syntax: {reason_of(e)}") from None
     except ValueError:
         # Python converts no whole number of more than 4300 digits
         raise LandingError(f"{name} has {_TOO_LARGE}") from None

@@ -9,16 +9,22 @@ from typing import Any
 import click
 
 from rlv_landing.commands.number_types import Number, WholeNumber
-from rlv_landing.commands.options import check_writable, parameter_options
+from rlv_landing.commands.options import (
+    WIDE,
+    check_writable,
+    force_option,
+    parameter_options,
+    start_option,
+)
 from rlv_landing.errors import LandingError
 from rlv_landing.text.files import shown_name
 
 from ..ros.interruption import exit_on_sigterm
 from .landing_source import VehicleOptions, compute_landing, read_landing, warn_incomplete
-from .log import COMMAND_SETTINGS, EXIT_CUT
+from .log import EXIT_CUT
 
 
-@click.command(context_settings=COMMAND_SETTINGS)
+@click.command(context_settings=WIDE)
 @click.argument("files", metavar="[LOG] OUTPUT", nargs=-1, type=click.Path(path_type=Path))
 @parameter_options
 @click.option(
@@ -32,7 +38,7 @@ from .log import COMMAND_SETTINGS, EXIT_CUT
     metavar="X",
     help="Times slower than it was.",
 )
-@click.option("--start", type=Number("s"), metavar="SECONDS", help="From this simulation time on.")
+@start_option()
 @click.option(
     "--end",
     type=Number("s"),
@@ -54,7 +60,7 @@ from .log import COMMAND_SETTINGS, EXIT_CUT
     metavar="PIXELS",
     help="Of the picture.",
 )
-@click.option("--force", is_flag=True, help="Overwrite a file that exists.")
+@force_option("Overwrite a file that exists.")
 def animate(files: tuple[Path, ...], *, force: bool, **options: Any) -> None:
     """Draw a landing as a moving picture, OUTPUT.gif or OUTPUT.mp4.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,15 +10,24 @@ import click
 
 from rlv_landing.choices import parse_pairs
 from rlv_landing.commands.number_types import Number
+from rlv_landing.commands.one_landing import (
+    draw_landing,
+    landing_options,
+    landing_progress,
+    landing_text,
+)
 from rlv_landing.commands.options import (
     HELP_NAMES,
+    Group,
     check_writable,
     chosen_parameters,
+    force_option,
+    json_option,
     parameter_options,
+    set_option,
 )
 from rlv_landing.commands.printing import json_text, print_warning
 from rlv_landing.errors import LandingError
-from rlv_landing.text.durable import writing
 from rlv_landing.text.files import shown_name
 
 from ..ros.interruption import interrupt_on_sigterm
@@ -35,7 +43,7 @@ FILE = click.argument("file", type=click.Path(path_type=Path))
 NEEDED = ("pythonfmu", "fmpy", "latex2mathml")
 
 
-@click.group(context_settings=HELP_NAMES)
+@click.group(cls=Group, context_settings=HELP_NAMES)
 def fmu() -> None:
     """Build the FMU of your own vehicle, look into an FMU, land one. Needs no ROS 2.
 
@@ -82,7 +90,7 @@ def fmu() -> None:
     type=click.Path(path_type=Path),
     help="The FMU [default: NAME.fmu].",
 )
-@click.option("--force", is_flag=True, help="Overwrite a file that exists.")
+@force_option("Overwrite a file that exists.")
 def build(
     *,
     output: Path | None,
@@ -146,7 +154,7 @@ def _source(preset: str | None, file: str | None, pairs: tuple[str, ...]) -> str
 
 @fmu.command(context_settings=HELP_NAMES)
 @FILE
-@click.option("--json", "as_json", is_flag=True, help="As JSON; starts in the unit given.")
+@json_option("Print as JSON; starts in the unit given.")
 def info(file: Path, *, as_json: bool) -> None:
     """Show what is in an FMU: model, platforms, GUID, and every variable with unit and start.
 
@@ -176,38 +184,11 @@ def info(file: Path, *, as_json: bool) -> None:
     help="Inputs over time: columns time [s], external.force_x [kN], ...; linear between rows. "
     "Or a constant one; repeat.",
 )
-@click.option(
-    "--set",
-    "pairs",
-    metavar="NAME=VALUE",
-    multiple=True,
-    help='Set one parameter, SI or with a unit: drop.tilt="-2 deg". Repeat.',
-)
+@set_option()
 @click.option(
     "--until", type=Number("s"), metavar="S", help="End time [s] [default: the FMU's own]."
 )
-@click.option(
-    "--every",
-    type=Number("s"),
-    default=1e-3,
-    show_default=True,
-    metavar="S",
-    help="Time between samples [s].",
-)
-@click.option(
-    "--output",
-    metavar="FILE.csv|.parquet",
-    type=click.Path(path_type=Path),
-    help="Write every output at every sample (SI units).",
-)
-@click.option(
-    "--plot",
-    metavar="FILE.png",
-    type=click.Path(path_type=Path),
-    help="Draw forces, strokes and acceleration.",
-)
-@click.option("--json", "as_json", is_flag=True, help="Print outcome and peaks as JSON.")
-@click.option("--force", is_flag=True, help="Overwrite files that exist.")
+@landing_options("FILE.csv|.parquet")
 def simulate(
     file: Path,
     *,
@@ -231,10 +212,8 @@ def simulate(
     130 interrupted.
     """
     from rlv_landing.audit.transverse import warning_of
-    from rlv_landing.summary import summarise
-    from rlv_landing.tables.landing import summary_table
 
-    from ..logs.export import ENDINGS
+    from ..logs.export import ENDINGS, write_history
 
     if output is not None and output.suffix not in ENDINGS:
         raise LandingError(f"{output} must end in {' or '.join(ENDINGS)}")
@@ -245,27 +224,15 @@ def simulate(
     print_warning(warning_of(history))
     assert history.parameters is not None
     title = f"{name}: {history.parameters.drop.mode} landing"
-    printed = json_text(summarise(history)) + "\n" if as_json else summary_table(history, title)
-    _write(history, output, plot, title)
-    click.echo(printed, nl=False)
-
-
-def _write(history: History, output: Path | None, plot: Path | None, title: str) -> None:
+    printed = landing_text(history, title, as_json=as_json)
     if output is not None:
-        from ..logs.export import write_history
-
         write_history(history, output)
-    if plot is not None:
-        from rlv_landing.figures.plots import save_overview
-
-        with writing(plot):
-            save_overview(history, plot, title)
+    draw_landing(history, plot, title)
+    click.echo(printed, nl=False)
 
 
 def _landed(file: Path, options: dict[str, Any]) -> tuple[History, str]:
     """The landing that the options choose, with progress on a terminal; the model's name."""
-    from tqdm import tqdm
-
     from rlv_landing.parameters import PARAMETER_QUANTITIES
 
     from ..fmu.description import read_description, vehicle_of
@@ -278,16 +245,8 @@ def _landed(file: Path, options: dict[str, Any]) -> tuple[History, str]:
     until = options["until"]
     if until is None:
         until = _own_end(description, file)
-    with tqdm(
-        total=until,
-        unit="s",
-        desc="landing",
-        disable=not sys.stderr.isatty(),
-        bar_format="{l_bar}{bar}| {n:.2f}/{total:.2f} s",
-    ) as bar:
-        history = land_fmu(
-            file, parameters, inputs, until, options["every"], lambda t: bar.update(t - bar.n)
-        )
+    with landing_progress(until) as show_progress:
+        history = land_fmu(file, parameters, inputs, until, options["every"], show_progress)
     return history, description.modelName
 
 

@@ -5,41 +5,42 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from typing import Any
 
 import click
 
 from rlv_landing.commands.number_types import Number
-from rlv_landing.commands.options import check_writable
+from rlv_landing.commands.options import (
+    HELP_NAMES,
+    WIDE,
+    Group,
+    check_writable,
+    force_option,
+    json_option,
+    plot_option,
+    start_option,
+)
 from rlv_landing.errors import LandingError, one_line
 from rlv_landing.text.durable import writing
 from rlv_landing.text.files import shown_name
 
 from ..logs.libraries import require_log_readers
 
-COMMAND_SETTINGS: dict[str, Any] = {"max_content_width": 120}
 EXIT_DIFFERS = 1
 EXIT_CUT = 3
 LOG = click.argument("log", type=click.Path(path_type=Path))
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=Group, context_settings=HELP_NAMES)
 def log() -> None:
     """Look into recorded logs, repeat their runs, rescue what is cut, export. Needs no ROS 2.
 
     LOG is a log's folder or its .mcap file (.mcap.part: not finished by its writer).
     """
-    require_log_readers()
 
 
-@log.command(context_settings=COMMAND_SETTINGS)
+@log.command(context_settings=WIDE)
 @LOG
-@click.option(
-    "--json",
-    "as_json",
-    is_flag=True,
-    help="As JSON: times in s, forces in N, strokes in m, accelerations in m/s2.",
-)
+@json_option("Print as JSON: times in s, forces in N, strokes in m, accelerations in m/s2.")
 @click.option("--check", is_flag=True, help="Read every byte, and find damage within it.")
 def info(log: Path, *, as_json: bool, check: bool) -> None:
     """Show the contents of a log: topics, parameters, outcome and peaks of the landing.
@@ -54,6 +55,7 @@ def info(log: Path, *, as_json: bool, check: bool) -> None:
 
     Exit codes: 0 complete, 2 no such log or not MCAP, 3 read but cut or damaged.
     """
+    require_log_readers()
     from ..logs.bag_reader import open_log
     from ..logs.info import log_info
 
@@ -63,7 +65,7 @@ def info(log: Path, *, as_json: bool, check: bool) -> None:
         warn_incomplete_and_exit(log, found.damage)
 
 
-@log.command(context_settings=COMMAND_SETTINGS)
+@log.command(context_settings=WIDE)
 @LOG
 @click.option(
     "--fmu",
@@ -71,7 +73,7 @@ def info(log: Path, *, as_json: bool, check: bool) -> None:
     metavar="FILE",
     help="Repeat with this FMU instead of the Python model.",
 )
-@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+@json_option()
 def verify(log: Path, fmu: Path | None, *, as_json: bool) -> None:
     """Repeat the run from the log's own parameters and compare every field of every sample.
 
@@ -86,6 +88,7 @@ def verify(log: Path, fmu: Path | None, *, as_json: bool) -> None:
 
     Exit codes: 0 the same, 1 differs, 2 the log cannot be repeated.
     """
+    require_log_readers()
     from ..logs.bag_reader import open_log
     from ..logs.verification.verify import verify as compare
 
@@ -99,7 +102,7 @@ def verify(log: Path, fmu: Path | None, *, as_json: bool) -> None:
         sys.exit(EXIT_DIFFERS)
 
 
-@log.command(context_settings=COMMAND_SETTINGS)
+@log.command(context_settings=WIDE)
 @LOG
 @click.option(
     "--output",
@@ -107,7 +110,7 @@ def verify(log: Path, fmu: Path | None, *, as_json: bool) -> None:
     metavar="FOLDER",
     help="Default: beside the log, its name with -recovered.",
 )
-@click.option("--json", "as_json", is_flag=True, help="As JSON.")
+@json_option()
 def recover(log: Path, output: Path | None, *, as_json: bool) -> None:
     """Recover a cut or damaged log: copy all that is whole to a new log that every reader opens.
 
@@ -121,6 +124,7 @@ def recover(log: Path, output: Path | None, *, as_json: bool) -> None:
     Exit codes: 0 recovered, or nothing to recover; 2 nothing whole in it, or the new log cannot be
     written.
     """
+    require_log_readers()
     from ..logs.recover import recover as restore
 
     found = restore(log, output)
@@ -132,7 +136,7 @@ def recover(log: Path, output: Path | None, *, as_json: bool) -> None:
         click.echo(found.text())
 
 
-@log.command(context_settings=COMMAND_SETTINGS)
+@log.command(context_settings=WIDE)
 @LOG
 @click.argument("output", type=click.Path(path_type=Path), required=False)
 @click.option(
@@ -141,7 +145,7 @@ def recover(log: Path, output: Path | None, *, as_json: bool) -> None:
     metavar="NAME[,NAME...]",
     help="Columns of these topics only, full or relative names. Repeatable.",
 )
-@click.option("--start", type=Number("s"), metavar="SECONDS", help="From this simulation time on.")
+@start_option()
 @click.option("--end", type=Number("s"), metavar="SECONDS", help="Up to this simulation time.")
 @click.option(
     "--every",
@@ -149,13 +153,8 @@ def recover(log: Path, output: Path | None, *, as_json: bool) -> None:
     metavar="SECONDS",
     help="Only the first instant in each of these. Default: all.",
 )
-@click.option(
-    "--plot",
-    type=click.Path(path_type=Path),
-    metavar="FILE.png",
-    help="Draw forces, strokes and acceleration.",
-)
-@click.option("--force", is_flag=True, help="Overwrite files that exist.")
+@plot_option()
+@force_option()
 def export(
     log: Path,
     output: Path | None,
@@ -178,6 +177,7 @@ def export(
 
     Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged.
     """
+    require_log_readers()
     from rlv_landing.history import History
 
     from ..fmu.peaks import known_extremes

@@ -12,14 +12,14 @@ from typing import Any
 import click
 
 from rlv_landing.commands.number_types import WholeNumber
-from rlv_landing.commands.options import check_writable, parameter_options
-from rlv_landing.errors import LandingError
+from rlv_landing.commands.options import WIDE, check_writable, force_option, parameter_options
+from rlv_landing.errors import LandingError, reason_of
 
 from ..messages.topics import check_namespace
 from ..ros.interruption import exit_on_sigterm
 from ..ros.setup import StopFlag, require_ros
 from .landing_source import VehicleOptions, read_landing, warn_incomplete
-from .log import COMMAND_SETTINGS, EXIT_CUT
+from .log import EXIT_CUT
 
 PORT = 9090
 # Period of checking for signals [s].
@@ -34,7 +34,7 @@ class ServerOptions:
     no_browser: bool
 
 
-@click.command(context_settings=COMMAND_SETTINGS)
+@click.command(context_settings=WIDE)
 @click.argument("log", required=False, type=click.Path(path_type=Path))
 @parameter_options
 @click.option(
@@ -59,7 +59,7 @@ class ServerOptions:
     metavar="FILE.rrd",
     help="Write a recording for the Rerun viewer, serve nothing.",
 )
-@click.option("--force", is_flag=True, help="Overwrite a file that exists.")
+@force_option("Overwrite a file that exists.")
 def view(log: Path | None, *, save: Path | None, force: bool, **options: Any) -> None:
     """Show a landing in a browser: the vehicle in space beside force, stroke, pitch and speed.
 
@@ -117,7 +117,8 @@ def require_viewer() -> None:
         import rerun_cli  # noqa: F401
     except ImportError as e:
         raise LandingError(
-            f'the viewer is missing ({e}); install it with pip install "rlv-landing[view]"'
+            f"the viewer is missing ({reason_of(e)}); "
+            'install it with pip install "rlv-landing[view]"'
         ) from None
 
 

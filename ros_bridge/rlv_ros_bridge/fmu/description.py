@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, reason_of
 from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
 from rlv_landing.quantities import (
     INPUT_NAMES,
@@ -47,7 +47,7 @@ def open_description(path: Path) -> Any:
     try:
         found = path.is_file()
     except OSError as e:
-        raise LandingError(f"FMU {path} cannot be read: {e.strerror or e}") from None
+        raise LandingError(f"FMU {path} cannot be read: {reason_of(e)}") from None
     if not found:
         raise LandingError(
             f"there is no FMU {path}; build it by `rlv-landing fmu build`, or name another"
@@ -74,9 +74,7 @@ def open_description(path: Path) -> Any:
             f"{path} is not an FMU: it is no zip archive with a modelDescription.xml in it"
         ) from None
     except Exception as e:
-        raise LandingError(
-            f"{path} is not an FMU that can be read: {' '.join(str(e).split())}"
-        ) from None
+        raise LandingError(f"{path} is not an FMU that can be read: {reason_of(e)}") from None
 
 
 def check_size(path: Path) -> None:

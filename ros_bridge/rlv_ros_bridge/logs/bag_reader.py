@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, reason_of
 
 from .log_files import FINISHED, UNFINISHED
 from .reader import Channel, LogMessage, LogReader
@@ -64,9 +64,7 @@ class BagReader(LogReader):
             raise self._error(e) from None
 
     def _error(self, e: Exception) -> LandingError:
-        return LandingError(
-            f"{self.path} cannot be read as a rosbag2 recording: {' '.join(str(e).split())}"
-        )
+        return LandingError(f"{self.path} cannot be read as a rosbag2 recording: {reason_of(e)}")
 
     def read_summary(self) -> bool:
         """False: such a recording has nothing of a landing in its metadata."""

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from rlv_landing import __version__
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, reason_of
 from rlv_landing.text.durable import write_durably
 from rlv_landing.text.files import is_utf8
 
@@ -222,7 +222,7 @@ def make_folder(folder: Path) -> list[Path]:
         for path in made:
             path.rmdir()
         raise LandingError(
-            f"log folder {folder} cannot be made: {e.strerror or e}; name one that can be written"
+            f"log folder {folder} cannot be made: {reason_of(e)}; name one that can be written"
         ) from None
 
 

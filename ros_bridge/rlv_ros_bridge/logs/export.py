@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, reason_of
 from rlv_landing.history import History
 from rlv_landing.outputs import Extreme
 from rlv_landing.presets import to_toml
@@ -86,7 +86,8 @@ def _write_parquet(
         from pyarrow import parquet
     except ImportError as e:
         raise LandingError(
-            f'Parquet needs pyarrow ({e}); install it with pip install "rlv-landing[mcap]", '
+            f"Parquet needs pyarrow ({reason_of(e)}); "
+            'install it with pip install "rlv-landing[mcap]", '
             "or export to .csv"
         ) from None
     writer = None

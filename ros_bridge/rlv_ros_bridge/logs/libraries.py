@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, reason_of
 
 
 def require_log_readers() -> None:
@@ -17,6 +17,6 @@ def require_log_readers() -> None:
         import rosbags  # noqa: F401
     except ImportError as e:
         raise LandingError(
-            f"reading logs needs mcap and rosbags ({e}); "
+            f"reading logs needs mcap and rosbags ({reason_of(e)}); "
             'install them with pip install "rlv-landing[mcap]"'
         ) from None

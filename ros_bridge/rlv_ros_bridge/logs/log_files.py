@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, reason_of
 
 from .mcap_files.records import HEADER, MAGIC, RECORD_HEAD
 
@@ -29,7 +29,7 @@ def find_files(path: Path) -> list[Path]:
             key=_number,
         )
     except OSError as e:
-        raise LandingError(f"{path} cannot be read: {e.strerror or e}") from None
+        raise LandingError(f"{path} cannot be read: {reason_of(e)}") from None
     if not files:
         raise LandingError(f"{path} holds no .mcap file; name a log's folder or its .mcap file")
     return files
@@ -59,7 +59,7 @@ def check_file(file: Path) -> None:
             length = int.from_bytes(start[len(MAGIC) + 1 :], "little")
             whole = file.stat().st_size >= len(MAGIC) + RECORD_HEAD.size + length
     except OSError as e:
-        raise LandingError(f"{file} cannot be read: {e.strerror or e}") from None
+        raise LandingError(f"{file} cannot be read: {reason_of(e)}") from None
     if not start:
         raise LandingError(f"{file} is empty; nothing was recorded")
     if not MAGIC.startswith(start[: len(MAGIC)]):

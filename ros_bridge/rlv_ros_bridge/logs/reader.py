@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from rlv_landing.errors import LandingError, unknown
+from rlv_landing.errors import LandingError, reason_of, unknown
 from rlv_landing.parameters import Parameters
 
 from ..messages.topics import STRUTS
@@ -195,7 +195,7 @@ class LogReader:
             decode = DecoderFactory().decoder_for("cdr", self._schemas.get(topic))
         except Exception as e:
             raise LandingError(
-                f"{self.path}: the definition of {topic} cannot be read: {' '.join(str(e).split())}"
+                f"{self.path}: the definition of {topic} cannot be read: {reason_of(e)}"
             ) from None
         if decode is None:
             raise LandingError(

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, reason_of
 from rlv_landing.text.durable import unwritable
 
 from ..messages.definitions import Definition, definition
@@ -151,7 +151,7 @@ class Recorder:
         try:
             self._chunk.add_sample(log_time_ns, records)
         except OSError as e:
-            self._fail(e.strerror or str(e))
+            self._fail(reason_of(e))
             return
         self._samples += 1
         self._span.add(log_time_ns)
@@ -172,7 +172,7 @@ class Recorder:
         try:
             self._chunk.add(self._channels[topic], entry.count & 0xFFFFFFFF, log_time_ns, data)
         except OSError as e:
-            self._fail(e.strerror or str(e))
+            self._fail(reason_of(e))
             return
         entry.count += 1
         self._span.add(log_time_ns)
@@ -191,7 +191,7 @@ class Recorder:
             if not self._bag.file_exists():
                 self._fail("the file was removed or moved away")
         except OSError as e:
-            self._fail(e.strerror or str(e))
+            self._fail(reason_of(e))
 
     def close(
         self, peaks: Mapping[str, str] | None = None, landing: Mapping[str, str] | None = None
@@ -217,7 +217,7 @@ class Recorder:
                         self._bag.mcap.add_metadata(name, dict(texts))
                 self._bag.finish()
         except OSError as e:
-            self._fail(e.strerror or str(e))
+            self._fail(reason_of(e))
         finally:
             self._bag.abandon()
 

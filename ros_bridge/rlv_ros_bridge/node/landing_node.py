@@ -18,7 +18,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
 from rlv_landing.audit.transverse import joint_warning
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, reason_of
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES
 
@@ -44,6 +44,12 @@ SUCCESS, FAILURE, ERROR = (
 )
 # Shortest time between two warnings of one kind [s].
 WARN_SECONDS = 1.0
+
+
+def _as_landing_error(error: Exception) -> LandingError:
+    if isinstance(error, LandingError):
+        return error
+    return LandingError(f"{type(error).__name__}: {reason_of(error)}")
 
 
 class LandingNode(LifecycleNode):
@@ -131,10 +137,8 @@ class LandingNode(LifecycleNode):
         try:
             action()
             return SUCCESS
-        except LandingError as e:
-            self.failure = e
         except Exception as e:
-            self.failure = LandingError(f"{type(e).__name__}: {e}")
+            self.failure = _as_landing_error(e)
         # With `autostart` the command prints the error.
         if not self.values["autostart"]:
             self.get_logger().error(str(self.failure))
@@ -204,9 +208,7 @@ class LandingNode(LifecycleNode):
                 landing.close_log()
                 self.ended.set()
         except Exception as e:
-            self._landing_error = (
-                e if isinstance(e, LandingError) else LandingError(f"{type(e).__name__}: {e}")
-            )
+            self._landing_error = _as_landing_error(e)
             # Transitions must run in the executor's thread.
             if self.executor is not None:
                 self.executor.create_task(self.trigger_deactivate)

@@ -20,7 +20,7 @@ from rclpy.validate_full_topic_name import validate_full_topic_name
 from std_srvs.srv import Trigger
 from tqdm import tqdm
 
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, reason_of
 
 from ..logs.reader import LogMessage, LogReader
 from ..messages import topics as landing_topics
@@ -300,7 +300,7 @@ def _check_name(name: str) -> None:
     try:
         validate_full_topic_name(name)
     except InvalidTopicNameException as e:
-        raise LandingError(f"{name!r} cannot be a topic: {' '.join(str(e).split())}") from None
+        raise LandingError(f"{name!r} cannot be a topic: {reason_of(e)}") from None
 
 
 def replay(options: ReplayOptions, ros_args: Sequence[str], stop: StopFlag) -> ReplaySummary:

@@ -6,13 +6,13 @@ from typing import Any
 
 import click
 
+from rlv_landing.commands.options import WIDE
 from rlv_landing.errors import LandingError, nearest
 
 # Click settings of commands that hand `--ros-args ...` on to ROS 2.
 ROS_COMMAND_SETTINGS: dict[str, Any] = {
+    **WIDE,
     "ignore_unknown_options": True,
-    "help_option_names": ["-h", "--help"],
-    "max_content_width": 120,
 }
 
 

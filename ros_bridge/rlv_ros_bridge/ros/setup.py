@@ -13,7 +13,7 @@ from pathlib import Path
 from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any
 
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, reason_of
 from rlv_landing.text.files import read_text
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def require_ros() -> None:
         import rclpy  # noqa: F401
     except ImportError as e:
         raise LandingError(
-            f'ROS 2 is missing ({e}); install it with pip install "rlv-landing[ros]", '
+            f'ROS 2 is missing ({reason_of(e)}); install it with pip install "rlv-landing[ros]", '
             "or source your ROS 2"
         ) from None
 
@@ -100,7 +100,7 @@ def ros_context(args: Sequence[str] = ()) -> Iterator[Any]:
         try:
             rclpy.init(args=["rlv-landing", *own], signal_handler_options=SignalHandlerOptions.NO)
         except Exception as e:
-            raise LandingError(f"ROS 2 does not start: {' '.join(str(e).split())}") from None
+            raise LandingError(f"ROS 2 does not start: {reason_of(e)}") from None
     try:
         yield rclpy
     finally:

@@ -27,7 +27,7 @@ from urllib.request import urlopen
 
 import rerun_cli
 
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, reason_of
 
 LOOPBACK = "127.0.0.1"
 PR_SET_PDEATHSIG = 1
@@ -107,7 +107,7 @@ class ViewerServer:
         except (OSError, subprocess.CalledProcessError) as e:
             self.close()
             raise LandingError(
-                f"Rerun's viewer does not start: {e}; "
+                f"Rerun's viewer does not start: {reason_of(e)}; "
                 'install it again with pip install "rlv-landing[view]"'
             ) from None
         except BaseException:

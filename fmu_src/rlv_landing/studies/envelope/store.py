@@ -12,13 +12,12 @@ from typing import Any
 
 from ... import __version__
 from ...errors import LandingError
-from ...text.durable import FolderLock, unwritable
+from ...text.durable import ANOTHER_WORK, FolderLock, unwritable
 from ...text.files import check_sum
 from .boundary import Point
 from .judged_landing import JudgedLanding
 from .study import EnvelopeStudy
 
-ANOTHER = "name another folder by --work"
 # of a line
 KEYS = {"family", "i", "j", "landed", "check"}
 
@@ -44,7 +43,7 @@ class Store:
         if path is None:
             return
         self._path = path
-        self._lock = FolderLock(path.parent, ANOTHER)
+        self._lock = FolderLock(path.parent, ANOTHER_WORK)
         try:
             if path.exists() and not resume:
                 raise LandingError(
@@ -54,7 +53,7 @@ class Store:
         except BaseException as e:
             self.close()
             if isinstance(e, OSError):
-                raise unwritable(path, e, ANOTHER) from None
+                raise unwritable(path, e, ANOTHER_WORK) from None
             raise
 
     def _open(self) -> None:
@@ -63,7 +62,7 @@ class Store:
         header = (json.dumps({"study": digest}) + "\n").encode()
         path = self._path
         if path.exists() and not path.is_file():
-            raise LandingError(f"{path} is no file; {ANOTHER}")
+            raise LandingError(f"{path} is no file; {ANOTHER_WORK}")
         self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_CLOEXEC, 0o666)
         with os.fdopen(os.dup(self._file), "rb") as file:
             whole, _, torn = file.read().rpartition(b"\n")

@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from ... import __version__
-from ...errors import LandingError
+from ...errors import LandingError, reason_of
 from .extras import dask
 from .scheduler import ask_scheduler, disable_dask_logs, no_scheduler
 from .sweep import Engine, LostError, Rows
@@ -54,8 +54,7 @@ class Cluster:
 
     def _lost(self, error: BaseException) -> LostError:
         return LostError(
-            f"the cluster at {self._address} gave up: {type(error).__name__}: "
-            f"{' '.join(str(error).split())}"
+            f"the cluster at {self._address} gave up: {type(error).__name__}: {reason_of(error)}"
         )
 
     def result(self, task: Any) -> Rows:
@@ -175,7 +174,7 @@ def _check_versions(client: Any) -> None:
         found = client.run(worker_version)
     except Exception as e:
         raise LandingError(
-            f"a worker cannot run rlv-landing ({type(e).__name__}: {e}); "
+            f"a worker cannot run rlv-landing ({type(e).__name__}: {reason_of(e)}); "
             "install it in the workers' Python"
         ) from None
     for worker, version in found.items():

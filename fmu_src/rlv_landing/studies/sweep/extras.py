@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...errors import LandingError
+from ...errors import LandingError, reason_of
 
 INSTALL = 'install it with pip install "rlv-landing[studies]"'
 
@@ -20,7 +20,7 @@ def arrow() -> tuple[Any, Any]:
         from pyarrow import parquet
     except ImportError as e:
         raise LandingError(
-            f"studies keep their rows as Parquet, which needs pyarrow ({e}); {INSTALL}"
+            f"studies keep their rows as Parquet, which needs pyarrow ({reason_of(e)}); {INSTALL}"
         ) from None
     return pyarrow, parquet
 
@@ -34,5 +34,7 @@ def dask() -> Any:
     try:
         import distributed
     except ImportError as e:
-        raise LandingError(f"--scheduler needs dask and distributed ({e}); {INSTALL}") from None
+        raise LandingError(
+            f"--scheduler needs dask and distributed ({reason_of(e)}); {INSTALL}"
+        ) from None
     return distributed

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import LandingError
+from ...errors import LandingError, reason_of
 from ...text.durable import PART
 from .extras import arrow
 
@@ -38,12 +38,7 @@ def opened(path: Path) -> Iterator[Any]:
     except (pyarrow.ArrowException, OSError, ValueError, EOFError) as e:
         if isinstance(e, LandingError):
             raise
-        raise LandingError(f"{path} is damaged ({_reason(e)}); {ANEW}") from None
-
-
-def _reason(error: Exception) -> str:
-    text = (error.strerror if isinstance(error, OSError) else None) or str(error)
-    return text.split(". ")[0].strip() or type(error).__name__
+        raise LandingError(f"{path} is damaged ({reason_of(e).split('. ')[0]}); {ANEW}") from None
 
 
 def part_name(first: int) -> str:

@@ -25,7 +25,7 @@ import numpy
 import scipy
 
 from ... import __version__
-from ...errors import LandingError
+from ...errors import LandingError, reason_of
 from ...quantities import Quantity
 from ...text.durable import LOCK, PART, FolderLock, unwritable, whole_file, write_durably
 from ...text.files import read_record
@@ -139,7 +139,7 @@ class Results:
             kept = read_record(path)
         except (OSError, ValueError) as e:
             raise LandingError(
-                f"{path} cannot be read ({e}); there is nothing to resume: {ANOTHER}"
+                f"{path} cannot be read ({reason_of(e)}); there is nothing to resume: {ANOTHER}"
             ) from None
         kept_fingerprint = kept.get("fingerprint")
         if not isinstance(kept_fingerprint, str) or "points" not in kept:
@@ -154,7 +154,7 @@ class Results:
         raise LandingError(
             f"{self.folder} holds rows of another study: {', '.join(changed)} changed since. "
             f"Resume with the study as it was ({self.folder / COPY} is a copy of it), "
-            "or name another folder by --results"
+            f"or {ANOTHER}"
         )
 
     def _load(self) -> list[tuple[int, int]]:

@@ -12,7 +12,7 @@ import re
 from threading import Thread
 from typing import Any
 
-from ...errors import LandingError
+from ...errors import LandingError, reason_of
 from .extras import dask
 
 # a port, and before it a host or nothing but a scheme
@@ -41,7 +41,7 @@ def no_scheduler(address: str, timeout: float, error: BaseException | str) -> La
 def _reason(error: BaseException) -> str:
     if isinstance(error, (TimeoutError, asyncio.TimeoutError)):
         return "what is there does not answer, or nothing is"
-    text = " ".join(str(error).split()) or type(error).__name__
+    text = reason_of(error)
     # what is sent there is no message of Dask's, and read as one it means anything
     known = isinstance(error, (OSError, ImportError, ValueError))
     return text if known else f"what answers is no scheduler: {type(error).__name__}"

@@ -11,7 +11,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from ...errors import LandingError
+from ...errors import LandingError, reason_of
 from ...text.files import read_csv
 from ...text.units import UnitError, parse_number
 from ...text.values import number_in_si, split_heading, unit_of
@@ -117,7 +117,7 @@ def _parquet(path: Path) -> tuple[list[str], list[str], list[list[float | str]]]
         ]
         columns = [c.to_pylist() for c in table.columns]
     except Exception as e:
-        raise LandingError(f"table {path} cannot be read: {e}") from None
+        raise LandingError(f"table {path} cannot be read: {reason_of(e)}") from None
     return list(table.column_names), units, [[_number(v) for v in values] for values in columns]
 
 

@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import Any
 
 from ... import __version__
-from ...errors import LandingError
+from ...errors import LandingError, reason_of
 from ...history import History
 from ...landing import Landing
 from ...parameters import PARAMETER_QUANTITIES, Parameters
@@ -107,7 +107,7 @@ class Plan:
             history = self.history(landing)
             return [__version__, None, *self.measure(history, landing.statistics["rhs_calls"])]
         except Exception as e:
-            error = str(e) if isinstance(e, LandingError) else f"{type(e).__name__}: {e}"
+            error = str(e) if isinstance(e, LandingError) else f"{type(e).__name__}: {reason_of(e)}"
             return [__version__, error, *([None] * len(self.responses))]
 
 

@@ -7,10 +7,10 @@ import sys
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
-from ..binary import compile_fronts, compilers, made_of
-from ..sources import HERE, source
-from .header import neutral_header
-from .prebuilt import keep
+from .binary import compile_fronts, compilers, made_of
+from .fronts.header import neutral_header
+from .fronts.prebuilt import keep
+from .sources import HERE, source
 
 
 def compile_neutral(folder: Path) -> list[str]:
