@@ -335,7 +335,7 @@ def test_the_node_warns_once_of_a_transverse_load_that_creates_energy(
 
 def test_help_shows_without_loading_ros(tmp_path: Path) -> None:
     code = (
-        "import sys; from rlv_ros_bridge.__main__ import main\n"
+        "import sys; from rlv_ros_bridge.commands.group import main\n"
         "main(['node', '--help'], standalone_mode=False)\n"
         "print(sorted({'rclpy', 'fmpy', 'mcap'} & set(sys.modules)))"
     )

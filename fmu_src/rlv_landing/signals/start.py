@@ -1,0 +1,13 @@
+"""What a command does first; this module imports next to nothing."""
+
+import signal
+
+
+def end_at_once() -> None:
+    """Let SIGINT end the process as the system does, until another handler stands.
+
+    Python's own handler raises KeyboardInterrupt in the midst of imports, which is lost there or
+    shows a traceback. A shell tells an end by SIGINT as 130. To be called in the main thread.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
