@@ -5,9 +5,11 @@ The quasi-3D model of Yue, Lin, Zheng and Du (2022).
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
+# as in `typing`, whose import would take most of the time until Ctrl-C is answered
+TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from .errors import LandingError
     from .landing import Landing
     from .parameters import Parameters

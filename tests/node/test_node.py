@@ -86,7 +86,9 @@ def test_the_clock_is_published_at_every_step_and_carries_simulation_time(
     assert len(received["/landing/struts"]) == 101
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)]
+)
 def test_a_signal_in_mid_landing_leaves_a_complete_log(
     number: int,
     code: int,

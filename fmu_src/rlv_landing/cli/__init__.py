@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
 from ..signals.start import end_at_once
 
+# as in `typing`, whose import would take most of the time until Ctrl-C is answered
+TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from .group import cli, run
 
 __all__ = ["cli", "main", "run"]
