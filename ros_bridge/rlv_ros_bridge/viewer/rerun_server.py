@@ -15,7 +15,6 @@ import shutil
 import signal
 import socket
 import subprocess
-import tempfile
 import threading
 from collections.abc import Mapping
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -29,8 +28,11 @@ import rerun_cli
 
 from rlv_landing.errors import LandingError
 
+from ..fmu.folder import ProcessFolder
+
 LOOPBACK = "127.0.0.1"
 PR_SET_PDEATHSIG = 1
+FOLDER_PREFIX = "rlv-landing-view-"
 # What Rerun's program prints with the address of the viewer's files.
 ADDRESS_LINE = re.compile(rf"web-viewer at (http://{re.escape(LOOPBACK)}:\d+)")
 # Memory for the data that a browser gets which connects late.
@@ -87,13 +89,13 @@ class ViewerServer:
         self.data = f"rerun+http://{LOOPBACK}:{self.data_port}/proxy"
         query = f"url={quote(self.data, safe='')}&hide_welcome_screen&theme=light"
         self.address = f"http://{LOOPBACK}:{self.port}/?{query}"
-        self._folder = Path(tempfile.mkdtemp(prefix="rlv-landing-view-"))
+        self._folder = ProcessFolder(FOLDER_PREFIX)
         self._process: subprocess.Popen[str] | None = None
         self._page_server: ThreadingHTTPServer | None = None
 
     def __enter__(self) -> ViewerServer:
         try:
-            environment = private_environment(self._folder)
+            environment = private_environment(self._folder.path)
             subprocess.run(
                 [rerun_program(), "analytics", "disable"],
                 env=environment,
@@ -127,7 +129,7 @@ class ViewerServer:
         self._process = subprocess.Popen(
             [rerun_program(), "--serve-web", *arguments],
             env=environment,
-            cwd=self._folder,
+            cwd=self._folder.path,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -170,7 +172,7 @@ class ViewerServer:
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
-        shutil.rmtree(self._folder, ignore_errors=True)
+        self._folder.remove()
 
     def __exit__(
         self,
