@@ -25,7 +25,9 @@ ROOT = Path(__file__).resolve().parent.parent
 # the example's modules, as its `run.py` finds them
 sys.path.insert(0, str(ROOT / "examples" / "ship_deck"))
 # what the tests of the bridge share
-sys.path.insert(0, str(ROOT / "tests" / "bridge"))
+# what tests of other folders import, too
+for shared in ("bridge", "model"):
+    sys.path.insert(0, str(ROOT / "tests" / shared))
 
 from bridge_tools import domain, log, one_log, processes  # noqa: E402, F401
 
