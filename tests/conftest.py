@@ -24,7 +24,6 @@ from rlv_landing.validation.validate import Validation, validate
 ROOT = Path(__file__).resolve().parent.parent
 # the example's modules, as its `run.py` finds them
 sys.path.insert(0, str(ROOT / "examples" / "ship_deck"))
-# what the tests of the bridge share
 # what tests of other folders import, too
 for shared in ("bridge", "model"):
     sys.path.insert(0, str(ROOT / "tests" / shared))
