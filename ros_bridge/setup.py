@@ -26,7 +26,7 @@ setup(
     ],
     entry_points={
         "console_scripts": [
-            f"landing_node = {NAME}.node.land:main",
+            f"landing_node = {NAME}.node.start:main",
             f"bridge = {NAME}.__main__:run",
         ]
     },

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -95,8 +96,12 @@ def command(
 
     def run(*arguments: str) -> Ended:
         monkeypatch.setattr(sys, "argv", ["rlv-landing", *arguments])
-        with pytest.raises(SystemExit) as ended:
-            main()
+        usual = signal.getsignal(signal.SIGINT)
+        try:
+            with pytest.raises(SystemExit) as ended:
+                main()
+        finally:
+            signal.signal(signal.SIGINT, usual)
         captured = capsys.readouterr()
         return Ended(int(ended.value.code or 0), captured.out, captured.err)
 

@@ -3,12 +3,36 @@
 The quasi-3D model of Yue, Lin, Zheng and Du (2022).
 """
 
-from .errors import LandingError
-from .landing import Landing
-from .parameters import Parameters
+from __future__ import annotations
+
+# as in `typing`, whose import would take most of the time until Ctrl-C is answered
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from .errors import LandingError
+    from .landing import Landing
+    from .parameters import Parameters
 
 __version__ = "0.1.0"
 __all__ = ["Landing", "LandingError", "Parameters", "__version__", "load_preset"]
+# the modules of the names that are imported when they are asked for: the command line's first
+# lines come before all that takes time
+_MODULES = {"Landing": "landing", "LandingError": "errors", "Parameters": "parameters"}
+
+
+def __getattr__(name: str) -> Any:
+    """`Landing`, `LandingError` or `Parameters`."""
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
+    value = globals()[name] = getattr(import_module(f".{_MODULES[name]}", __name__), name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_MODULES})
 
 
 def load_preset(name: str, mode: str | None = None) -> Parameters:

@@ -22,12 +22,16 @@ from bridge_tools import TIMEOUT, command, environment
 SHELL = """
 import fcntl, os, signal, sys, termios
 signal.signal(signal.SIGTTOU, signal.SIG_IGN)
+# a shell passes the terminal's end on to its jobs
+signal.signal(signal.SIGHUP, lambda number, _: os.kill(child, number))
 fcntl.ioctl(0, termios.TIOCSCTTY, 0)
 child = os.fork()
 if child == 0:
     os.setpgid(0, 0)
     os.tcsetpgrp(0, os.getpid())
-    signal.signal(signal.SIGTTOU, signal.SIG_DFL)
+    # whatever the suite was started with, such as SIGHUP ignored by nohup
+    for number in (signal.SIGTTOU, signal.SIGHUP, signal.SIGINT, signal.SIGQUIT):
+        signal.signal(number, signal.SIG_DFL)
     os.close(3)
     os.execv(sys.argv[1], sys.argv[1:])
 os.write(3, f"{child}\\n".encode())
@@ -83,9 +87,16 @@ class Terminal:
             with suppress(ProcessLookupError):
                 os.kill(process, signal.SIGKILL)
         self._shell.wait(TIMEOUT)
-        os.close(self.master)
+        if self.master >= 0:
+            os.close(self.master)
         os.close(self.slave)
         self._status_pipe.close()
+
+    def close(self) -> int:
+        """Closes the terminal; the wait status of the command's end."""
+        os.close(self.master)
+        self.master = -1
+        return int(self._status_pipe.readline())
 
     def press(self, keys: str) -> None:
         """Types `keys`."""

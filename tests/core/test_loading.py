@@ -17,7 +17,7 @@ from rlv_landing import core
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 
-WITHOUT_INSPECT = "import sys; sys.modules['inspect'] = None; import rlv_landing"
+WITHOUT_INSPECT = "import sys; sys.modules['inspect'] = None; import rlv_landing.core"
 INTERRUPTED = """
 import sys
 class Interrupt:
@@ -26,7 +26,7 @@ class Interrupt:
             raise KeyboardInterrupt
 sys.modules.pop("inspect", None)
 sys.meta_path.insert(0, Interrupt())
-import rlv_landing
+import rlv_landing.core
 """
 MAIN = "from rlv_landing.cli import main; main()"
 

@@ -12,7 +12,7 @@ from rlv_landing import Landing, Parameters
 from rlv_landing.cli import run
 from rlv_landing.errors import LandingError
 from rlv_landing.quantities import OUTPUT_NAMES
-from rlv_ros_bridge.__main__ import main
+from rlv_ros_bridge.commands.group import main
 from rlv_ros_bridge.fmu.input_table import Setting, read_inputs
 from rlv_ros_bridge.fmu.landing import land_fmu
 

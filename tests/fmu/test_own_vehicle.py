@@ -19,7 +19,7 @@ from rlv_landing.cli import run
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.presets import read_toml
 from rlv_landing.quantities import OUTPUT_NAMES, flat_name
-from rlv_ros_bridge.__main__ import main
+from rlv_ros_bridge.commands.group import main
 from rlv_ros_bridge.fmu.description import own_vehicle
 from rlv_ros_bridge.logs.bag_reader import open_log
 from rlv_ros_bridge.logs.history import read_history

@@ -126,7 +126,7 @@ def searching(folder: Path, *arguments: object) -> Iterator[subprocess.Popen[str
         process.kill()
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_an_interrupted_identification_keeps_its_best_and_can_go_on(tmp_path, number):
     with searching(tmp_path) as process:
         process.send_signal(number)

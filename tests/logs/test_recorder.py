@@ -232,7 +232,7 @@ def test_a_file_has_its_temporary_name_until_it_is_finished(tmp_path: Path) -> N
 
 def test_info_on_such_a_log_needs_no_ros(one_log: Path) -> None:
     code = (
-        "import sys; from rlv_ros_bridge.__main__ import main\n"
+        "import sys; from rlv_ros_bridge.commands.group import main\n"
         "main(['log', 'info', sys.argv[1]], standalone_mode=False)\n"
         "print('rclpy' in sys.modules)"
     )

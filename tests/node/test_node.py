@@ -86,7 +86,9 @@ def test_the_clock_is_published_at_every_step_and_carries_simulation_time(
     assert len(received["/landing/struts"]) == 101
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)]
+)
 def test_a_signal_in_mid_landing_leaves_a_complete_log(
     number: int,
     code: int,
@@ -335,7 +337,7 @@ def test_the_node_warns_once_of_a_transverse_load_that_creates_energy(
 
 def test_help_shows_without_loading_ros(tmp_path: Path) -> None:
     code = (
-        "import sys; from rlv_ros_bridge.__main__ import main\n"
+        "import sys; from rlv_ros_bridge.commands.group import main\n"
         "main(['node', '--help'], standalone_mode=False)\n"
         "print(sorted({'rclpy', 'fmpy', 'mcap'} & set(sys.modules)))"
     )

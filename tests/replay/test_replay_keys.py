@@ -92,7 +92,7 @@ def test_the_terminals_settings_are_restored(
                 "\x03": 130,
                 "\x1c": -signal.SIGQUIT,
                 signal.SIGTERM: 143,
-                signal.SIGHUP: -signal.SIGHUP,
+                signal.SIGHUP: 129,
             }[end]
         )
         assert terminal.is_as_it_was

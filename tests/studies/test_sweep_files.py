@@ -21,7 +21,7 @@ def parts(folder: Path) -> list[Path]:
     return sorted((folder / "parts").glob("*.parquet"))
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
 def test_an_ended_sweep_keeps_its_rows_and_resume_makes_the_rest(tmp_path, number):
     study = write_study(tmp_path, samples=20_000)
     process = start("sweep", study, "--results", "r", "--workers", 2, cwd=tmp_path)

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from rlv_landing import LandingError
+from rlv_landing.signals.interrupts import answer
 from rlv_landing.text import pipes
 from rlv_landing.text.files import pipes_kept, read_csv, read_text
 
@@ -65,7 +66,7 @@ def test_a_wait_for_a_writer_is_told_once(pipe, monkeypatch, capsys):
     assert told_of == [f"waiting for {pipe}, to which nothing is written yet; Ctrl-C ends this"]
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_signals_end_the_wait_even_where_their_handler_only_notes_them(pipe, monkeypatch, number):
     monkeypatch.setattr(pipes, "PATIENCE", 0.01)
     monkeypatch.setattr(pipes, "print", lambda *_, **__: os.kill(os.getpid(), number), False)
@@ -74,10 +75,11 @@ def test_signals_end_the_wait_even_where_their_handler_only_notes_them(pipe, mon
     try:
         with pytest.raises(KeyboardInterrupt):
             read_text(pipe, "parameter file")
+        assert answer() == 128 + number
         os.kill(os.getpid(), number)
     finally:
         signal.signal(number, before)
-    assert noted == [number]
+    assert noted == [number, number]
 
 
 def test_ctrl_c_ends_a_command_that_waits_with_130(pipe):

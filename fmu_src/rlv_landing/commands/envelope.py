@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -12,6 +11,7 @@ import click
 
 from ..choices import parse_pairs, split_pair
 from ..errors import LandingError, one_line
+from ..signals.interrupts import answer
 from ..text.durable import ANOTHER_WORK, refuse_no_files, unwritable, writing
 from .number_types import Number, WholeNumber
 from .options import (
@@ -147,6 +147,7 @@ def envelope(
         found = _search(asked, store, workers)
         _write(found, work)
     except KeyboardInterrupt:
+        answer()
         _end("interrupted", INTERRUPTED, store, work)
     except OSError as e:
         reason = unwritable(work, e, ANOTHER_WORK, kept=True)
@@ -250,8 +251,6 @@ def _search(asked: EnvelopeStudy, store: Store, workers: int) -> Envelope:
 
     from ..studies.envelope.search import envelope as run
 
-    # SIGTERM ends as Ctrl-C does: with everything written
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     with tqdm(initial=len(store.found), unit="landing", disable=not sys.stderr.isatty()) as bar:
 
         def show_progress(family: int, count: int) -> None:

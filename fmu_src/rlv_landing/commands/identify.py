@@ -8,8 +8,9 @@ from typing import Any
 
 import click
 
+from ..signals.handlers import Hold
 from .identify_data import objective_of
-from .identify_run import Interrupts, check_effort, run, start_note
+from .identify_run import check_effort, run, start_note
 from .number_types import NumberRange, WholeNumber
 from .options import HELP_NAMES, choose, parameter_options, workers_option
 from .printing import INTERRUPTED, print_warning
@@ -162,11 +163,13 @@ def identify(work: Path, *, list_priors: bool, **options: Any) -> None:
     check_effort(options)
     objective = objective_of(options)
     print_warning(joint_warning(map(objective.free.base.for_mode, objective.modes)))
-    interrupts = Interrupts()
-    search = Search(objective, work, options["seed"], options["workers"], resume=options["resume"])
-    if not options["resume"] and (note := start_note(objective.free)):
-        click.echo(note, err=True)
-    fit = run(search, work, options, interrupts)
+    with Hold() as hold:
+        search = Search(
+            objective, work, options["seed"], options["workers"], resume=options["resume"]
+        )
+        if not options["resume"] and (note := start_note(objective.free)):
+            click.echo(note, err=True)
+        fit = run(search, work, options, hold)
     best = search.best
     click.echo(
         f"loss {best.start_loss:.3f} at the start, {best.loss:.3f} at the best of "

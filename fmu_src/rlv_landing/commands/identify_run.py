@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-import signal
 import sys
 from concurrent.futures import BrokenExecutor
 from pathlib import Path
-from types import FrameType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
 from ..errors import one_line
+from ..signals.interrupts import answer
 from ..text.durable import ANOTHER_WORK, unwritable, write_durably
 from .printing import FAILED, exit_code
 
 if TYPE_CHECKING:
     from ..identification.free_numbers import FreeNumbers
     from ..identification.identify import Search
+    from ..signals.handlers import Hold
 
 # a process with the model and its targets beyond what it shares, and both modes' landings, at least
 BYTES_PER_PROCESS = 30e6
@@ -25,33 +25,6 @@ SECONDS_PER_EVALUATION = 6e-3
 # a point of a generation with its landings' misfits; the loss of an evaluation, and its text
 BYTES_PER_POINT, BYTES_PER_EVALUATION = 3e3, 60.0
 FEWER = "take fewer: a search ends where it converges, and --resume goes on"
-
-
-class Interrupts:
-    """Ctrl-C and SIGTERM, each a KeyboardInterrupt, from `open` on: at once, or there if it came.
-
-    Python may lose one that comes inside a callback; `check` raises it then.
-    """
-
-    def __init__(self) -> None:
-        self._came = self._open = False
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, self._interrupt)
-
-    def _interrupt(self, number: int, frame: FrameType | None) -> None:
-        self._came = True
-        if self._open:
-            raise KeyboardInterrupt
-
-    def open(self) -> None:
-        """From here on an interrupt is answered."""
-        self._open = True
-        self.check()
-
-    def check(self) -> None:
-        """Raise KeyboardInterrupt where one has come."""
-        if self._came:
-            raise KeyboardInterrupt
 
 
 def check_effort(options: dict[str, Any]) -> None:
@@ -100,27 +73,28 @@ def _fail(error: Exception, work: Path) -> NoReturn:
     sys.exit(exit_code(error) if isinstance(error, OSError) else FAILED)
 
 
-def run(
-    search: Search, work: Path, options: dict[str, Any], interrupts: Interrupts
-) -> list[str] | None:
+def run(search: Search, work: Path, options: dict[str, Any], hold: Hold) -> list[str] | None:
     """Search, and write the best point and the report; the fit in short lines.
 
-    It is None where this was interrupted; the best point so far is then written.
+    It is None where this was interrupted; the best point so far is then written. Signals that
+    `hold` has noted since the search was made interrupt it at the start.
     """
     try:
         with search:
             try:
-                interrupts.open()
-                _search(search, options, interrupts)
+                hold.release()
+                _search(search, options)
                 _write_best(search, work)
                 return _report(search, work)
             except KeyboardInterrupt:
+                answer()
                 _write_best(search, work)
                 return None
             except (OSError, BrokenExecutor) as e:
                 _fail(e, work)
     except KeyboardInterrupt:
         # it came while the processes started or ended
+        answer()
         _write_best(search, work)
         return None
 
@@ -156,7 +130,7 @@ def start_note(numbers: FreeNumbers) -> str:
     )
 
 
-def _search(search: Search, options: dict[str, Any], interrupts: Interrupts) -> None:
+def _search(search: Search, options: dict[str, Any]) -> None:
     """Search, with progress on a terminal."""
     from tqdm import tqdm
 
@@ -169,7 +143,6 @@ def _search(search: Search, options: dict[str, Any], interrupts: Interrupts) -> 
     ) as bar:
 
         def show_progress(done: int, loss: float) -> None:
-            interrupts.check()
             bar.total = max(bar.total or 0, done)
             bar.update(done - bar.n)
             bar.set_postfix_str(f"{'misses' if search.best.counting else 'loss'} {loss:.2f}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from ..errors import LandingError, one_line
+from ..signals.interrupts import answer
 from ..text.durable import unwritable
 from .number_types import NumberRange
 from .options import add_options, json_option, workers_option
@@ -139,8 +139,6 @@ def run_task(task: Task, folder: Path, options: RunOptions) -> Path:
     _check_effort(task, options)
     if options.strict:
         check_all(task)
-    # SIGTERM ends as Ctrl-C does: with everything written
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     with engine_for(task.plan, options) as engine:
         results = Results(folder, task, resume=options.resume)
         return _run_or_exit(task, results, engine, strict=options.strict)
@@ -192,6 +190,7 @@ def _run_or_exit(task: Task, results: Results, engine: Engine, *, strict: bool) 
                 Sweep(task, results, show_progress, strict=strict).run(engine)
                 return results.finish()
         except KeyboardInterrupt:
+            answer()
             reason, status = "interrupted", INTERRUPTED
         except OSError as e:
             refused = unwritable(results.folder, e, "name another by --results", kept=True)

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from ..effort import check_memory
 from ..errors import LandingError
 from ..history import History
+from ..signals.handlers import ENDING
 from ..text.durable import PART, temporary_name, unwritable
 from .moving_figure import WIDTH, MovingFigure
 
@@ -221,7 +222,7 @@ def _signals_blocked() -> Iterator[None]:
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
     try:
         yield
     finally:

@@ -8,26 +8,25 @@ from __future__ import annotations
 import io
 import os
 import select
-import signal
 import stat
 import sys
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 from typing import BinaryIO, NoReturn
 
+from ..signals.handlers import Handlers
+
 # after this time [s] without a byte the user is told
 PATIENCE = 2.0
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 def open_input(path: Path) -> BinaryIO:
     """A file, pipe or terminal, open to be read.
 
     Reads of what is no regular file wait for its writer. Where nothing comes for 2 s, standard
-    error says so, once; Ctrl-C and SIGTERM end the wait.
+    error says so, once; Ctrl-C, SIGTERM and SIGHUP end the wait.
 
     Raises:
         OSError: It is missing or cannot be read.
@@ -91,18 +90,15 @@ class _Waiting(io.RawIOBase):
 
 @contextmanager
 def _interruptible() -> Iterator[None]:
-    """Signals whose handler only notes them raise KeyboardInterrupt."""
-    previous = {}
-    if threading.current_thread() is threading.main_thread():
-        previous = {n: h for n in SIGNALS if callable(h := signal.getsignal(n))}
+    """A signal that ends a command raises KeyboardInterrupt, also where it is only noted."""
+
+    def interrupt(number: int, frame: FrameType | None) -> NoReturn:
+        handlers.call_before(number, frame)
+        raise KeyboardInterrupt
+
+    handlers = Handlers(interrupt)
     try:
-        for number in previous:
-            signal.signal(number, _interrupt)
+        handlers.set()
         yield
     finally:
-        for number, handler in previous.items():
-            signal.signal(number, handler)
-
-
-def _interrupt(_number: int, _frame: FrameType | None) -> NoReturn:
-    raise KeyboardInterrupt
+        handlers.restore()

@@ -19,7 +19,6 @@ from rlv_landing.commands.options import (
 from rlv_landing.errors import LandingError
 from rlv_landing.text.files import shown_name
 
-from ..ros.interruption import exit_on_sigterm
 from .landing_source import VehicleOptions, compute_landing, read_landing, warn_incomplete
 from .log import EXIT_CUT
 
@@ -75,8 +74,8 @@ def animate(files: tuple[Path, ...], *, force: bool, **options: Any) -> None:
       rlv-landing animate logs/20260131T120000Z-2-2 landing.mp4
       rlv-landing animate --mode 1-2-1 landing.gif --slow-motion 10 --end 0.5 --view 3d
 
-    Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged, 130 or 143 ended by
-    SIGINT or SIGTERM: no file is left.
+    Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged, 130, 143 or
+    129 ended by SIGINT, SIGTERM or SIGHUP: no file is left.
     """
     from tqdm import tqdm
 
@@ -101,7 +100,7 @@ def animate(files: tuple[Path, ...], *, force: bool, **options: Any) -> None:
         history, parameters = compute_landing(vehicle, film.end)
         title = f"{parameters.drop.mode} landing"
     hidden = not sys.stderr.isatty()
-    with exit_on_sigterm(), tqdm(unit="frame", desc="drawing", disable=hidden) as bar:
+    with tqdm(unit="frame", desc="drawing", disable=hidden) as bar:
 
         def show_progress(done: int, frames: int) -> None:
             bar.total = frames

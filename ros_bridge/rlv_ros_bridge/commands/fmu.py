@@ -30,8 +30,6 @@ from rlv_landing.commands.printing import json_text, print_warning
 from rlv_landing.errors import LandingError
 from rlv_landing.text.files import shown_name
 
-from ..ros.interruption import interrupt_on_sigterm
-
 if TYPE_CHECKING:
     from rlv_landing.history import History
     from rlv_landing.parameters import Parameters
@@ -127,9 +125,7 @@ def build(
     check_writable(target, ".fmu", force=force)
     from fmu_build.build import build as build_fmu
 
-    with interrupt_on_sigterm():
-        lines = build_fmu(target, wanted)
-    click.echo("\n".join(lines))
+    click.echo("\n".join(build_fmu(target, wanted)))
 
 
 def require_build() -> None:
@@ -219,8 +215,7 @@ def simulate(
         raise LandingError(f"{output} must end in {' or '.join(ENDINGS)}")
     for path, ending in ((output, output.suffix if output else ""), (plot, ".png")):
         check_writable(path, ending, force=force)
-    with interrupt_on_sigterm():
-        history, name = _landed(file, options)
+    history, name = _landed(file, options)
     print_warning(warning_of(history))
     assert history.parameters is not None
     title = f"{name}: {history.parameters.drop.mode} landing"

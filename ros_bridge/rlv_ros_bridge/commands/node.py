@@ -118,8 +118,8 @@ def node(
       rlv-landing node --no-record --ros-args --log-level warn
       rlv-landing node --managed --ros-args --params-file landing.yaml
 
-    Exit codes: 0 landed, 1 recording failed on the way, 2 bad input, 130 or 143 after SIGINT or
-    SIGTERM (the log is complete all the same).
+    Exit codes: 0 landed, 1 recording failed on the way, 2 bad input, 130, 143 or 129 after SIGINT,
+    SIGTERM or SIGHUP (the log is complete all the same).
     """
     from ..ros.setup import StopFlag, require_ros
 

@@ -105,8 +105,8 @@ def replay(log: Path, topics: tuple[str, ...], ros_args: tuple[str, ...], **opti
       rlv-landing replay run1 --topics applied/ground --remap applied/ground:=ground
           (moves the ground of another landing)
 
-    Exit codes: 0 played, or ended by q, 2 bad input, 3 played but the log is cut, 130 or 143 after
-    SIGINT or SIGTERM.
+    Exit codes: 0 played, or ended by q, 2 bad input, 3 played but the log is cut, 130, 143 or 129
+    after SIGINT, SIGTERM or SIGHUP.
     """
     from ..ros.setup import StopFlag, require_ros
 

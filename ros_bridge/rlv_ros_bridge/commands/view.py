@@ -16,7 +16,6 @@ from rlv_landing.commands.options import WIDE, check_writable, force_option, par
 from rlv_landing.errors import LandingError, reason_of
 
 from ..messages.topics import check_namespace
-from ..ros.interruption import exit_on_sigterm
 from ..ros.setup import StopFlag, require_ros
 from .landing_source import VehicleOptions, read_landing, warn_incomplete
 from .log import EXIT_CUT
@@ -83,8 +82,8 @@ def view(log: Path | None, *, save: Path | None, force: bool, **options: Any) ->
 
     A live recording ends with a signal, or when the landing is reset, and is complete then.
 
-    Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged, 130 or 143 ended by
-    SIGINT or SIGTERM.
+    Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged, 130, 143 or
+    129 ended by SIGINT, SIGTERM or SIGHUP.
     """
     vehicle = VehicleOptions.take(options)
     server = ServerOptions(options["port"], options["no_browser"])
@@ -96,13 +95,12 @@ def view(log: Path | None, *, save: Path | None, force: bool, **options: Any) ->
             "live topics need no vehicle named; leave --preset, --parameters, --mode and --set out"
         )
     require_viewer()
-    with exit_on_sigterm():
-        if log is not None:
-            code = _show_log(log, vehicle, save, server)
-        elif save is not None:
-            code = _save_live(namespace, save)
-        else:
-            code = _show_live(namespace, server)
+    if log is not None:
+        code = _show_log(log, vehicle, save, server)
+    elif save is not None:
+        code = _save_live(namespace, save)
+    else:
+        code = _show_live(namespace, server)
     sys.exit(code)
 
 

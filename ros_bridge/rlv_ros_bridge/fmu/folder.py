@@ -1,4 +1,4 @@
-"""The temporary folder of an unpacked FMU, and the removal of folders of dead processes."""
+"""Temporary folders that live as long as their process, and the removal of dead ones'."""
 
 from __future__ import annotations
 
@@ -9,19 +9,21 @@ import tempfile
 from contextlib import suppress
 from pathlib import Path
 
-PREFIX = "rlv-landing-fmu-"
 LOCK = "lock"
 
 
-class FmuFolder:
+class ProcessFolder:
     """A new temporary folder `path`, locked as long as this process lives.
 
-    Making one also removes the folders of dead processes.
+    Making one also removes the folders of dead processes with the same prefix.
+
+    Args:
+        prefix: of its name.
     """
 
-    def __init__(self) -> None:
-        remove_stale()
-        self.path = Path(tempfile.mkdtemp(prefix=f"{PREFIX}{os.getpid()}-"))
+    def __init__(self, prefix: str) -> None:
+        remove_stale(prefix)
+        self.path = Path(tempfile.mkdtemp(prefix=f"{prefix}{os.getpid()}-"))
         new = self.path / f"{LOCK}.new"
         self._lock = os.open(new, os.O_CREAT | os.O_EXCL | os.O_RDWR | os.O_CLOEXEC)
         fcntl.flock(self._lock, fcntl.LOCK_EX)
@@ -34,12 +36,12 @@ class FmuFolder:
         os.close(self._lock)
 
 
-def remove_stale() -> None:
+def remove_stale(prefix: str) -> None:
     """Removes the folders whose lock is free: those of dead processes.
 
     Folders of other users, and those that cannot be removed, stay.
     """
-    for lock in Path(tempfile.gettempdir()).glob(f"{PREFIX}*/{LOCK}"):
+    for lock in Path(tempfile.gettempdir()).glob(f"{prefix}*/{LOCK}"):
         with suppress(OSError):
             # in a folder that all may write to, somebody's link is not followed
             file = os.open(lock, os.O_RDWR | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)

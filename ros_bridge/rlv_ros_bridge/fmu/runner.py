@@ -24,8 +24,9 @@ from rlv_landing.quantities import (
 from rlv_landing.text.durable import writing
 
 from .description import MODEL_NAME, check_size, read_description, references
-from .folder import FmuFolder
+from .folder import ProcessFolder
 
+FOLDER_PREFIX = "rlv-landing-fmu-"
 # fmi2Status.
 WARNING, FATAL = 1, 4
 # Argument types of the FMI functions that are called at every step. Arrays are passed by address.
@@ -59,7 +60,7 @@ class FmuRunner:
         self._reals: Any = None
         # Integer and Boolean outputs: index in a sample, array of values, index in that array.
         self._not_real: list[tuple[int, Any, int]] = []
-        self._folder: FmuFolder | None = None
+        self._folder: ProcessFolder | None = None
         description = read_description(self.path)
         self.guid: str = description.guid
         self.version: str = description.version or ""
@@ -80,7 +81,7 @@ class FmuRunner:
         from fmpy.fmi2 import FMU2Slave
 
         with writing(Path(gettempdir()), "name another folder by TMPDIR"):
-            self._folder = FmuFolder()
+            self._folder = ProcessFolder(FOLDER_PREFIX)
             unpacked = str(self._folder.path)
             try:
                 check_size(self.path)

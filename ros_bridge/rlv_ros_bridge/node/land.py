@@ -9,6 +9,7 @@ from typing import Any
 from rclpy.lifecycle import TransitionCallbackReturn
 
 from rlv_landing.errors import LandingError
+from rlv_landing.signals.interrupts import answer
 
 from ..ros.setup import StopFlag, ros_context
 from ..ros.spinner import Spinner
@@ -111,7 +112,7 @@ def main() -> int:
         return 2
     except KeyboardInterrupt:
         # while a parameter file was waited for
-        return 130
+        return answer()
     if summary is None:
         return 128 + stop.number if stop.number else 0
     return 128 + summary.signal if summary.signal else 1 if summary.recording_error else 0

@@ -27,8 +27,6 @@ KEYS = {
 KEY = re.compile(b"|".join(map(re.escape, KEYS)))
 # The first bytes of a key whose last byte has not arrived yet.
 PARTIAL_KEY = re.compile(rb"\x1b[\[O]?\Z")
-# Signals that end a process without a handler.
-END_SIGNALS = (signal.SIGHUP, signal.SIGQUIT)
 
 
 class Keyboard:
@@ -37,8 +35,8 @@ class Keyboard:
     There are no keys where standard input is no terminal, where another program is in the
     terminal's foreground, and outside the main thread, in which alone Python handles signals.
 
-    The terminal's settings are restored at the end, also on an error, on SIGHUP and SIGQUIT, and
-    while the process is stopped by Ctrl-Z. Ctrl-C stays a signal.
+    The terminal's settings are restored at the end, also on an error, on SIGQUIT, and while
+     the process is stopped by Ctrl-Z. Ctrl-C stays a signal.
     """
 
     def __init__(self) -> None:
@@ -63,9 +61,12 @@ class Keyboard:
             # No standard input, or a terminal that does not control this process.
             return self
         self._fd = fd
-        for number in (*END_SIGNALS, signal.SIGTSTP):
-            handler = self._on_suspend if number == signal.SIGTSTP else self._on_end
-            self._handlers[number] = signal.signal(number, handler)
+        for number, handler in (
+            (signal.SIGQUIT, self._on_end),
+            (signal.SIGTSTP, self._on_suspend),
+        ):
+            if signal.getsignal(number) is not signal.SIG_IGN:
+                self._handlers[number] = signal.signal(number, handler)
         try:
             self._read_single_keys()
         except BaseException:

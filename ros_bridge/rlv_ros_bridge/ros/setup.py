@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import os
-import signal
 import tempfile
-import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -14,6 +12,7 @@ from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any
 
 from rlv_landing.errors import LandingError, reason_of
+from rlv_landing.signals.handlers import Handlers
 from rlv_landing.text.files import read_text
 
 if TYPE_CHECKING:
@@ -26,18 +25,17 @@ ACKNOWLEDGE_INTERRUPTED_SECONDS = 0.2
 # Periods of checking for a signal and for matched subscriptions [s].
 SIGNAL_POLL_SECONDS = 0.05
 MATCH_POLL_SECONDS = 0.01
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class StopFlag:
-    """Notes SIGINT and SIGTERM while it is entered, so that the loop ends after a whole step.
+    """Notes SIGINT, SIGTERM and SIGHUP while it is entered: the loop ends after a whole step.
 
     `number` is the number of the first signal, or 0.
     """
 
     def __init__(self) -> None:
         self.number = 0
-        self._previous: dict[int, Any] = {}
+        self._handlers = Handlers(self._note)
 
     def __bool__(self) -> bool:
         return self.number != 0
@@ -52,10 +50,7 @@ class StopFlag:
         self.number = self.number or number
 
     def __enter__(self) -> StopFlag:
-        # Python can set signal handlers in the main thread only; in another the host's stay.
-        if threading.current_thread() is threading.main_thread():
-            for number in SIGNALS:
-                self._previous[number] = signal.signal(number, self._note)
+        self._handlers.set()
         return self
 
     def __exit__(
@@ -64,9 +59,7 @@ class StopFlag:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        for number, handler in self._previous.items():
-            signal.signal(number, handler)
-        self._previous = {}
+        self._handlers.restore()
 
 
 def require_ros() -> None:

@@ -11,26 +11,24 @@ from __future__ import annotations
 import ctypes
 import os
 import re
-import shutil
 import signal
 import socket
 import subprocess
-import tempfile
 import threading
 from collections.abc import Mapping
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from types import TracebackType
-from urllib.error import URLError
-from urllib.parse import quote, urlsplit
-from urllib.request import urlopen
+from urllib.parse import quote
 
 import rerun_cli
 
 from rlv_landing.errors import LandingError, reason_of
 
-LOOPBACK = "127.0.0.1"
+from ..fmu.folder import ProcessFolder
+from .page_server import LOOPBACK, PageServer
+
 PR_SET_PDEATHSIG = 1
+FOLDER_PREFIX = "rlv-landing-view-"
 # What Rerun's program prints with the address of the viewer's files.
 ADDRESS_LINE = re.compile(rf"web-viewer at (http://{re.escape(LOOPBACK)}:\d+)")
 # Memory for the data that a browser gets which connects late.
@@ -85,15 +83,15 @@ class ViewerServer:
         for wanted in (self.port, self.data_port):
             require_free(wanted)
         self.data = f"rerun+http://{LOOPBACK}:{self.data_port}/proxy"
-        query = f"url={quote(self.data, safe='')}&hide_welcome_screen&theme=light"
-        self.address = f"http://{LOOPBACK}:{self.port}/?{query}"
-        self._folder = Path(tempfile.mkdtemp(prefix="rlv-landing-view-"))
+        self._query = f"url={quote(self.data, safe='')}&hide_welcome_screen&theme=light"
+        self.address = f"http://{LOOPBACK}:{self.port}/?{self._query}"
+        self._folder = ProcessFolder(FOLDER_PREFIX)
         self._process: subprocess.Popen[str] | None = None
-        self._page_server: ThreadingHTTPServer | None = None
+        self._page_server: PageServer | None = None
 
     def __enter__(self) -> ViewerServer:
         try:
-            environment = private_environment(self._folder)
+            environment = private_environment(self._folder.path)
             subprocess.run(
                 [rerun_program(), "analytics", "disable"],
                 env=environment,
@@ -102,7 +100,7 @@ class ViewerServer:
             )
             files = self._start(environment)
             policy = content_security_policy(self.data_port)
-            server = self._page_server = make_page_server(self.port, files, policy)
+            server = self._page_server = PageServer(self.port, files, policy, self._query)
             threading.Thread(target=server.serve_forever, name="viewer", daemon=True).start()
         except (OSError, subprocess.CalledProcessError) as e:
             self.close()
@@ -127,7 +125,7 @@ class ViewerServer:
         self._process = subprocess.Popen(
             [rerun_program(), "--serve-web", *arguments],
             env=environment,
-            cwd=self._folder,
+            cwd=self._folder.path,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -170,7 +168,7 @@ class ViewerServer:
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
-        shutil.rmtree(self._folder, ignore_errors=True)
+        self._folder.remove()
 
     def __exit__(
         self,
@@ -179,37 +177,6 @@ class ViewerServer:
         trace: TracebackType | None,
     ) -> None:
         self.close()
-
-
-def make_page_server(port: int, files: str, security_policy: str) -> ThreadingHTTPServer:
-    """A server on `port` that passes on the files at the address `files`.
-
-    Args:
-        port: on the loopback address.
-        files: address of the viewer's files.
-        security_policy: the content security policy of each answer.
-    """
-
-    class Handler(BaseHTTPRequestHandler):
-        def do_GET(self) -> None:
-            try:
-                with urlopen(files + urlsplit(self.path).path) as answer:
-                    self.send_response(200)
-                    self.send_header("Content-Type", answer.headers["Content-Type"])
-                    self.send_header("Content-Security-Policy", security_policy)
-                    self.send_header("Referrer-Policy", "no-referrer")
-                    self.end_headers()
-                    shutil.copyfileobj(answer, self.wfile)
-            except URLError:
-                self.send_error(404)
-            except ConnectionError:
-                # The browser has closed the connection.
-                self.close_connection = True
-
-        def log_message(self, format: str, *args: object) -> None:
-            """Requests are not printed."""
-
-    return ThreadingHTTPServer((LOOPBACK, port), Handler)
 
 
 def require_free(port: int) -> None:

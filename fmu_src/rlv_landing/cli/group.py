@@ -13,21 +13,23 @@ from importlib.metadata import entry_points
 
 import click
 
-from . import __version__
-from .commands.audit import audit
-from .commands.envelope import envelope
-from .commands.identify import identify
-from .commands.options import HELP_NAMES, Group
-from .commands.parameters import parameters
-from .commands.printing import BAD_INPUT, FAILED, INTERRUPTED, exit_code
-from .commands.sensitivity import sensitivity
-from .commands.simulate import simulate
-from .commands.sweep import sweep
-from .commands.validate import validate
-from .core import COMPILED, WHY_NOT_COMPILED
-from .errors import LandingError, one_line, reason_of
-from .text.durable import NO_ROOM
-from .text.terminal import make_legible
+from .. import __version__
+from ..commands.audit import audit
+from ..commands.envelope import envelope
+from ..commands.identify import identify
+from ..commands.options import HELP_NAMES, Group
+from ..commands.parameters import parameters
+from ..commands.printing import BAD_INPUT, FAILED, exit_code
+from ..commands.sensitivity import sensitivity
+from ..commands.simulate import simulate
+from ..commands.sweep import sweep
+from ..commands.validate import validate
+from ..core import COMPILED, WHY_NOT_COMPILED
+from ..errors import LandingError, one_line, reason_of
+from ..signals.handlers import hung_up
+from ..signals.interrupts import answer, interrupts, terminal_left
+from ..text.durable import NO_ROOM
+from ..text.terminal import make_legible
 
 
 class Commands(Group):
@@ -111,18 +113,29 @@ def run(group: click.Group, name: str | None = None) -> int:
         name: The program's name in help texts [default: as it was called].
     """
     make_legible()
+    with interrupts() as come, terminal_left():
+        try:
+            come.open()
+            status = _run(group, name)
+            come.close()
+        except (click.Abort, KeyboardInterrupt):
+            status = answer()
+            click.echo("interrupted", err=True)
+    return status
+
+
+def _run(group: click.Group, name: str | None) -> int:
     try:
         status = group.main(prog_name=name, standalone_mode=False)
     except LandingError as e:
         return _refuse(str(e), BAD_INPUT)
     except click.ClickException as e:
         return _refuse(e.format_message(), BAD_INPUT)
-    except (click.Abort, KeyboardInterrupt):
-        click.echo("interrupted", err=True)
-        return INTERRUPTED
     except BrokenPipeError:
         return 0
     except OSError as e:
+        if hung_up():
+            raise
         return _refuse_file(e)
     except UnicodeEncodeError as e:
         if not any(0xD800 <= ord(c) <= 0xDFFF for c in e.object):
@@ -158,7 +171,3 @@ def _refuse(message: str, status: int) -> int:
     with suppress(OSError):
         click.echo(one_line(f"error: {message}"), err=True)
     return status
-
-
-if __name__ == "__main__":
-    main()

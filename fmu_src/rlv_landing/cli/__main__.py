@@ -1,0 +1,5 @@
+"""`python -m rlv_landing.cli`: the command line."""
+
+from . import main
+
+main()

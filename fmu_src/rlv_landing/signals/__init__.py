@@ -1,0 +1,1 @@
+"""How SIGINT, SIGTERM and SIGHUP end a command; imports nothing that takes time."""
