@@ -18,6 +18,7 @@ from rlv_landing.landing import DEFAULT_RTOL
 from rlv_landing.outputs import Extreme
 from rlv_landing.presets import preset_names
 from rlv_landing.quantities import LEGS, MODES, PEAKS
+from rlv_landing.sizing import LIKE, leg_geometry, size_damper, size_vehicle
 from rlv_landing.studies.envelope.tip_over import RigidBlock
 from rlv_landing.studies.sweep.responses import expand
 from rlv_landing.touchdown import footpad_at_rest
@@ -74,6 +75,20 @@ def counts(against: str = "simulation", transverse: str = "") -> str:
             "sensed": both.counts_against_test_sensed,
         }[against]
     return f"{n['within_5']} / {n['within_10']} / {n['within_20']}"
+
+
+@quick
+def sized(like: str, what: str, factor: str) -> float:
+    """A number of a vehicle's sized damper, times a factor."""
+    needs = LIKE[like]
+    return float(factor) * float(getattr(size_damper(needs, leg_geometry(needs)), what))
+
+
+@quick
+def landed(like: str, what: str, factor: str) -> float:
+    """The largest force or stroke of a sized vehicle's struts, landed level, times a factor."""
+    history = Landing(size_vehicle(LIKE[like])).run(3.0)
+    return float(factor) * float(np.abs(history[f"leg[1].main_strut.{what}"]).max())
 
 
 @quick

@@ -18,6 +18,7 @@ from ..commands.audit import audit
 from ..commands.envelope import envelope
 from ..commands.identify import identify
 from ..commands.options import HELP_NAMES, Group
+from ..commands.own_vehicle import draw, new
 from ..commands.parameters import parameters
 from ..commands.printing import BAD_INPUT, FAILED, exit_code
 from ..commands.sensitivity import sensitivity
@@ -66,6 +67,7 @@ def cli() -> None:
 
     \b
     rlv-landing simulate --mode 1-2-1 --compare    land in this process; compare with the paper
+    rlv-landing new my_vehicle --like hopper       the files of a vehicle of your own; draw shows it
     rlv-landing parameters --toml > mine.toml      a parameter file to edit
     rlv-landing validate --html report.html        every printed number and figure beside ours
     rlv-landing identify --work identification     estimate parameters from landings
@@ -85,7 +87,11 @@ def cli() -> None:
     """
 
 
-for command in (simulate, parameters, validate, audit, identify, sweep, sensitivity, envelope):
+OWN = (
+    *(new, draw, simulate, parameters, validate, audit),
+    *(identify, sweep, sensitivity, envelope),
+)
+for command in OWN:
     cli.add_command(command)
 
 

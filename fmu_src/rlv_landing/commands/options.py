@@ -168,8 +168,13 @@ def choose(
     return parameters, (parameters.drop.mode,) if wanted else tuple(MODES), label
 
 
-def check_writable(path: Path | None, ending: str, *, force: bool) -> None:
+def check_writable(path: Path | None, ending: str | tuple[str, ...], *, force: bool) -> None:
     """Check that a file can be made at `path`; None is not checked.
+
+    Args:
+        path: The file.
+        ending: Its ending, or those allowed.
+        force: Whether it may exist.
 
     Raises:
         LandingError: The ending is another, the folder is missing, there is something else than a
@@ -177,8 +182,9 @@ def check_writable(path: Path | None, ending: str, *, force: bool) -> None:
     """
     if path is None:
         return
-    if path.suffix != ending:
-        raise LandingError(f"{path} must end in {ending}")
+    endings = (ending,) if isinstance(ending, str) else ending
+    if path.suffix not in endings:
+        raise LandingError(f"{path} must end in {' or '.join(endings)}")
     try:
         exists, folder = os.path.lexists(path), path.resolve().parent.is_dir()
         file = not path.exists() or path.is_file()

@@ -12,11 +12,12 @@ from .printing import print_json
 
 @click.command(context_settings=HELP_NAMES)
 @parameter_options
+@click.option("--origin", is_flag=True, help="Where each value comes from: file, preset, --set.")
 @click.option("--toml", is_flag=True, help="As a TOML file that --parameters takes back.")
 @json_option()
 @click.option("--inputs", "what", flag_value="inputs", help="List the inputs instead.")
 @click.option("--outputs", "what", flag_value="outputs", help="List the outputs instead.")
-def parameters(*, toml: bool, as_json: bool, what: str | None, **choice: Any) -> None:
+def parameters(*, origin: bool, toml: bool, as_json: bool, what: str | None, **choice: Any) -> None:
     """Print every parameter with its value, unit, bounds, source and meaning.
 
     The source is paper, derived, closure or identified.
@@ -24,15 +25,24 @@ def parameters(*, toml: bool, as_json: bool, what: str | None, **choice: Any) ->
     \b
     rlv-landing parameters --preset yue2022-table2 --mode 1-2-1
     rlv-landing parameters --toml > mine.toml
+    rlv-landing parameters --parameters mine.toml --origin
     """
-    from ..presets import to_toml
-    from ..tables.landing import parameter_records, parameter_table
+    from ..presets import origins, to_toml
+    from ..tables.landing import origin_table, parameter_records, parameter_table
 
     if what is not None:
         _print_quantities(what, as_json=as_json)
         return
     chosen = chosen_parameters(**choice)
-    if toml:
+    if origin:
+        found = origins(choice["file"], choice["preset"], chosen.drop.mode)
+        found.update({pair.partition("=")[0].strip(): "--set" for pair in choice["pairs"]})
+        found["drop.mode"] = "--mode" if choice["mode"] else found["drop.mode"]
+        if as_json:
+            print_json([r | {"origin": found[r["name"]]} for r in parameter_records(chosen)])
+        else:
+            click.echo(origin_table(chosen, found), nl=False)
+    elif toml:
         click.echo(to_toml(chosen), nl=False)
     elif as_json:
         print_json(parameter_records(chosen))

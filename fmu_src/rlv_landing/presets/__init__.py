@@ -14,6 +14,8 @@ from ..text.values import parse_value
 
 FOLDER = Path(__file__).parent
 DEFAULT_PRESET = "yue2022-figures"
+# parameters that a complete file may leave out: they say nothing of a vehicle
+NOT_OF_A_VEHICLE = {name for name in PARAMETER_QUANTITIES if name.startswith("solver.")}
 
 
 def preset_names() -> list[str]:
@@ -39,7 +41,8 @@ def read_toml(path: str | Path) -> Parameters:
     Its tables are `vehicle`, `main_strut`, `auxiliary_strut`, `ground` and `drop`, and
     `mode.X.drop` for one mode only. A value is a number in SI units, a text with a unit ("-2 deg"),
     or `{ value = ..., source = "..." }`. Other values come from `preset = "..."` (default
-    yue2022-figures).
+    yue2022-figures). With `complete = true` there may be none: every parameter of the vehicle, the
+    ground and the drop must be in the file.
 
     Raises:
         LandingError: The file is missing, its TOML syntax is wrong (with line), or names or values
@@ -60,13 +63,14 @@ def parse_toml(text: str, name: str) -> Parameters:
 
 
 def _from_document(document: dict[str, Any]) -> Parameters:
-    known = ("preset", "mode", *GROUPS)
+    known = ("preset", "complete", "mode", *GROUPS)
     for key in document:
         if key not in known:
             raise unknown("table", key, known)
     base = document.get("preset")
     parameters = load_preset(base) if base is not None else Parameters()
     values, sources = _flat({k: v for k, v in document.items() if k in GROUPS})
+    _check_complete(document, values)
     parameters = parameters.with_values(values, sources)
     for mode, tables in _table(document.get("mode", {}), "mode").items():
         if mode not in MODES:
@@ -74,6 +78,25 @@ def _from_document(document: dict[str, Any]) -> Parameters:
         own, own_sources = _flat(_table(tables, f"mode.{mode}"))
         parameters = parameters.with_mode_values({mode: own}, own_sources)
     return parameters.for_mode(parameters.drop.mode)
+
+
+def _check_complete(document: Mapping[str, Any], values: Mapping[str, Any]) -> None:
+    complete = document.get("complete", False)
+    if not isinstance(complete, bool):
+        raise LandingError(f"complete = {complete!r} is neither true nor false")
+    if complete and "preset" in document:
+        raise LandingError(
+            "complete = true leaves nothing to take from a preset; delete one of the two"
+        )
+    missing = [
+        name for name in PARAMETER_QUANTITIES if name not in values and name not in NOT_OF_A_VEHICLE
+    ]
+    if complete and missing:
+        names = f"{', '.join(missing[:3])}{', ...' if len(missing) > 3 else ''}"
+        raise LandingError(
+            f"complete = true, but {len(missing)} missing: {names}; give a value, or delete "
+            "complete = true to take the rest from preset = ..."
+        )
 
 
 def _table(value: Any, name: str) -> dict[str, Any]:
@@ -107,6 +130,39 @@ def _flat(tables: Mapping[str, Any]) -> tuple[dict[str, float | str], dict[str, 
                 entry = entry["value"]
             values[name] = parse_value(PARAMETER_QUANTITIES[name], entry)
     return values, sources
+
+
+def origins(path: str | Path | None, preset: str | None, mode: str) -> dict[str, str]:
+    """Where each parameter's value comes from: a file, a preset, or the table of defaults.
+
+    Args:
+        path: A parameter file.
+        preset: A preset, where there is no file; None is the default one.
+        mode: The landing mode, whose own values win.
+
+    Raises:
+        LandingError: As `read_toml`.
+    """
+    found = dict.fromkeys(PARAMETER_QUANTITIES, f"default, as of {DEFAULT_PRESET}")
+    layers: list[tuple[dict[str, Any], str]] = []
+    if path is not None:
+        read_toml(path)
+        document = parse_document(read_text(Path(path), "parameter file", ""), str(path))
+        preset = document.get("preset")
+        layers.append((document, str(path)))
+    else:
+        preset = preset or DEFAULT_PRESET
+    if preset is not None:
+        file = FOLDER / f"{preset}.toml"
+        layers.insert(
+            0, (parse_document(read_text(file, "preset", ""), preset), f"preset {preset}")
+        )
+    for tables, origin in layers:
+        plain, _ = _flat({k: v for k, v in tables.items() if k in GROUPS})
+        of_mode, _ = _flat(tables.get("mode", {}).get(mode, {}))
+        found.update(dict.fromkeys(plain, origin))
+        found.update(dict.fromkeys(of_mode, f"{origin}, mode {mode}"))
+    return found
 
 
 def to_toml(parameters: Parameters, *, comments: bool = True) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ..history import History
@@ -194,6 +194,20 @@ def parameter_table(parameters: Parameters) -> str:
             bounds,
             parameters.source(name),
             q.meaning,
+        )
+    return render(table, 200)
+
+
+def origin_table(parameters: Parameters, origins: Mapping[str, str]) -> str:
+    """Every parameter with value, unit, source, and the file or preset that it comes from."""
+    table = new_table("parameters", ("name",), ("value",), ("unit", "source", "comes from"))
+    for name, value in parameters.items():
+        table.add_row(
+            name,
+            value if isinstance(value, str) else f"{value:.6g}",
+            PARAMETER_QUANTITIES[name].unit,
+            parameters.source(name),
+            origins[name],
         )
     return render(table, 200)
 
