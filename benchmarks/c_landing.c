@@ -632,14 +632,33 @@ static double conserve(Landing *s, double t, double *y, double *dy)
     return farthest / 1e-5;
 }
 
+/* Write the interpolant of the step just computed. What is dissipated rises throughout. */
+static void write_dense(Landing *s, double h)
+{
+    int first = s->n - INTEGRALS;
+    for (int i = 0; i < s->n; i++) {
+        double change = s->y_new[i] - s->y[i], early = h * s->k1[i], late = h * s->k5[i];
+        s->dense[0][i] = s->y[i];
+        s->dense[1][i] = change;
+        s->dense[2][i] = early - change;
+        s->dense[3][i] = change - late - s->dense[2][i];
+        if (i < first || i > first + E_FRICTION)
+            continue;
+        double low = MIN(MAX(early, 0.0), 3.0 * change), high = MIN(MAX(late, 0.0), 3.0 * change);
+        if (low != early || high != late) {
+            s->dense[2][i] = low - change;
+            s->dense[3][i] = 2.0 * change - high - low;
+        }
+    }
+}
+
 /* Whether the interpolant of the step just computed leaves its ends far behind at a quarter. */
-static int bulges(const Landing *s, double h)
+static int bulges(const Landing *s)
 {
     for (int i = 0; i < s->n; i++) {
         if (s->relative[i] == 0.0)
             continue;
-        double change = s->y_new[i] - s->y[i], bend = h * s->k1[i] - change;
-        double last = change - h * s->k5[i] - bend;
+        double change = s->dense[1][i], bend = s->dense[2][i], last = s->dense[3][i];
         double out = 0.1875 * MAX(fabs(bend + 0.25 * last), fabs(bend + 0.75 * last));
         if (out > fabs(change) + 0.002 * (fabs(s->y[i]) + fabs(s->y_new[i])))
             return 1;
@@ -647,19 +666,24 @@ static int bulges(const Landing *s, double h)
     return 0;
 }
 
+/* The state at a part of the step just computed. */
+static void inside(const Landing *s, double part, double *y)
+{
+    double rest = 1.0 - part;
+    for (int i = 0; i < s->n; i++)
+        y[i] = s->dense[0][i] +
+               part * (s->dense[1][i] + rest * (s->dense[2][i] + part * s->dense[3][i]));
+}
+
 /* What is lost at the quarters of a step, on its interpolant, where it bulges or the tolerance is
  * loose. */
 static double lost_inside(Landing *s, double h)
 {
     double most = 0.0, *y = s->y_stage, dissipated, dy[MAX_STATES];
-    if (s->rtol <= 1e-4 && !bulges(s, h))
+    if (s->rtol <= 1e-4 && !bulges(s))
         return 0.0;
     for (double part = 0.25; part < 1.0; part += 0.25) {
-        for (int i = 0; i < s->n; i++) {
-            double change = s->y_new[i] - s->y[i], bend = h * s->k1[i] - change;
-            double last = change - h * s->k5[i] - bend;
-            y[i] = s->y[i] + part * (change + (1.0 - part) * (bend + part * last));
-        }
+        inside(s, part, y);
         slope(s, s->t + part * h, y, dy);
         conserve(s, s->t + part * h, y, dy);
         most = MAX(most, lost(s, energy(s, y, &dissipated) - s->start_energy, part * h));
@@ -672,12 +696,15 @@ static double lost_inside(Landing *s, double h)
  * lose. */
 static double judged(Landing *s, double h, double *balance, double *dissipated)
 {
+    for (int i = s->n - INTEGRALS; i <= s->n - INTEGRALS + E_FRICTION; i++)
+        s->y_new[i] = MAX(s->y_new[i], s->y[i]);
     *balance = energy(s, s->y_new, dissipated) - s->start_energy;
     double most = lost(s, *balance, h), away = conserve(s, s->t + h, s->y_new, s->k5);
     if (away > 0.0) {
         *balance = energy(s, s->y_new, dissipated) - s->start_energy;
         most = MAX(most, lost(s, *balance, h));
     }
+    write_dense(s, h);
     if (h < 1e-10)
         return 0.0;
     most = MAX(most, away);
@@ -688,11 +715,6 @@ static void accept(Landing *s, double h)
 {
     int n = s->n;
     for (int i = 0; i < n; i++) {
-        double change = s->y_new[i] - s->y[i], bend = h * s->k1[i] - change;
-        s->dense[0][i] = s->y[i];
-        s->dense[1][i] = change;
-        s->dense[2][i] = bend;
-        s->dense[3][i] = change - h * s->k5[i] - bend;
         s->y[i] = s->y_new[i];
         s->k1[i] = s->k5[i];
     }
@@ -765,9 +787,8 @@ int advance(Landing *s, double t_end)
 /* The state at time `t` inside the last step. */
 void interpolate(const Landing *s, double t, double *y)
 {
-    double span = s->t - s->t_old, a = span > 0.0 ? (t - s->t_old) / span : 0.0, b = 1.0 - a;
-    for (int i = 0; i < s->n; i++)
-        y[i] = s->dense[0][i] + a * (s->dense[1][i] + b * (s->dense[2][i] + a * s->dense[3][i]));
+    double span = s->t - s->t_old;
+    inside(s, span > 0.0 ? (t - s->t_old) / span : 0.0, y);
 }
 
 /* The right-hand side for CVODE, on vectors without the energy integrals; `array` is its

@@ -1,6 +1,7 @@
 """A solver integrates any system: here some that are no vehicle, against their closed forms."""
 
 from array import array
+from itertools import pairwise
 from math import cos, exp, sin
 
 import pytest
@@ -63,6 +64,25 @@ class Stopped(System):
 
     def project(self, y):
         y[0] = min(y[0], self.limit)
+
+
+class Gathering(System):
+    """A state that gathers what comes in bursts far shorter than the steps, beside one at rest."""
+
+    def __init__(self, rising):
+        super().__init__(
+            doubles(1.0, 1.0), doubles(0.0, 0.0), carried=1, inputs=1, row=1, stiff_pairs=0
+        )
+        self.rising = rising
+
+    def inputs_after(self, u, rates, dt, now):
+        now[0] = dt
+
+    def rhs(self, y, u, dy):
+        dy[0], dy[1] = 0.0, max(0.0, sin(7000.0 * u[0])) ** 8
+
+    def read(self, y, u, dy, out, at):
+        out[at] = y[1]
 
 
 def started(method, system, rtol, *y):
@@ -128,3 +148,22 @@ def test_steps_grow_where_the_error_is_small_and_shrink_where_it_is_too_large(ex
     ]
     assert factors == sorted(factors, reverse=True)
     assert all(factor < 1.0 for factor in factors[3:])
+
+
+def largest_fall(solver, until):
+    """The largest fall of the only output between two of many times up to `until`."""
+    rows = doubles(*bytes(4000))
+    every = until / len(rows)
+    assert solver.record(0.0, every, 0, len(rows), rows) == len(rows)
+    return max(a - b for a, b in pairwise(rows))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_what_never_falls_does_not_fall_inside_a_step_either(method):
+    assert largest_fall(started(method, Gathering(rising=1), 1e-5, 0.0, 0.0), 0.1) <= 1e-17
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_what_may_fall_does_where_a_step_misses_what_happens(method):
+    """So that the steps above are long enough to fall in."""
+    assert largest_fall(started(method, Gathering(rising=0), 1e-5, 0.0, 0.0), 0.1) > 1e-6

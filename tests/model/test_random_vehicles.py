@@ -15,6 +15,8 @@ from rlv_landing.landing import METHODS
 IN_SUITE, AT_MOST = 60, 2000
 SEEDS = range(min(IN_SUITE * int(os.environ.get("RLV_TORTURE", "1")), AT_MOST))
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6)
+# seeds of landings in which it fell, and for how many steps or looks they are looked at closely
+FELL, AS_LONG = (12, 36, 49, 694), 700
 # what a landing may lose, in parts of a damper's liquid and of the energy that was turned over
 MOST_MASS, MOST_ENERGY = 1e-6, 1e-4
 
@@ -43,6 +45,48 @@ def test_any_damper_keeps_its_liquid_and_the_energy():
             except AssertionError as error:
                 raise AssertionError(f"seed {seed}, {method}, rtol {rtol:g}: {error}") from None
     assert ended <= 0.01 * len(SEEDS) * len(METHODS)
+
+
+def largest_fall(landing: Landing, rng: random.Random) -> float:
+    """The largest fall of what is dissipated, in any way or in all, between two looks [J].
+
+    They come at random, many of them inside one step.
+    """
+    names = [name for name in landing.outputs() if name.startswith("energy.dissipated")]
+    before, fall = [landing.get(name) for name in names], 0.0
+    for _ in range(AS_LONG):
+        if landing.statistics["steps"] > AS_LONG:
+            break
+        landing.advance_to(landing.time + 10.0 ** rng.uniform(-6.0, -3.0))
+        now = [landing.get(name) for name in names]
+        fall = max(fall, *(a - b for a, b in zip(before, now)))
+        before = now
+    return fall
+
+
+def assert_dissipated_never_falls(seed: int, method: str, rtol: float) -> None:
+    landing = Landing(some_vehicle(random.Random(seed)), rtol=rtol, method=method)
+    fall = largest_fall(landing, random.Random(seed))
+    most = 1e-14 * landing.get("energy.dissipated")
+    assert fall <= most, f"seed {seed}, {method}, rtol {rtol:g}: {fall:.1e} J"
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("rtol", TOLERANCES)
+def test_what_is_dissipated_never_falls_between_any_two_times(rtol, method):
+    for seed in FELL:
+        assert_dissipated_never_falls(seed, method, rtol)
+
+
+@pytest.mark.torture
+def test_what_is_dissipated_never_falls_whatever_the_vehicle():
+    for seed in SEEDS:
+        try:
+            for method in METHODS:
+                rtol = random.Random(seed).choice(TOLERANCES)
+                assert_dissipated_never_falls(seed, method, rtol)
+        except LandingError:
+            continue
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -52,6 +52,9 @@ KINETIC = EnergyOutputs._fields.index("kinetic")
 DISSIPATED = EnergyOutputs._fields.index("dissipated")
 BALANCE = EnergyOutputs._fields.index("balance")
 
+# where the accounts have what friction has dissipated, the last of what is dissipated
+FRICTION = Accounts._fields.index("friction")
+
 # where a leg's state has what may be stiff in it
 Z1 = LegState._fields.index("z1")
 Z2 = LegState._fields.index("z2")

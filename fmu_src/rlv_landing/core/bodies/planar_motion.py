@@ -11,6 +11,7 @@ from ..access import (
     BODY,
     BODY_OUTPUTS,
     ENERGY_OUTPUTS,
+    FRICTION,
     INPUTS,
     LEG,
     LEG_FORCES,
@@ -30,7 +31,7 @@ from ..access import (
     planar_loads_of,
     put,
 )
-from ..ground.kinds import friction_bound
+from ..ground.kinds import friction_bound, friction_only_takes
 from ..leg import leg_forces, liquid_excess, without_excess
 from ..memory import Buffer, Doubles, Records, room, stored
 from ..records import (
@@ -70,7 +71,7 @@ class PlanarMotion(System):
     """One body in its symmetric plane on leg groups, and its ground.
 
     The state is a `BodyState`, a `LegState` for each group, and the `Accounts`, which no other
-    state depends on.
+    state depends on. What is dissipated never falls, unless a friction law may give.
     """
 
     groups: int
@@ -99,6 +100,10 @@ class PlanarMotion(System):
         self._forces = room(groups, LEG_FORCES)
         self._loads = room(groups, PLANAR_LOADS)
         self._attitude = room(1, ATTITUDE)
+        self.rising = FRICTION + 1
+        for i in range(groups):
+            if not friction_only_takes(leg_model(self._legs, i)):
+                self.rising = FRICTION
 
     def inputs_after(self, u: Doubles, rates: Doubles, dt: float, now: Doubles) -> None:
         """Loads go on at their rates, heave and tilt at their own, which change at theirs.

@@ -23,6 +23,7 @@ class System:
         inputs: How many inputs there are.
         row: How many outputs there are.
         stiff_pairs: How many pairs of states `stiff` tells of.
+        rising: How many of the states that are carried along never fall; they come first of those.
     """
 
     n: int
@@ -30,6 +31,7 @@ class System:
     inputs: int
     row: int
     stiff_pairs: int
+    rising: int
     scale: Buffer
     relative: Buffer
     _rates: Buffer
@@ -42,6 +44,7 @@ class System:
         self.inputs = inputs
         self.row = row
         self.stiff_pairs = stiff_pairs
+        self.rising = 0
         self.scale = scale
         self.relative = relative
         self._rates = array("d", bytes(8 * self.n))

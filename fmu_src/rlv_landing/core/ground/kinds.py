@@ -28,6 +28,11 @@ def friction_energy(q1: float, q2: float, p: LegModel) -> float:
     return chosen(FRICTION_LAWS, p.friction_kind).energy(q1, q2, p)
 
 
+def friction_only_takes(p: LegModel) -> bool:
+    """Whether the friction law's dissipated power is never below 0."""
+    return chosen(FRICTION_LAWS, p.friction_kind).only_takes(p)
+
+
 def ground_force(foot: FootMotion, q1: float, q2: float, p: LegModel) -> GroundForce:
     """The ground on a footpad, in the ground's axes."""
     n = normal_force(foot.depth, foot.depth_rate, p)

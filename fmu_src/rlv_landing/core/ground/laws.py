@@ -15,12 +15,14 @@ class FrictionLaw(NamedTuple):
     """A law of friction.
 
     It has what the ground gives at (motion, normal force, q1, q2), where it lets (q1, q2) be at the
-    end of a step, and the energy [J] that it holds there.
+    end of a step, the energy [J] that it holds there, and whether what it calls dissipated is never
+    below 0.
     """
 
     force: Callable[[FootMotion, float, float, float, LegModel], FrictionForce]
     bound: Callable[[float, float, LegModel], FrictionBound]
     energy: Callable[[float, float, LegModel], float]
+    only_takes: Callable[[LegModel], bool]
 
 
 FRICTION_LAWS: dict[str, FrictionLaw] = {}

@@ -71,4 +71,11 @@ def paper_friction_energy(q1: float, q2: float, p: LegModel) -> float:
     return 0.0
 
 
-FRICTION_LAWS["paper"] = FrictionLaw(paper_friction, paper_friction_bound, paper_friction_energy)
+def paper_friction_only_takes(p: LegModel) -> bool:
+    """It may give."""
+    return False
+
+
+FRICTION_LAWS["paper"] = FrictionLaw(
+    paper_friction, paper_friction_bound, paper_friction_energy, paper_friction_only_takes
+)

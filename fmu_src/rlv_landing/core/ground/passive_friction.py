@@ -110,6 +110,11 @@ def passive_friction_energy(q1: float, q2: float, p: LegModel) -> float:
     return 0.5 * p.K_t * (q1 * q1 + q2 * q2)
 
 
+def passive_friction_only_takes(p: LegModel) -> bool:
+    """It never gives."""
+    return True
+
+
 FRICTION_LAWS["passive"] = FrictionLaw(
-    passive_friction, passive_friction_bound, passive_friction_energy
+    passive_friction, passive_friction_bound, passive_friction_energy, passive_friction_only_takes
 )

@@ -20,6 +20,10 @@ SHORTEST_JUDGED = 1e-10
 BULGE = 0.002
 # at looser tolerances the inside of every step is judged
 LOOSE = 1e-4
+# a cubic between two values rises throughout where its slopes at both are at most so many times
+# that of the straight line (Fritsch and Carlson, Monotone piecewise cubic interpolation, SIAM
+# Journal on Numerical Analysis 17, 1980)
+STEEPEST = 3.0
 
 
 class Trial(Rest):
@@ -102,6 +106,7 @@ class Trial(Rest):
         This brings it back, reads it, and writes the step's interpolant.
         """
         end, k_end = data(self.y_new), data(self.k_end)
+        self._hold_risen(end)
         self._read_end(end, k_end)
         lost = self.system.lost(data(self.last), data(self._end), h)
         away = self.system.conserve(end)
@@ -115,6 +120,17 @@ class Trial(Rest):
         if max(lost, away) > 1.0:
             return True
         return self._loses_inside(h)
+
+    def _hold_risen(self, end: Doubles) -> None:
+        """Let what never falls be at the `end` of a step at least what it was at its start.
+
+        A method whose formula has a negative weight may miss a peak of a rate so far.
+        """
+        y = data(self.y)
+        first = self.system.controlled
+        for i in range(first, first + self.system.rising):
+            if end[i] < y[i]:
+                end[i] = y[i]
 
     def _write_dense(self, h: float) -> None:
         """Write the interpolant of the step of `h` [s] just computed.
@@ -139,6 +155,30 @@ class Trial(Rest):
             d[2 * n + j] = bend
             d[3 * n + j] = change - h * k_end[i] - bend
         self._dense_correction(h, at + 4 * n)
+        self._keep_rising(h, at)
+
+    def _keep_rising(self, h: float, at: int) -> None:
+        """Let the interpolant just written, which begins at `at`, rise where its state never falls.
+
+        Slopes at the ends are cut to where a cubic rises. The fourth-order part goes where the
+        quartic might fall: where its coefficients in Bernstein's form do.
+        """
+        n = self.n
+        d, k1, k_end = data(self.dense), data(self.k1), data(self.k_end)
+        first = self.system.controlled
+        for i in range(first, first + self.system.rising):
+            j = at + i
+            change = d[n + j]
+            most = STEEPEST * change
+            early = min(max(h * k1[i], 0.0), most)
+            late = min(max(h * k_end[i], 0.0), most)
+            middle = 0.5 * change + (early - late + d[4 * n + j]) / 6.0
+            if early != h * k1[i] or late != h * k_end[i]:
+                d[2 * n + j] = early - change
+                d[3 * n + j] = 2.0 * change - late - early
+                d[4 * n + j] = 0.0
+            elif middle < 0.25 * early or middle > change - 0.25 * late:
+                d[4 * n + j] = 0.0
 
     def _loses_inside(self, h: float) -> bool:
         """Whether the step loses more than it may at its quarters.
