@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterator, Mapping, Sequence
+from html import escape
+from importlib import import_module
 from pathlib import Path
-from typing import TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +15,17 @@ from numpy.typing import NDArray
 from .errors import LandingError, unknown
 from .outputs import Extreme
 from .parameters import Parameters
+from .quantities import OUTPUT_QUANTITIES
 from .text.durable import text_of, whole_file
 from .touchdown import AT_REST, GroundMotion
 
+if TYPE_CHECKING:
+    import pandas
+    import polars
+    import xarray
+    from matplotlib.axes import Axes
+
+UNITS = {q.name: q.unit for q in OUTPUT_QUANTITIES} | {"time": "s"}
 # rows that are written at once: as Python's numbers they take four times their memory
 ROWS_AT_ONCE = 1000
 
@@ -136,6 +146,101 @@ class History:
             part = slice(first, first + ROWS_AT_ONCE)
             for t, row in zip(self.time[part].tolist(), self.data[part].tolist()):
                 writer.writerow([repr(t), *map(repr, row)])
+
+    def units(self) -> dict[str, str]:
+        """The SI unit of the time and of each column; empty for plain numbers."""
+        return {name: UNITS.get(name, "") for name in self}
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A table with a row for each time, which is its index; `attrs["units"]` has the units.
+
+        Raises:
+            LandingError: pandas is not installed.
+        """
+        library = _library("pandas")
+        frame: pandas.DataFrame = library.DataFrame(
+            self.data, index=library.Index(self.time, name="time"), columns=list(self.names)
+        )
+        frame.attrs["units"] = self.units()
+        return frame
+
+    def to_polars(self) -> polars.DataFrame:
+        """A table with a row for each time and the column `time` first; polars keeps no units.
+
+        Raises:
+            LandingError: polars is not installed.
+        """
+        frame: polars.DataFrame = _library("polars").DataFrame({name: self[name] for name in self})
+        return frame
+
+    def to_xarray(self) -> xarray.Dataset:
+        """A dataset over the coordinate `time`; each variable has its unit as `attrs["units"]`.
+
+        Raises:
+            LandingError: xarray is not installed.
+        """
+        units = self.units()
+        variables = {name: ("time", self[name], {"units": units[name]}) for name in self.names}
+        dataset: xarray.Dataset = _library("xarray").Dataset(
+            variables, coords={"time": ("time", self.time, {"units": "s"})}
+        )
+        return dataset
+
+    def plot(self, *names: str, axes: Axes | None = None) -> Axes:
+        """Draw columns of one unit over time.
+
+        Args:
+            names: The columns.
+            axes: Where to draw [default: new axes of matplotlib's pyplot].
+
+        Raises:
+            LandingError: No column is named, one is unknown, or their units differ.
+        """
+        units = {UNITS.get(name, "") for name in names if self[name] is not None}
+        if len(units) != 1:
+            raise LandingError(
+                f"columns of the units {', '.join(sorted(units)) or 'none'} cannot share an axis; "
+                "name columns of one unit"
+            )
+        if axes is None:
+            from matplotlib import pyplot
+
+            axes = pyplot.subplots(layout="constrained")[1]
+        for name in names:
+            axes.plot(self.time, self[name], label=name)
+        axes.set_xlabel("time [s]")
+        axes.set_ylabel(f"[{units.pop() or '-'}]")
+        axes.legend()
+        return axes
+
+    def _repr_html_(self) -> str:
+        """The table that notebooks show: each column's unit, least and largest value, and times."""
+        if not len(self):
+            return "no samples"
+        rows = []
+        for name in self.names:
+            e = self.extreme(name)
+            numbers = (e.minimum, e.minimum_time, e.maximum, e.maximum_time)
+            cells = "".join(f"<td>{number:.5g}</td>" for number in numbers)
+            rows.append(f"<tr><td>{escape(name)}</td><td>{UNITS.get(name, '')}</td>{cells}</tr>")
+        heads = ("column", "unit", "least", "at [s]", "largest", "at [s]")
+        head = "".join(f"<th>{h}</th>" for h in heads)
+        return (
+            f'<details open=""><summary>{len(self)} samples until {self.time[-1]:g} s</summary>'
+            f"<table><tr>{head}</tr>{''.join(rows)}</table></details>"
+        )
+
+
+def _library(name: str) -> Any:
+    """An optional library.
+
+    Raises:
+        LandingError: It is not installed.
+    """
+    try:
+        return import_module(name)
+    except ImportError as e:
+        raise LandingError(f"{name} is not installed ({e}); pip install {name}") from None
 
 
 def _earlier(whole: Extreme, sampled: Extreme, end: float) -> Extreme:

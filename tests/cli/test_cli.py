@@ -189,3 +189,11 @@ def test_help_prints_no_open_range():
     texts = {c.name: c.get_help(click.Context(c)) for c in _commands(cli)}
     assert {"envelope", "node", "export"} <= set(texts)
     assert [name for name, text in texts.items() if "None" in text] == []
+
+
+def test_without_a_command_three_lines_lead_on(command):
+    done = command()
+    assert (done.code, done.err) == (0, "")
+    assert len(done.out.splitlines()) == 3
+    for words in ("simulate --plot", "new my_vehicle", "--help"):
+        assert words in done.out

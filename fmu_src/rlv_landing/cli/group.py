@@ -56,13 +56,21 @@ class Commands(Group):
         return None
 
 
-@click.group(cls=Commands, context_settings=HELP_NAMES)
+# what a newcomer who names no command is told
+FIRST = """\
+rlv-landing simulate --plot landing.png     land the paper's drop test: forces, strokes, outcome
+rlv-landing new my_vehicle --like hopper    the files of a vehicle of your own, and what to do next
+rlv-landing --help                          all commands"""
+
+
+@click.group(cls=Commands, context_settings=HELP_NAMES, invoke_without_command=True)
 @click.version_option(
     __version__,
     prog_name="rlv-landing",
     message=f"%(prog)s, version %(version)s, {'compiled' if COMPILED else 'uncompiled'} core",
 )
-def cli() -> None:
+@click.pass_context
+def cli(context: click.Context) -> None:
     """Touchdown of a vertical-landing rocket stage on four legs.
 
     \b
@@ -85,6 +93,8 @@ def cli() -> None:
     SI units and radians throughout; a value may carry its unit: --set drop.tilt="-2 deg".
     Exit codes: 0 done, 1 failed, 2 bad input or a file that cannot be written, 130 interrupted.
     """
+    if context.invoked_subcommand is None:
+        click.echo(FIRST)
 
 
 OWN = (
