@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 import re
 import zipfile
+from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from rlv_landing.errors import LandingError
 from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
@@ -17,6 +18,7 @@ from rlv_landing.quantities import (
     PEAK_QUANTITIES,
     STATISTIC_QUANTITIES,
     flat_name,
+    whole_name,
 )
 
 MODEL_NAME = "RlvLanding"
@@ -25,12 +27,21 @@ MADE_BY = "rlv-landing "
 # the start values of a vehicle that is not the default one
 VEHICLE = re.compile(r"resources/[^/]+/vehicle\.json")
 BUILD = "build ours by `rlv-landing fmu build`"
+FMI_VERSIONS = ("2.0", "3.0")
 NAMES = (
     *OUTPUT_NAMES,
     *INPUT_NAMES,
     *PARAMETER_QUANTITIES,
     *(q.name for q in (*STATISTIC_QUANTITIES, *PEAK_QUANTITIES)),
 )
+
+
+class Place(NamedTuple):
+    """Where a value is in an FMU: its variable, and the element of that, from 0, of `size`."""
+
+    reference: int
+    element: int = 0
+    size: int = 1
 
 
 def open_description(path: Path) -> Any:
@@ -83,27 +94,33 @@ def read_description(path: Path) -> Any:
             f"{path} holds the model {description.modelName!r}, which is not of rlv-landing; "
             f"{BUILD}"
         )
-    if description.fmiVersion != "2.0" or description.coSimulation is None:
-        raise LandingError(f"{path} is not an FMU for FMI 2.0 co-simulation; {BUILD}")
+    if description.fmiVersion not in FMI_VERSIONS or description.coSimulation is None:
+        raise LandingError(
+            f"{path} is not an FMU for co-simulation in FMI {' or '.join(FMI_VERSIONS)}; {BUILD}"
+        )
     return description
 
 
-def references(description: Any, path: Path) -> dict[str, int]:
-    """The value references of our FMU's variables by our names, also where its own are flat.
+def places(description: Any, path: Path) -> dict[str, Place]:
+    """Where our FMU has each quantity, by our names, also where its own are flat or arrays.
 
     Raises:
         LandingError: It lacks a variable: it is of another version.
     """
     known = {v.name: v.valueReference for v in description.modelVariables}
-    found: dict[str, int] = {}
+    arrays = description.fmiVersion == "3.0"
+    found: dict[str, Place] = {}
+    sizes = Counter(whole_name(name) for name in NAMES) if arrays else Counter()
+    seen: Counter[str] = Counter()
     for name in NAMES:
-        own = name if name in known else flat_name(name)
+        own = whole_name(name) if arrays else name if name in known else flat_name(name)
         if own not in known:
             raise LandingError(
                 f"{path} (version {description.version or 'unknown'}) has no variable {name!r}; "
                 "build it again by `rlv-landing fmu build`"
             )
-        found[name] = known[own]
+        found[name] = Place(known[own], seen[own], sizes[own] if arrays else 1)
+        seen[own] += 1
     return found
 
 
