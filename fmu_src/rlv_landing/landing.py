@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from .assembly import NO_INPUTS, begin, build_system
 from .core import DormandPrince, Exponential, Inputs, Solver
 from .errors import LandingError, unknown
+from .events.search import EventSearch
 from .inputs.driven import RATE_INPUTS, DrivenInputs, Setting, changed_setting
 from .interruptible import advance, check_going, record
 from .outputs import Extreme, OutputReader, output_order
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from numpy import float64
     from numpy.typing import NDArray
 
-    from .events.search import EventSearch
     from .history import History
 
 DEFAULT_RTOL = 1e-5
@@ -217,8 +217,6 @@ class Landing:
 
     def _event_search(self) -> EventSearch:
         if self._search is None:
-            from .events.search import EventSearch
-
             stroke_max = self.parameters.main_strut.stroke_max
             order = output_order(self.parameters.drop.mode)
             self._search = EventSearch(self._solver, order, stroke_max)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import fmpy
 import numpy as np
 import pytest
@@ -51,3 +54,13 @@ def test_inputs_and_parameters_act_as_in_fmi_2(fmu, fmu3):
     for name in ("body.x", "body.pitch", "energy.work_external"):
         assert np.array_equal(of_fmi2[name], of_fmi3[name])
     assert np.array_equal(of_fmi2["leg[3].contact.force"], of_fmi3["leg.contact.force"][:, 2])
+
+
+def test_events_are_found_after_the_folder_of_the_first_instance_is_gone(fmu3):
+    """In a process of its own, in which nothing has been imported from that folder before."""
+    lands = "fmpy.simulate_fmu(sys.argv[1], stop_time=0.1, output_interval=1e-2"
+    code = f"import fmpy, sys; {lands}); {lands}, early_return_allowed=True, use_event_mode=True)"
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(fmu3)], capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
