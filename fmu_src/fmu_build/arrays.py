@@ -7,12 +7,12 @@ have, comes after all of them.
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from itertools import pairwise
 
+from rlv_landing.quantities import whole_name
+
 TIME = "time"
-LEG = re.compile(r"(?<![^.])leg\[\d+\]")
 
 
 @dataclass(frozen=True)
@@ -30,11 +30,6 @@ class Variable:
     reference: int
     elements: tuple[str, ...]
     stride: int = 0
-
-
-def whole_name(name: str) -> str:
-    """Name in FMI 3.0 of the variable that `name` is, or is an element of, in FMI 2.0."""
-    return LEG.sub("leg", name)
 
 
 def whole_meaning(meaning: str) -> str:

@@ -9,9 +9,8 @@ import fmpy
 from fmpy.validation import validate_fmu
 
 from rlv_landing import Landing
-from rlv_landing.quantities import OUTPUT_QUANTITIES, flat_name
+from rlv_landing.quantities import OUTPUT_QUANTITIES, flat_name, whole_name
 
-from .arrays import whole_name
 from .terminals import faults
 from .wanted import Wanted
 

@@ -28,9 +28,10 @@ from rlv_landing.quantities import (
     STATISTIC_QUANTITIES,
     Quantity,
     flat_name,
+    whole_name,
 )
 
-from ..arrays import whole_meaning, whole_name
+from ..arrays import whole_meaning
 from ..binary import compilers
 from ..dependencies import inputs_of
 from ..sources import source

@@ -23,7 +23,10 @@ KINDS = {"coSimulation": "co-simulation", "modelExchange": "model exchange"}
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable of the description; its start as text, empty where it has none."""
+    """A variable of the description; its start as text, empty where it has none.
+
+    An array's type has its extents: `Float64[4]`.
+    """
 
     name: str
     causality: str
@@ -121,7 +124,7 @@ def fmu_info(path: Path) -> FmuInfo:
             Variable(
                 v.name,
                 v.causality or "",
-                v.type,
+                v.type + "".join(f"[{_extent(d)}]" for d in v.dimensions or ()),
                 v.unit or "",
                 _short(v.type, v.start),
                 v.description or "",
@@ -129,6 +132,11 @@ def fmu_info(path: Path) -> FmuInfo:
             for v in description.modelVariables
         ],
     )
+
+
+def _extent(dimension: Any) -> str:
+    """The extent of an array: its number, or the structural parameter that has it."""
+    return str(dimension.variable.name if dimension.start is None else dimension.start)
 
 
 def _short(kind: str, start: Any) -> str:
