@@ -81,9 +81,8 @@ def check(fmu: Path, wanted: Wanted, ends: Expected) -> str:
 
 def _own_name(name: str, wanted: Wanted) -> str:
     """The name of the FMU's variable that has an output."""
-    if wanted.fmi == "3":
-        return whole_name(name)
-    return flat_name(name) if wanted.flat_names else name
+    own = whole_name(name) if wanted.fmi == "3" else name
+    return flat_name(own) if wanted.flat_names else own
 
 
 def _column(result: Any, name: str, names: dict[str, str]) -> Any:

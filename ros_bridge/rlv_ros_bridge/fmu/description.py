@@ -73,6 +73,13 @@ def open_description(path: Path) -> Any:
     try:
         with zipfile.ZipFile(path) as archive:
             size = archive.getinfo(DESCRIPTION).file_size
+    except (zipfile.BadZipFile, KeyError):
+        raise LandingError(
+            f"{path} is not an FMU: it is no zip archive with a modelDescription.xml in it"
+        ) from None
+    except OSError as e:
+        raise LandingError(f"FMU {path} cannot be read: {e.strerror or e}") from None
+    try:
         if size > LARGEST_DESCRIPTION:
             raise LandingError(
                 f"{path}: its {DESCRIPTION} has {size / 1e6:.0f} MB, at most "
@@ -81,9 +88,10 @@ def open_description(path: Path) -> Any:
         return read_model_description(str(path))
     except LandingError:
         raise
-    except (zipfile.BadZipFile, KeyError):
+    except KeyError as e:  # of a unit, type or variable
         raise LandingError(
-            f"{path} is not an FMU: it is no zip archive with a modelDescription.xml in it"
+            f"{path} is not an FMU that can be read: its modelDescription.xml refers to {e}, "
+            "which is not in it"
         ) from None
     except Exception as e:
         raise LandingError(

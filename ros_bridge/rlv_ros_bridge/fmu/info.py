@@ -9,6 +9,7 @@ from math import degrees
 from pathlib import Path
 from typing import Any
 
+from rlv_landing.errors import LandingError
 from rlv_landing.parameters import Parameters
 from rlv_landing.tables.rendering import new_table, render
 from rlv_landing.touchdown import footpad_at_rest
@@ -119,7 +120,7 @@ def fmu_info(path: Path) -> FmuInfo:
         kinds=[text for kind, text in KINDS.items() if getattr(description, kind, None)],
         platforms=sorted({m[1] for name in names if (m := BINARY.fullmatch(name))}),
         cores=sorted({m[1] for name in names if (m := CORE.fullmatch(name))}) if ours else [],
-        vehicle=_vehicle(vehicle_of(description)) if ours else {},
+        vehicle=_vehicle(_vehicle_at(description, path)) if ours else {},
         variables=[
             Variable(
                 v.name,
@@ -132,6 +133,18 @@ def fmu_info(path: Path) -> FmuInfo:
             for v in description.modelVariables
         ],
     )
+
+
+def _vehicle_at(description: Any, path: Path) -> Parameters:
+    """The vehicle of our FMU at `path`.
+
+    Raises:
+        LandingError: A value is not one of this version's.
+    """
+    try:
+        return vehicle_of(description)
+    except LandingError as e:
+        raise LandingError(f"the vehicle of {path}: {e}") from None
 
 
 def _extent(dimension: Any) -> str:

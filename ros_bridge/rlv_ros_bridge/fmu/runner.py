@@ -26,6 +26,7 @@ from .description import MODEL_NAME, check_size, places, read_description
 from .fmi2 import Fmi2
 from .fmi3 import Fmi3, with_ground_rates
 from .folder import FmuFolder
+from .library import check_library
 from .reader import Reader
 
 # fmi2Status.
@@ -82,6 +83,7 @@ class FmuRunner:
             except Exception as e:  # of a name that leads out of the folder, FMPy's has no type
                 reason = str(e).rstrip(".")
                 raise LandingError(f"{self.path} is damaged: {reason}; build it again") from None
+        check_library(description, Path(unpacked), self.path)
         kind = Fmi3 if description.fmiVersion == "3.0" else Fmi2
         try:
             self._instance = kind(description, unpacked, MODEL_NAME, self._log)
