@@ -5,7 +5,8 @@ the limited API, so one serves all later versions, in the FMU as well. The limit
 no buffers, so a binary compiled there serves 3.10 alone.
 
 A wheel also carries what the FMU's build needs: the sources of slave and front, and the compiled
-front, where FMPy, which has FMI's headers, pythonfmu and a C compiler are installed.
+front, where FMPy, which has FMI's headers, pythonfmu and a C compiler are installed. An isolated
+build has the first two by pyproject.toml.
 """
 
 import os

@@ -1,18 +1,23 @@
 """The variables of FMI 3.0: those of FMI 2.0, with the four legs' as one array.
 
-`leg[1].contact.force` to `leg[4].contact.force` are the elements of `leg.contact.force`. The value
+`leg[1].contact.force` to `leg[4].contact.force` are the elements of `leg.contact.force`, with flat
+names `leg1_contact_force` to `leg4_contact_force` those of `leg_contact_force`. The value
 reference of a variable is that of its first element in FMI 2.0; `time`, which FMI 2.0 does not
 have, comes after all of them.
 """
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from itertools import pairwise
 
+from rlv_landing.quantities import flat_name, whole_name
+
+from .description import QUANTITIES
+
 TIME = "time"
-LEG = re.compile(r"(?<![^.])leg\[\d+\]")
+# the quantities that have other names where names are flat
+STRUCTURED = {flat_name(name): name for name in QUANTITIES}
 
 
 @dataclass(frozen=True)
@@ -22,7 +27,7 @@ class Variable:
     Attributes:
         name: Its name.
         reference: Its value reference.
-        elements: The names of its elements in FMI 2.0; one if it is no array.
+        elements: The quantities that it has; one if it is no array.
         stride: How far apart their value references are.
     """
 
@@ -30,11 +35,6 @@ class Variable:
     reference: int
     elements: tuple[str, ...]
     stride: int = 0
-
-
-def whole_name(name: str) -> str:
-    """Name in FMI 3.0 of the variable that `name` is, or is an element of, in FMI 2.0."""
-    return LEG.sub("leg", name)
 
 
 def whole_meaning(meaning: str) -> str:
@@ -51,9 +51,11 @@ def variables(names: list[str]) -> list[Variable]:
     Raises:
         SystemExit: Value references of an array's elements are not equally far apart.
     """
+    quantities = [STRUCTURED.get(name, name) for name in names]
     found: dict[str, list[int]] = {}
-    for reference, name in enumerate(names):
-        found.setdefault(whole_name(name), []).append(reference)
+    for reference, (name, quantity) in enumerate(zip(names, quantities)):
+        whole = whole_name(quantity)
+        found.setdefault(whole if name == quantity else flat_name(whole), []).append(reference)
     made = []
     for whole, references in found.items():
         strides = {b - a for a, b in pairwise(references)} or {0}
@@ -62,6 +64,6 @@ def variables(names: list[str]) -> list[Variable]:
                 f"error: the value references of {whole} are {references}; the front needs them "
                 "equally far apart"
             )
-        elements = tuple(names[i] for i in references)
+        elements = tuple(quantities[i] for i in references)
         made.append(Variable(whole, references[0], elements, strides.pop()))
     return made

@@ -12,6 +12,7 @@ import argparse
 import errno
 import os
 import re
+import signal
 import sys
 import tempfile
 import zipfile
@@ -23,6 +24,7 @@ from xml.etree import ElementTree
 
 from pythonfmu.builder import FmuBuilder
 
+from rlv_landing.errors import LandingError
 from rlv_landing.text.durable import unwritable, write_durably, writing
 
 from .binary import record_libpython, replace_binaries
@@ -32,7 +34,7 @@ from .description3 import describe3
 from .identity import NO_GUID, identify
 from .pages.documentation import write_documentation
 from .sources import ROOT, compiled_cores, copy_sources, source_date
-from .targets import ALL, OWN, TARGETS, Target, own_machine, tried
+from .targets import ALL, OWN, tried
 from .terminals import write_terminals
 from .trial import check, expected
 from .wanted import FMI_VERSIONS, MODEL_NAME, Wanted
@@ -163,13 +165,6 @@ def _workshop() -> Iterator[Path]:
         raise unwritable(Path(tempfile.gettempdir()), error, remedy) from None
 
 
-def other_targets(wanted: Wanted) -> list[Target]:
-    """The platforms besides this machine's that the wanted FMU has a compiled core for."""
-    if wanted.pure or wanted.platforms == OWN:
-        return []
-    return [target for target in TARGETS.values() if target.name != own_machine()]
-
-
 def build(target: Path, wanted: Wanted) -> list[str]:
     """Build and check the FMU, then put it at `target` in one step.
 
@@ -190,7 +185,7 @@ def build(target: Path, wanted: Wanted) -> list[str]:
     with _workshop() as folder:
         files, package, script = build_with_pythonfmu(folder, wanted)
         core_names = [] if wanted.pure else [file.name for file in compiled_cores()]
-        others = other_targets(wanted)
+        others = wanted.other_targets
         compile_cores(others, package / "core" / "compiled_for")
         record_libpython(files)
         root = complete_description(files, date, wanted)
@@ -219,7 +214,10 @@ def build(target: Path, wanted: Wanted) -> list[str]:
 
 
 def main() -> None:
-    """Build the FMU of the default vehicle that the command line asks for."""
+    """Build the FMU of the default vehicle that the command line asks for.
+
+    An end from outside is as Ctrl-C: it leaves no temporary folder, and exit code 130.
+    """
     parser = argparse.ArgumentParser(
         prog="build_fmu.sh",
         description="Builds the FMU and checks it: FMPy validates it and simulates one landing.",
@@ -254,8 +252,16 @@ def main() -> None:
     arguments = parser.parse_args()
     wanted = Wanted(fmi=arguments.fmi, pure=arguments.pure, platforms=arguments.platforms)
     name = f"{MODEL_NAME}{'3' if wanted.fmi == '3' else ''}.fmu"
-    for line in build(arguments.file or ROOT / "build" / name, wanted):
-        print(line)
+    for ending in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(ending, signal.default_int_handler)
+    try:
+        lines = build(arguments.file or ROOT / "build" / name, wanted)
+    except LandingError as e:
+        raise SystemExit(f"error: {e}") from None
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        raise SystemExit(130) from None
+    print("\n".join(lines))
 
 
 if __name__ == "__main__":

@@ -132,7 +132,7 @@ def _description(variable: Variable) -> str:
 
 def _structure(whole: list[Variable]) -> Element:
     """ModelStructure: outputs and initial unknowns with what they depend on."""
-    references = {v.name: v.reference for v in whole}
+    references = {element: v.reference for v in whole for element in v.elements}
     outputs = [v for v in whole if v.elements[0] in OUTPUT_NAMES]
     node = Element("ModelStructure")
     for tag, known in (("Output", inputs_of), ("InitialUnknown", known_at_start)):

@@ -14,6 +14,8 @@ from zipfile import ZipFile
 import fmpy
 from lxml import etree
 
+from rlv_landing.quantities import flat_name
+
 FOLDER = "terminalsAndIcons"
 SCHEMA = Path(fmpy.__file__).parent / "schema" / "fmi3" / "fmi3TerminalsAndIcons.xsd"
 # half the width of the icon in its own coordinates, and how many mm one of them is
@@ -64,11 +66,12 @@ def terminals_and_icons(description: Element) -> Element:
         for v in description.findall("ModelVariables/*")
         if v.get("causality") in ("input", "output")
     ]
+    named = flat_name if description.get("variableNamingConvention") == "flat" else str
     for name, (prefix, rule, meaning) in TERMINALS.items():
-        _terminal(terminals, name, rule, meaning, prefix, connected)
+        _terminal(terminals, name, rule, meaning, named(prefix), connected)
     legs = _terminal(terminals, "legs", "bus", "the four legs; element k is leg k", "", [])
     for part, meaning in PARTS.items():
-        _terminal(legs, part, "bus", meaning, f"leg.{part}.", connected)
+        _terminal(legs, part, "bus", meaning, named(f"leg.{part}."), connected)
     return root
 
 

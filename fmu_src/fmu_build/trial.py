@@ -10,9 +10,8 @@ from fmpy.validation import validate_fmu
 
 from rlv_landing import Landing
 from rlv_landing.errors import reason_of
-from rlv_landing.quantities import OUTPUT_QUANTITIES, flat_name
+from rlv_landing.quantities import OUTPUT_QUANTITIES, flat_name, whole_name
 
-from .arrays import whole_name
 from .terminals import faults
 from .wanted import Wanted
 
@@ -83,9 +82,8 @@ def check(fmu: Path, wanted: Wanted, ends: Expected) -> str:
 
 def _own_name(name: str, wanted: Wanted) -> str:
     """The name of the FMU's variable that has an output."""
-    if wanted.fmi == "3":
-        return whole_name(name)
-    return flat_name(name) if wanted.flat_names else name
+    own = whole_name(name) if wanted.fmi == "3" else name
+    return flat_name(own) if wanted.flat_names else own
 
 
 def _column(result: Any, name: str, names: dict[str, str]) -> Any:

@@ -9,7 +9,7 @@ from math import ceil
 from rlv_landing.errors import LandingError
 from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
 
-from .targets import OWN
+from .targets import OWN, TARGETS, Target, own_machine
 
 MODEL_NAME = "RlvLanding"
 LONGEST_NAME = 64
@@ -38,8 +38,8 @@ class Wanted:
         platforms: Which platforms it is for, this machine's (`own`) or all.
 
     Raises:
-        LandingError: `name` is no identifier of C or no name of a file, FMI's version is not to be
-            had, or flat names are wanted in FMI 3.0.
+        LandingError: `name` is no identifier of C or no name of a file, or FMI's version is not to
+            be had.
     """
 
     parameters: Parameters = field(default_factory=Parameters)
@@ -70,11 +70,6 @@ class Wanted:
             raise LandingError(
                 f"FMI {self.fmi} FMUs cannot be built; the versions are {', '.join(FMI_VERSIONS)}"
             )
-        if self.flat_names and self.fmi == "3":
-            raise LandingError(
-                "flat names are for FMI 2.0, where each leg has variables of its own; in FMI 3.0 "
-                "they are arrays: leave one of the two out"
-            )
 
     @property
     def values(self) -> dict[str, float | str]:
@@ -82,6 +77,13 @@ class Wanted:
         own = dict(self.parameters.items())
         is_default = all(own[name] == q.default for name, q in PARAMETER_QUANTITIES.items())
         return {} if is_default else own
+
+    @property
+    def other_targets(self) -> list[Target]:
+        """The platforms besides this machine's that it has a compiled core for."""
+        if self.pure or self.platforms == OWN:
+            return []
+        return [target for target in TARGETS.values() if target.name != own_machine()]
 
     @property
     def stop_time(self) -> float:

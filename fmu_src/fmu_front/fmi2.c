@@ -1,6 +1,7 @@
 /* The functions of FMI 2.0. */
 #include "fmi2Functions.h"
 #include "instance.h"
+#include "state_functions.h"
 #include "variables.h"
 
 #include <math.h>
@@ -239,38 +240,7 @@ fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t 
     return (fmi2Status)instance_write_strings(c, &SetString, vr, nvr, value);
 }
 
-fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
-{
-    return (fmi2Status)instance_get_state(c, &GetFMUstate, FMUstate);
-}
-
-fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate)
-{
-    return (fmi2Status)instance_set_state(c, &SetFMUstate, FMUstate);
-}
-
-fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
-{
-    return (fmi2Status)instance_free_state(c, &FreeFMUstate, FMUstate);
-}
-
-fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate FMUstate, size_t *size)
-{
-    return (fmi2Status)instance_state_size(c, &SerializedFMUstateSize, FMUstate, size);
-}
-
-fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate FMUstate, fmi2Byte serializedState[],
-                                 size_t size)
-{
-    return (fmi2Status)instance_serialize(c, &SerializeFMUstate, FMUstate, serializedState, size);
-}
-
-fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte serializedState[], size_t size,
-                                   fmi2FMUstate *FMUstate)
-{
-    return (fmi2Status)instance_deserialize(c, &DeSerializeFMUstate, serializedState, size,
-                                            FMUstate);
-}
+STATE_FUNCTIONS(fmi2, Component, FMUstate, DeSerialize)
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                                        const fmi2Integer order[], const fmi2Real value[])

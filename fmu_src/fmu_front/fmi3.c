@@ -1,5 +1,6 @@
 /* The functions of FMI 3.0: instances, modes, states. */
 #include "fmi3.h"
+#include "state_functions.h"
 #include "variables.h"
 
 #include <stdlib.h>
@@ -171,36 +172,4 @@ fmi3Status fmi3Reset(fmi3Instance c)
     return (fmi3Status)instance_reset(c, &Reset);
 }
 
-fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *FMUState)
-{
-    return (fmi3Status)instance_get_state(c, &GetFMUState, FMUState);
-}
-
-fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState FMUState)
-{
-    return (fmi3Status)instance_set_state(c, &SetFMUState, FMUState);
-}
-
-fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState *FMUState)
-{
-    return (fmi3Status)instance_free_state(c, &FreeFMUState, FMUState);
-}
-
-fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState FMUState, size_t *size)
-{
-    return (fmi3Status)instance_state_size(c, &SerializedFMUStateSize, FMUState, size);
-}
-
-fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState FMUState, fmi3Byte serializedState[],
-                                 size_t size)
-{
-    return (fmi3Status)instance_serialize(c, &SerializeFMUState, FMUState, (char *)serializedState,
-                                          size);
-}
-
-fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte serializedState[], size_t size,
-                                   fmi3FMUState *FMUState)
-{
-    return (fmi3Status)instance_deserialize(c, &DeserializeFMUState,
-                                            (const char *)serializedState, size, FMUState);
-}
+STATE_FUNCTIONS(fmi3, Instance, FMUState, Deserialize)

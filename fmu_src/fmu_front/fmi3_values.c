@@ -234,33 +234,24 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference valueReferenc
                                       values);
 }
 
-fmi3Status fmi3SetInt32(fmi3Instance c, const fmi3ValueReference valueReferences[],
-                        size_t nValueReferences, const fmi3Int32 values[], size_t nValues)
-{
-    if (!check_write(c, &SetInt32, INTEGER, valueReferences, nValueReferences, values, nValues))
-        return fmi3Error;
-    double *numbers = instance_room(c, &SetInt32, nValues);
-    if (nValues && !numbers)
-        return fmi3Error;
-    for (size_t i = 0; i < nValues; i++)
-        numbers[i] = values[i];
-    return (fmi3Status)instance_write(c, &SetInt32, INTEGER, valueReferences, nValueReferences,
-                                      numbers);
-}
-
-fmi3Status fmi3SetBoolean(fmi3Instance c, const fmi3ValueReference valueReferences[],
-                          size_t nValueReferences, const fmi3Boolean values[], size_t nValues)
-{
-    if (!check_write(c, &SetBoolean, BOOLEAN, valueReferences, nValueReferences, values, nValues))
-        return fmi3Error;
-    double *numbers = instance_room(c, &SetBoolean, nValues);
-    if (nValues && !numbers)
-        return fmi3Error;
-    for (size_t i = 0; i < nValues; i++)
-        numbers[i] = values[i];
-    return (fmi3Status)instance_write(c, &SetBoolean, BOOLEAN, valueReferences, nValueReferences,
-                                      numbers);
-}
+/* Write values of another type of C than double. */
+#define SET(Name, kind, type) \
+    fmi3Status fmi3Set##Name(fmi3Instance c, const fmi3ValueReference valueReferences[], \
+                             size_t nValueReferences, const type values[], size_t nValues) \
+    { \
+        if (!check_write(c, &Set##Name, kind, valueReferences, nValueReferences, values, nValues)) \
+            return fmi3Error; \
+        double *numbers = instance_room(c, &Set##Name, nValues); \
+        if (nValues && !numbers) \
+            return fmi3Error; \
+        for (size_t i = 0; i < nValues; i++) \
+            numbers[i] = values[i]; \
+        return (fmi3Status)instance_write(c, &Set##Name, kind, valueReferences, nValueReferences, \
+                                          numbers); \
+    }
+SET(Int32, INTEGER, fmi3Int32)
+SET(Boolean, BOOLEAN, fmi3Boolean)
+#undef SET
 
 fmi3Status fmi3SetString(fmi3Instance c, const fmi3ValueReference valueReferences[],
                          size_t nValueReferences, const fmi3String values[], size_t nValues)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,8 @@ from .history import History
 from .validation.measures import first_push, leg_work
 
 UNFINISHED = {
-    "in compression": "its largest stroke, efficiency and energies are not known",
-    "in rebound": "its dissipated energy is not known",
+    "in compression": "largest stroke, efficiency and energies are not known",
+    "in rebound": "the dissipated energy is not known",
 }
 OUTCOMES = ("falling", "in contact, not yet at rest", "settled", "toppled")
 
@@ -94,6 +95,12 @@ def _contact_force(history: History, leg: int) -> dict[str, float]:
     return {"contact_force_max": force, "contact_force_max_time": time}
 
 
+def dampers_of(legs: Sequence[object]) -> str:
+    """The dampers of these legs, in words."""
+    numbers = ", ".join(map(str, legs))
+    return f"the damper of leg {numbers}" if len(legs) == 1 else f"the dampers of legs {numbers}"
+
+
 def unfinished(summary: dict[str, Any]) -> list[str]:
     """A line for each kind of stroke that the end cuts off: legs, and what is not known."""
     lines = []
@@ -103,8 +110,8 @@ def unfinished(summary: dict[str, Any]) -> list[str]:
         ]
         if legs:
             lines.append(
-                f"at the end, {summary['end_time']:.3f} s, the damper of leg {', '.join(legs)} is "
-                f"still {state}: {missing}; run it longer"
+                f"at the end, {summary['end_time']:.3f} s, {dampers_of(legs)} "
+                f"{'is' if len(legs) == 1 else 'are'} still {state}: {missing}; run it longer"
             )
     last = summary["end_time"] - 1e-9
     growing = [
@@ -116,7 +123,8 @@ def unfinished(summary: dict[str, Any]) -> list[str]:
     ]
     if growing:
         lines.append(
-            f"at the end, {summary['end_time']:.3f} s, the damper of leg {', '.join(growing)} goes "
-            "in further than ever before: its largest stroke is not known; run it longer"
+            f"at the end, {summary['end_time']:.3f} s, {dampers_of(growing)} "
+            f"{'goes' if len(growing) == 1 else 'go'} in further than ever before: the largest "
+            "stroke is not known; run it longer"
         )
     return lines

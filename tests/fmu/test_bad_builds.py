@@ -62,15 +62,17 @@ def test_a_full_disk_where_it_builds_is_told_as_such(binary, monkeypatch, tmp_pa
     assert not list(tmp_path.iterdir())
 
 
-def test_a_build_that_is_ended_leaves_nothing(tmp_path):
+@pytest.mark.parametrize("module", ["rlv_ros_bridge", "fmu_build.build"])
+def test_a_build_that_is_ended_leaves_nothing(module, tmp_path):
     """Its compiler ends it, so it ends amid the build."""
     compiler = tmp_path / "cc"
     compiler.write_text("#!/bin/sh\nkill -TERM $PPID\nsleep 60\n")
     compiler.chmod(0o755)
     room = tmp_path / "room"
     room.mkdir()
+    command = ["--pure"] if module == "fmu_build.build" else ["fmu", "build", "--pure", "-o"]
     done = subprocess.run(
-        [sys.executable, "-m", "rlv_ros_bridge", "fmu", "build", "--pure", "-o", "mine.fmu"],
+        [sys.executable, "-m", module, *command, "mine.fmu"],
         cwd=tmp_path,
         capture_output=True,
         text=True,

@@ -14,6 +14,11 @@ import pytest
 from rlv_landing import Landing
 from rlv_landing.core import compiled
 
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
 ROOT = Path(__file__).resolve().parent.parent.parent
 
 LAND = """
@@ -130,3 +135,15 @@ def test_the_built_fmu_needs_no_libstdcpp_and_with_zig_no_new_glibc(unpacked, bi
         assert not {name for name in libraries if "stdc++" in name or "gcc" in name}
         if compilers.has_zig():
             assert glibc <= (2, 17), library
+
+
+def test_an_isolated_build_of_the_package_has_what_compiles_its_front():
+    """FMI's headers come with FMPy, and pythonfmu describes the variables."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    needed = [
+        requirement
+        for requirement in project["project"]["optional-dependencies"]["fmu"]
+        if requirement.startswith(("fmpy", "pythonfmu"))
+    ]
+    assert len(needed) == 2
+    assert set(needed) <= set(project["build-system"]["requires"])

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from xml.etree import ElementTree
 from zipfile import ZipFile
 
 import fmpy
 import pytest
 from fmpy.validation import validate_fmu
 from lxml import etree
+
+from rlv_landing.quantities import flat_name
+from rlv_ros_bridge.fmu.description import places
 
 SCHEMAS = Path(fmpy.__file__).parent / "schema" / "fmi3"
 TERMINALS = "terminalsAndIcons/terminalsAndIcons.xml"
@@ -38,6 +42,31 @@ def test_fmpy_finds_no_problem_and_both_files_follow_the_schemas(fmu3, archive):
         etree.XMLSchema(etree.parse(str(SCHEMAS / schema))).assertValid(
             etree.fromstring(archive.read(file))
         )
+
+
+def test_flat_names_are_those_of_the_same_arrays(fmu, fmu3, tmp_path):
+    from fmu_build.description3 import describe3
+    from fmu_build.terminals import terminals_and_icons
+
+    root = ElementTree.fromstring(ZipFile(fmu).read("modelDescription.xml"))
+    root.set("variableNamingConvention", "flat")
+    for variable in root.iter("ScalarVariable"):
+        variable.set("name", flat_name(variable.attrib["name"]))
+    made = describe3(root)
+    file = tmp_path / "modelDescription.xml"
+    file.write_bytes(ElementTree.tostring(made))
+    flat, structured = (fmpy.read_model_description(str(f)) for f in (file, fmu3))
+    assert [v.name for v in flat.modelVariables] == [
+        flat_name(v.name) for v in structured.modelVariables
+    ]
+    assert places(flat, file) == places(structured, fmu3)
+    assert ElementTree.tostring(made.find("ModelStructure")) == ElementTree.tostring(
+        describe3(ElementTree.fromstring(ZipFile(fmu).read("modelDescription.xml"))).find(
+            "ModelStructure"
+        )
+    )
+    members = {m.get("variableName") for m in terminals_and_icons(made).iter()}
+    assert {"leg_contact_force", "external_moment", "body_y"} <= members
 
 
 def test_files_are_those_of_fmi_2_in_the_places_of_fmi_3(archive, fmu):

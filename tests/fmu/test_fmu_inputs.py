@@ -5,16 +5,18 @@ from __future__ import annotations
 import json
 import sys
 import zipfile
+from itertools import pairwise
 
 import pytest
 
 from rlv_landing import Landing, Parameters
 from rlv_landing.cli import run
 from rlv_landing.errors import LandingError
-from rlv_landing.quantities import OUTPUT_NAMES
+from rlv_landing.quantities import OUTPUT_NAMES, STATISTIC_QUANTITIES
 from rlv_ros_bridge.commands.group import main
-from rlv_ros_bridge.fmu.input_table import Setting, read_inputs
+from rlv_ros_bridge.fmu.input_table import Setting, in_steps, read_inputs, sloped
 from rlv_ros_bridge.fmu.landing import land_fmu
+from rlv_ros_bridge.fmu.runner import FmuRunner
 
 TABLE = """\
 time [ms],external.force_x [kN],ground.heave [mm],ground.tilt [deg],ground.tilt_rate [deg/s]
@@ -84,6 +86,79 @@ def test_the_fmu_lands_under_a_table_as_landing_does(fmu, table):
     extremes = landing.extremes()
     peak = history.extreme("leg[1].contact.force")
     assert (peak.maximum, peak.maximum_time) == extremes["leg[1].contact.force"][2:]
+
+
+DECK_AND_LOADS = """\
+time,external.force_y,ground.heave [mm],ground.tilt [deg]
+0,0,0,0
+0.1,0,10,0.1
+0.1,-500,10,0.1
+0.3,-500,0,0.2
+"""
+
+
+def test_fmi_3_lands_to_the_same_digits_under_steps_of_load_and_a_moving_deck(fmu, fmu3, table):
+    settings = read_inputs(table(DECK_AND_LOADS)).settings()
+    assert sloped(settings) == []
+    parameters = Parameters().with_values({"vehicle.mass": 190.0, "ground.friction": 0.4})
+    two, three = (land_fmu(file, parameters, settings, 0.4, 1e-2) for file in (fmu, fmu3))
+    assert two["energy.work_ground"][-1] != 0.0
+    for name in OUTPUT_NAMES:
+        assert list(two[name]) == list(three[name]), name
+    assert two.extremes == three.extremes
+
+
+def test_linear_loads_are_told_in_fmi_3_at_their_means_in_steps_of_1_ms(fmu, fmu3, table):
+    settings = read_inputs(table(TABLE)).settings()
+    assert sloped(settings) == ["external.force_x"]
+    steps = list(in_steps(settings, 1e-3, 0.4))
+    assert not sloped(steps)
+    assert all(b.time >= a.time for a, b in pairwise(steps))
+    impulse = sum(
+        a.values["external.force_x"] * (b.time - a.time)
+        for a, b in pairwise(steps)
+        if b.time < 0.21
+    )
+    # ramps of 0 to 400 N in 0.1 s, and of -400 N to 0 in 60.5 ms up to the step before its last
+    assert impulse == pytest.approx(20.0 - 400.0 * 0.0605 / 2.0, abs=0.01)
+    two, three = (land_fmu(file, Parameters(), settings, 0.4, 1e-2) for file in (fmu, fmu3))
+    for name in ("body.x", "leg[1].main_strut.force", "leg[3].main_strut.stroke"):
+        assert abs(two[name] - three[name]).max() < 1e-4 * abs(two[name]).max(), name
+
+
+def test_steps_of_a_load_take_no_memory_and_too_many_are_refused(command, fmu3, table):
+    far = table("time,external.force_x\n0,0\n1e12,1e6\n")
+    steps = in_steps(read_inputs(far).settings(), 1e-3, 1e12)
+    assert [next(steps).time for _ in range(3)] == [0.0, 1e-3, 2e-3]
+    command_line = ("fmu", "simulate", fmu3, "--input", far, "--until", "1e9", "--every", "1e6")
+    code, _, err = command(*command_line)
+    assert code == 2
+    assert "with loads in steps would take 174 days" in err
+
+
+def test_a_rate_that_fmi_3_cannot_tell_is_refused(fmu3):
+    with (
+        FmuRunner(fmu3, {}) as runner,
+        pytest.raises(LandingError, match="cannot tell; set it in steps"),
+    ):
+        runner.set_inputs({"external.force_x": 1.0}, {"external.force_x": 2.0})
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_a_runner_that_was_closed_gives_no_values(fmu, fmu3, version):
+    runner = FmuRunner(fmu if version == 2 else fmu3, {})
+    assert set(runner.statistics()) == {q.name for q in STATISTIC_QUANTITIES if q.kind == "integer"}
+    runner.close()
+    for call in (runner.values, runner.peaks, lambda: runner.step(0, 1e-3)):
+        with pytest.raises(LandingError, match="has been freed"):
+            call()
+
+
+def test_info_shows_the_size_of_arrays(command, fmu3):
+    code, out, _ = command("fmu", "info", fmu3, "--json")
+    types = {v["name"]: v["type"] for v in json.loads(out)["variables"]}
+    assert code == 0
+    assert (types["leg.contact.force"], types["body.y"]) == ("Float64[4]", "Float64")
 
 
 @pytest.mark.parametrize(

@@ -229,7 +229,6 @@ def test_what_cannot_be_built_is_refused_in_one_line(command, stage, monkeypatch
         (["--name", "ä"], "must be letters"),
         (["--name", "a" * 65], "65 characters; at most 64"),
         (["--fmi", "4"], "FMI 4 FMUs cannot be built; the versions are 2, 3"),
-        (["--fmi", "3.0", "--flat-names"], "flat names are for FMI 2.0"),
         (["-o", "x.zip"], "x.zip must end in .fmu"),
         (["-o", "nosuch/x.fmu"], "there is no folder nosuch"),
         (["--set", "vehicle.mass=0"], "vehicle.mass = 0 kg is outside"),

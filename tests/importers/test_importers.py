@@ -36,6 +36,11 @@ def test_importer_gives_landings_trajectory(landed_by, importer, job):
     assert_same(landed_by(importer, job), job)
 
 
+@pytest.mark.parametrize("job", JOBS.values(), ids=list(JOBS))
+def test_fmpy_gives_landings_trajectory_by_fmi_3(landed_by, fmu3, job):
+    assert_same(landed_by("fmpy", job, file=fmu3), job)
+
+
 def test_cofmupy_that_sets_every_input_at_every_step_gives_landings_trajectory(landed_by):
     """CoFmuPy 1.0.0 reads every output as a Real, Integers and Booleans too. It sets no strings."""
     assert_same(landed_by("cofmupy", SLIPPERY), SLIPPERY)

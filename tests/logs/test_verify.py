@@ -11,7 +11,7 @@ from random import Random
 from typing import Any
 
 import pytest
-from bridge_tools import one_error_line, run
+from bridge_tools import one_error_line, record, run
 from log_tools import in_attachment, in_message, in_metadata, rewrite, small_log
 from rclpy.serialization import serialize_message
 
@@ -55,13 +55,21 @@ def with_position_x(factor: float) -> Callable[[bytes], bytes]:
     return change
 
 
-def test_a_log_is_its_run_bit_for_bit_by_the_model_and_by_the_fmu(log: Path, fmu: Path) -> None:
-    for options in ((), ("--fmu", fmu)):
+def test_a_log_is_its_run_bit_for_bit_by_the_model_and_by_the_fmu(
+    log: Path, fmu: Path, fmu3: Path
+) -> None:
+    for options in ((), ("--fmu", fmu), ("--fmu", fmu3)):
         done = run("log", "verify", log, *options)
         assert (done.returncode, done.stderr) == (0, "")
         assert "same      bit for bit" in done.stdout
         assert "11011 messages at 1001 instants up to 1 s" in done.stdout
         assert "note" not in done.stdout
+
+
+def test_a_log_of_an_fmu_of_fmi_3_is_its_run_bit_for_bit(fmu3: Path, tmp_path: Path) -> None:
+    options = ("--stop-time", "0.3", "--set", "vehicle.mass=190")
+    found = verify(LogReader(only_file(record(fmu3, tmp_path / "log", *options))))
+    assert (found.instants, found.other_bits, found.not_exact) == (301, 0, "")
 
 
 def test_one_changed_bit_is_found_with_topic_field_and_time(one_log: Path, tmp_path: Path) -> None:

@@ -28,9 +28,10 @@ from rlv_landing.quantities import (
     STATISTIC_QUANTITIES,
     Quantity,
     flat_name,
+    whole_name,
 )
 
-from ..arrays import whole_meaning, whole_name
+from ..arrays import whole_meaning
 from ..binary import compilers
 from ..dependencies import inputs_of
 from ..sources import source
@@ -169,19 +170,19 @@ def of_one_leg(quantities: Iterable[Quantity], before: str = "") -> list[Quantit
     ]
 
 
-def names(q: Quantity, fmi: int) -> tuple[str, str]:
-    """Name and meaning of a quantity, or of the array whose first element it is in FMI 3.0."""
+def names(q: Quantity, fmi: int) -> dict[str, str]:
+    """Name, size and meaning of a quantity, or of the array that it begins in FMI 3.0."""
     whole = whole_name(q.name)
     if fmi == 3 and whole != q.name:
-        return f"{whole}[{len(LEGS)}]", whole_meaning(q.meaning)
-    return q.name, q.meaning
+        return {"name": whole, "size": f"[{len(LEGS)}]", "meaning": whole_meaning(q.meaning)}
+    return {"name": q.name, "size": "", "meaning": q.meaning}
 
 
 def rows(quantities: Any, fmi: int = 2) -> list[dict[str, str]]:
     """One table row per quantity, all as text; bounds and default in its SI unit."""
     return [
         {
-            **dict(zip(("name", "meaning"), names(q, fmi))),
+            **names(q, fmi),
             "unit": q.unit or ("1" if q.kind == "real" else ""),
             "shown": q.display_unit,
             "type": q.kind.capitalize(),

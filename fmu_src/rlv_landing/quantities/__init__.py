@@ -17,7 +17,7 @@ from .outputs import (
     STATUS_QUANTITIES,
 )
 from .peaks import PEAK_QUANTITIES, PEAKS, Peak
-from .quantity import BASE_UNITS, DISPLAY_UNITS, NOMINALS, Quantity, flat_name, shown
+from .quantity import BASE_UNITS, DISPLAY_UNITS, NOMINALS, Quantity, flat_name, shown, whole_name
 from .statistics import STATISTIC_QUANTITIES
 
 __all__ = [
@@ -45,4 +45,5 @@ __all__ = [
     "azimuth",
     "flat_name",
     "shown",
+    "whole_name",
 ]

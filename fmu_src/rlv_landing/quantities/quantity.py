@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from math import inf
 from typing import Literal
 
 Source = Literal["paper", "derived", "closure", "identified", "user"]
+# what tells the quantities of one leg from those of another
+LEG_INDEX = re.compile(r"(?<![^.])leg\[\d+\]")
 
 
 @dataclass(frozen=True)
@@ -52,6 +55,14 @@ def flat_name(name: str) -> str:
     For hosts in which `a.b` is a part of a bus, or `a[1]` an element of an array.
     """
     return name.replace("[", "").replace("]", "").replace(".", "_")
+
+
+def whole_name(name: str) -> str:
+    """The array that a quantity is an element of, `leg.contact.force`; else its name.
+
+    For FMI 3.0, in which the four legs are one array.
+    """
+    return LEG_INDEX.sub("leg", name)
 
 
 # display unit -> (SI unit, factor): value_SI = factor * value_display

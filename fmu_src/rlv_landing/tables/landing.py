@@ -9,7 +9,7 @@ from typing import Any
 from ..history import History
 from ..parameters import PARAMETER_QUANTITIES, Parameters
 from ..quantities import Quantity
-from ..summary import summarise, unfinished
+from ..summary import dampers_of, summarise, unfinished
 from ..validation.paper import Comparison, compare, counts, other_vehicle
 from .rendering import new_table, render
 
@@ -172,8 +172,8 @@ def summary_table(history: History, title: str, outcome: str = "") -> str:
         lines.append("; ".join(known))
     if s.get("bottomed_out"):
         lines.append(
-            f"BOTTOMED OUT: the damper of leg {', '.join(map(str, s['bottomed_out']))} "
-            "met its compression stop"
+            f"BOTTOMED OUT: {dampers_of(s['bottomed_out'])} met "
+            f"{'its' if len(s['bottomed_out']) == 1 else 'their'} compression stop"
         )
     notes = [*unfinished(s), FIRST_STROKE, peaks_note(history)]
     return render(table, 190) + "\n".join([*lines, *notes]) + "\n"

@@ -196,7 +196,8 @@ def simulate(
 ) -> None:
     """Land one of our FMUs once through FMPy; print outcome and peaks.
 
-    The result is that of `rlv-landing simulate` with the same parameters and inputs.
+    The result is that of `rlv-landing simulate` with the same parameters and inputs. An FMU of FMI
+    3.0 is told linear loads in steps of at most 1 ms.
 
     \b
     Examples:
@@ -231,12 +232,18 @@ def _landed(file: Path, options: dict[str, Any]) -> tuple[History, str]:
     from rlv_landing.parameters import PARAMETER_QUANTITIES
 
     from ..fmu.description import read_description, vehicle_of
+    from ..fmu.input_table import sloped
     from ..fmu.landing import land_fmu
 
     description = read_description(file)
     values = parse_pairs(options["pairs"], PARAMETER_QUANTITIES, "parameter")
     parameters: Parameters = vehicle_of(description, values)
     inputs = _inputs(options["inputs"])
+    if description.fmiVersion == "3.0" and (names := sloped(inputs)):
+        print_warning(
+            f"FMI 3.0 has no rates of inputs; {', '.join(names)} is set in steps of at most 1 ms, "
+            "at the mean of each; an FMU of FMI 2.0 is told the slope"
+        )
     until = options["until"]
     if until is None:
         until = _own_end(description, file)

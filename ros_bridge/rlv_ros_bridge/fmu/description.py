@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 import re
 import zipfile
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Container, Mapping
+from math import prod
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from rlv_landing.errors import LandingError, reason_of
 from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
@@ -17,6 +19,7 @@ from rlv_landing.quantities import (
     PEAK_QUANTITIES,
     STATISTIC_QUANTITIES,
     flat_name,
+    whole_name,
 )
 
 MODEL_NAME = "RlvLanding"
@@ -29,12 +32,21 @@ VEHICLE = re.compile(r"resources/[^/]+/vehicle\.json")
 LARGEST, LARGEST_DESCRIPTION = 1_000_000_000, 200_000_000
 DESCRIPTION = "modelDescription.xml"
 BUILD = "build ours by `rlv-landing fmu build`"
+FMI_VERSIONS = ("2.0", "3.0")
 NAMES = (
     *OUTPUT_NAMES,
     *INPUT_NAMES,
     *PARAMETER_QUANTITIES,
     *(q.name for q in (*STATISTIC_QUANTITIES, *PEAK_QUANTITIES)),
 )
+
+
+class Place(NamedTuple):
+    """Where a value is in an FMU: its variable, and the element of that, from 0, of `size`."""
+
+    reference: int
+    element: int = 0
+    size: int = 1
 
 
 def open_description(path: Path) -> Any:
@@ -61,6 +73,13 @@ def open_description(path: Path) -> Any:
     try:
         with zipfile.ZipFile(path) as archive:
             size = archive.getinfo(DESCRIPTION).file_size
+    except (zipfile.BadZipFile, KeyError):
+        raise LandingError(
+            f"{path} is not an FMU: it is no zip archive with a modelDescription.xml in it"
+        ) from None
+    except OSError as e:
+        raise LandingError(f"FMU {path} cannot be read: {e.strerror or e}") from None
+    try:
         if size > LARGEST_DESCRIPTION:
             raise LandingError(
                 f"{path}: its {DESCRIPTION} has {size / 1e6:.0f} MB, at most "
@@ -69,9 +88,10 @@ def open_description(path: Path) -> Any:
         return read_model_description(str(path))
     except LandingError:
         raise
-    except (zipfile.BadZipFile, KeyError):
+    except KeyError as e:  # of a unit, type or variable
         raise LandingError(
-            f"{path} is not an FMU: it is no zip archive with a modelDescription.xml in it"
+            f"{path} is not an FMU that can be read: its modelDescription.xml refers to {e}, "
+            "which is not in it"
         ) from None
     except Exception as e:
         raise LandingError(f"{path} is not an FMU that can be read: {reason_of(e)}") from None
@@ -111,31 +131,48 @@ def read_description(path: Path) -> Any:
             f"{path} holds the model {description.modelName!r}, which is not of rlv-landing; "
             f"{BUILD}"
         )
-    if description.fmiVersion != "2.0" or description.coSimulation is None:
+    if description.fmiVersion not in FMI_VERSIONS or description.coSimulation is None:
         raise LandingError(
-            f"{path} is an FMU of FMI {description.fmiVersion}; FMI 2.0 for co-simulation is what "
-            "runs here: build it by `rlv-landing fmu build`, without `--fmi 3`"
+            f"{path} is an FMU of FMI {description.fmiVersion}"
+            f"{'' if description.coSimulation else ' without co-simulation'}; FMI "
+            f"{' or '.join(FMI_VERSIONS)} for co-simulation is what runs here; {BUILD}"
         )
     return description
 
 
-def references(description: Any, path: Path) -> dict[str, int]:
-    """The value references of our FMU's variables by our names, also where its own are flat.
+def places(description: Any, path: Path) -> dict[str, Place]:
+    """Where our FMU has each quantity, by our names, also where its own are flat or arrays.
 
     Raises:
         LandingError: It lacks a variable: it is of another version.
     """
-    known = {v.name: v.valueReference for v in description.modelVariables}
-    found: dict[str, int] = {}
-    for name in NAMES:
-        own = name if name in known else flat_name(name)
-        if own not in known:
+    known = {v.name: v for v in description.modelVariables}
+    found: dict[str, Place] = {}
+    arrays = description.fmiVersion == "3.0"
+    own_names = [_own_name(name, known, arrays=arrays) for name in NAMES]
+    sizes, seen = Counter(own_names), Counter[str]()
+    for name, own in zip(NAMES, own_names):
+        if own not in known or _size(known[own]) != sizes[own]:
             raise LandingError(
                 f"{path} (version {description.version or 'unknown'}) has no variable {name!r}; "
                 "build it again by `rlv-landing fmu build`"
             )
-        found[name] = known[own]
+        found[name] = Place(known[own].valueReference, seen[own], sizes[own])
+        seen[own] += 1
     return found
+
+
+def _own_name(name: str, known: Container[str], *, arrays: bool) -> str:
+    """An FMU's name of the variable that has a quantity."""
+    if name in known:
+        return name
+    whole = whole_name(name) if arrays else name
+    return whole if whole in known else flat_name(whole)
+
+
+def _size(variable: Any) -> int:
+    """The number of values of a variable; 0 where a parameter decides it, as in none of ours."""
+    return prod(int(d.start or 0) for d in variable.dimensions or ())
 
 
 def start_values(description: Any) -> dict[str, float | str]:

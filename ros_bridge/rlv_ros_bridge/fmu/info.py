@@ -9,6 +9,7 @@ from math import degrees
 from pathlib import Path
 from typing import Any
 
+from rlv_landing.errors import LandingError
 from rlv_landing.parameters import Parameters
 from rlv_landing.tables.rendering import new_table, render
 from rlv_landing.touchdown import footpad_at_rest
@@ -23,7 +24,10 @@ KINDS = {"coSimulation": "co-simulation", "modelExchange": "model exchange"}
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable of the description; its start as text, empty where it has none."""
+    """A variable of the description; its start as text, empty where it has none.
+
+    An array's type has its extents: `Float64[4]`.
+    """
 
     name: str
     causality: str
@@ -116,12 +120,12 @@ def fmu_info(path: Path) -> FmuInfo:
         kinds=[text for kind, text in KINDS.items() if getattr(description, kind, None)],
         platforms=sorted({m[1] for name in names if (m := BINARY.fullmatch(name))}),
         cores=sorted({m[1] for name in names if (m := CORE.fullmatch(name))}) if ours else [],
-        vehicle=_vehicle(vehicle_of(description)) if ours else {},
+        vehicle=_vehicle(_vehicle_at(description, path)) if ours else {},
         variables=[
             Variable(
                 v.name,
                 v.causality or "",
-                v.type,
+                v.type + "".join(f"[{_extent(d)}]" for d in v.dimensions or ()),
                 v.unit or "",
                 _short(v.type, v.start),
                 v.description or "",
@@ -129,6 +133,23 @@ def fmu_info(path: Path) -> FmuInfo:
             for v in description.modelVariables
         ],
     )
+
+
+def _vehicle_at(description: Any, path: Path) -> Parameters:
+    """The vehicle of our FMU at `path`.
+
+    Raises:
+        LandingError: A value is not one of this version's.
+    """
+    try:
+        return vehicle_of(description)
+    except LandingError as e:
+        raise LandingError(f"the vehicle of {path}: {e}") from None
+
+
+def _extent(dimension: Any) -> str:
+    """The extent of an array: its number, or the structural parameter that has it."""
+    return str(dimension.variable.name if dimension.start is None else dimension.start)
 
 
 def _short(kind: str, start: Any) -> str:

@@ -8,9 +8,10 @@ ground's rates have no columns, they are the slopes of its positions.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import inf, isfinite
+from itertools import chain, pairwise
+from math import ceil, floor, inf, isfinite
 from pathlib import Path
 from typing import NamedTuple
 
@@ -139,6 +140,38 @@ def _values(names: list[str], units: list[Unit], cells: list[str]) -> list[float
             raise LandingError(f"{name} = {value:g} {q.unit} must be finite")
         values.append(value)
     return values
+
+
+def sloped(settings: Sequence[Setting]) -> list[str]:
+    """The inputs that have rates which are no inputs of their own, by name."""
+    rates = (name for s in settings for name, rate in s.rates.items() if rate != 0.0)
+    return [name for name in dict.fromkeys(rates) if name not in RATES]
+
+
+def in_steps(settings: Sequence[Setting], step: float, until: float) -> Iterator[Setting]:
+    """What is set where the rates of `sloped` inputs cannot be told: their means in each step.
+
+    Args:
+        settings: What is set, in the order of time.
+        step: The length of the steps [s], which begin at its multiples.
+        until: The end [s], after which nothing is set.
+    """
+    for setting, following in pairwise([*settings, Setting(until, {}, {})]):
+        if setting.time >= until:
+            return
+        rates = {name: setting.rates[name] for name in sloped([setting])}
+        others = {name: rate for name, rate in setting.rates.items() if name in RATES}
+        time, end, values = setting.time, min(following.time, until), setting.values
+        first = floor(time / step * (1.0 + 1e-12) + 1e-9) + 1
+        last = ceil(end / step * (1.0 - 1e-12) - 1e-9) if rates else first
+        edges = chain([time], (k * step for k in range(first, last)), [end])
+        for start, stop in pairwise(edges):
+            means = {
+                name: values[name] + rate * ((start + stop) / 2.0 - time)
+                for name, rate in rates.items()
+            }
+            whole = start == time
+            yield Setting(start, {**(values if whole else {}), **means}, others if whole else {})
 
 
 def constants(values: Mapping[str, float | str]) -> list[Setting]:

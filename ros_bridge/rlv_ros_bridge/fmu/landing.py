@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from math import inf
+from math import ceil, inf
 from pathlib import Path
 
 import numpy as np
@@ -15,12 +15,14 @@ from rlv_landing.parameters import Parameters
 from rlv_landing.quantities import OUTPUT_NAMES
 from rlv_landing.state import LATEST
 
-from .input_table import Setting
+from .input_table import Setting, in_steps, sloped
 from .peaks import known_extremes
 from .runner import FmuRunner
 
 # a step with all outputs takes at least so long [s]
 SECONDS_PER_SAMPLE = 15e-6
+# the longest step in which a linear load is constant, where its rate cannot be told [s]
+LONGEST_STEP = 1e-3
 
 
 def land_fmu(
@@ -34,7 +36,8 @@ def land_fmu(
     """Land an FMU; return its outputs every `every` [s], and its true peaks.
 
     The communication points are the samples, and the times at which inputs are set between them.
-    Results do not depend on the samples.
+    Results do not depend on the samples. Linear loads on an FMU of FMI 3.0, which cannot be told
+    their rates, are set at their means in steps of at most 1 ms.
 
     Args:
         path: The FMU.
@@ -61,15 +64,20 @@ def land_fmu(
     times = [k * every for k in range(int(count * (1.0 + 1e-12) + 1e-9) + 1)]
     rows = np.empty((len(times), len(OUTPUT_NAMES)))
     with FmuRunner(path, dict(parameters.items())) as runner:
-        waiting = list(reversed(inputs))
+        settings = iter(inputs)
+        if sloped(inputs) and not runner.takes_rates:
+            step = every / ceil(every / LONGEST_STEP)
+            check_duration(
+                f"{span}, with loads in steps", SECONDS_PER_SAMPLE * until / step, remedy
+            )
+            settings = in_steps(inputs, step, until)
+        waiting = next(settings, None)
         now = 0.0
         for row, time in zip(rows, times):
-            while waiting and waiting[-1].time < time:
-                now = _go_on(runner, now, waiting[-1].time)
-                _set(runner, waiting.pop())
-            if time == 0.0:
-                while waiting and waiting[-1].time == 0.0:
-                    _set(runner, waiting.pop())
+            while waiting and (waiting.time < time or waiting.time == time == 0.0):
+                now = _go_on(runner, now, waiting.time)
+                runner.set_inputs(waiting.values, waiting.rates)
+                waiting = next(settings, None)
             now = _go_on(runner, now, time)
             row[:] = runner.values()
             if progress is not None:
@@ -84,7 +92,3 @@ def _go_on(runner: FmuRunner, now: float, time: float) -> float:
     if time > now:
         runner.advance(now, time)
     return max(now, time)
-
-
-def _set(runner: FmuRunner, setting: Setting) -> None:
-    runner.set_inputs(setting.values, setting.rates)

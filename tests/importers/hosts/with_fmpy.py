@@ -1,11 +1,20 @@
-"""FMPy: `simulate_fmu`, parameters as start values, inputs as a table over time."""
+"""FMPy: `simulate_fmu`, parameters as start values, inputs as a table over time.
+
+Of an FMU of FMI 3.0 the outputs of the legs are elements of arrays.
+"""
+
+import re
 
 import fmpy
 import numpy as np
 from job import host
 
+LEG = re.compile(r"leg\[(\d)\]")
+
 
 def land(fmu, job):
+    arrays = fmpy.read_model_description(fmu).fmiVersion == "3.0"
+    wanted = {name: LEG.sub("leg", name) if arrays else name for name in job["outputs"]}
     time = np.arange(job["steps"] + 1) * job["step"]
     table = np.zeros(len(time), dtype=[("time", float), *((name, float) for name in job["inputs"])])
     table["time"] = time
@@ -18,9 +27,13 @@ def land(fmu, job):
         output_interval=job["step"],
         start_values=job["parameters"],
         input=table,
-        output=list(job["outputs"]),
+        output=list(dict.fromkeys(wanted.values())),
     )
-    return [[row[name] for name in ("time", *job["outputs"])] for row in result[1:]]
+    columns = [result["time"]]
+    for name, whole in wanted.items():
+        values = result[whole]
+        columns.append(values if whole == name else values[:, int(LEG.match(name)[1]) - 1])
+    return np.array(columns).T[1:]
 
 
 host(land)
