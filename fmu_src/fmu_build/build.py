@@ -9,7 +9,6 @@ validates the FMU and simulates one landing before it replaces an older file.
 from __future__ import annotations
 
 import argparse
-import errno
 import os
 import re
 import sys
@@ -23,7 +22,7 @@ from xml.etree import ElementTree
 
 from pythonfmu.builder import FmuBuilder
 
-from rlv_landing.text.durable import unwritable, write_durably, writing
+from rlv_landing.text.durable import NO_ROOM, unwritable, write_durably, writing
 
 from .binary import record_libpython, replace_binaries
 from .description import describe
@@ -35,8 +34,6 @@ from .terminals import write_terminals
 from .trial import check, expected
 from .wanted import FMI_VERSIONS, MODEL_NAME, Wanted
 
-# what the system says where a disk takes no more
-FULL = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
 # pythonfmu's command line, CSV tool and builder, which no slave needs
 NOT_NEEDED = ("__main__.py", "csvbuilder.py", "deploy.py", "builder.py", "osutil.py")
 # the line of pythonfmu's `__init__.py` that imports the builder, and with it argparse, logging and
@@ -150,8 +147,8 @@ def _workshop() -> Iterator[Path]:
             yield Path(name)
     except OSError as e:
         # where whole folders are copied the error has a list of errors, and no number
-        numbers = [e.errno, *(n for n in FULL if os.strerror(n) in str(e))]
-        full = next((n for n in numbers if n in FULL), None)
+        numbers = [e.errno, *(n for n in NO_ROOM if os.strerror(n) in str(e))]
+        full = next((n for n in numbers if n in NO_ROOM), None)
         if full is None:
             raise
         remedy = "name another folder by TMPDIR"

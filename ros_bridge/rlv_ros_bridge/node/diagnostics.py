@@ -6,12 +6,9 @@ from collections.abc import Mapping
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
-from rlv_landing.core import Phase
-
+from ..logs.landing_record import PHASES
 from ..messages.samples import set_stamp
 from .pacer import Pacer
-
-PHASES = tuple(phase.name.lower() for phase in Phase)
 
 
 def phase_name(phase: float) -> str:

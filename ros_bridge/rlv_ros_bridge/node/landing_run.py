@@ -13,11 +13,12 @@ from typing import Any
 from rclpy.serialization import serialize_message
 
 from rlv_landing import Landing, LandingError
+from rlv_landing.core import Phase
 from rlv_landing.presets import to_toml
 from rlv_landing.quantities import OUTPUT_NAMES
 
 from ..fmu.runner import FmuRunner
-from ..logs.landing_record import LandingRows
+from ..logs.landing_record import PHASE, LandingRows
 from ..logs.peaks import peak_texts
 from ..logs.recorder import RecordedTopic, Recorder
 from ..messages import topics
@@ -30,18 +31,14 @@ from ..messages.wire import padded
 from .diagnostics import DiagnosticsMessage, pacing_values, phase_name
 from .input_queue import InputQueue
 from .log_metadata import log_metadata
-from .pacer import Pacer, lateness_percentiles
+from .pacer import Pacer, RunningMean, lateness_percentiles
 from .publishing import Publishing
 from .run_summary import RunSummary
 from .settings import Settings
 
-PHASE = OUTPUT_NAMES.index("status.phase")
 BALANCE = OUTPUT_NAMES.index("energy.balance")
-TOPPLED = 3
 # Longest time for publishing the last samples while a subscriber takes nothing [s of wall time].
 DRAIN_SECONDS = 0.5
-# Weight of a new sample in the running mean of the time that computing one takes.
-MEAN_WEIGHT = 1.0 / 32.0
 # How long another thread, such as one that answers a service, may hold Python's global lock when a
 # sample is due [s]. Python's default of 5 ms is the time of five samples.
 THREAD_SWITCH_SECONDS = 2e-4
@@ -103,8 +100,8 @@ class LandingRun:
             settings.every[t] for t in (topics.MARKERS, topics.TF, topics.DIAGNOSTICS)
         )
         self._pacer = Pacer(0.0)
-        # Running mean of the wall time that computing a sample takes [s].
-        self._sample_cost = 0.0
+        # wall time that computing a sample takes [s]
+        self._sample_cost = RunningMean()
         self._dropped_before = self._queue.dropped
         self.fmu = FmuRunner(settings.fmu, dict(settings.parameters.items()))
         inputs.clear(settings.step_ns, lambda values: Landing(settings.parameters, inputs=values))
@@ -174,11 +171,11 @@ class LandingRun:
                 started = time.perf_counter()
                 values, messages = self._compute_sample(k)
                 cost = time.perf_counter() - started
-                self._sample_cost += MEAN_WEIGHT * (cost - self._sample_cost)
+                self._sample_cost.add(cost)
                 pacer.sleep_until_due(k, interrupted)
                 queue.enqueue_sample(self._slices, messages, k, pacer.due(k))
                 self.samples = k + 1
-                latest = pacer.due(k + 1) - 1.5 * self._sample_cost
+                latest = pacer.due(k + 1) - 1.5 * self._sample_cost.value
                 # The sample is published before the occasional messages are made.
                 queue.publish(latest)
                 if self._enqueue_occasional(k, values):
@@ -220,7 +217,7 @@ class LandingRun:
         if k:
             self.fmu.step(k - 1, s.step_size)
         values = self.fmu.values()
-        toppled = values[PHASE] == TOPPLED
+        toppled = values[PHASE] == Phase.TOPPLED
         self.end = "toppled" if toppled else "finished" if k == s.steps else ""
         stamp = k * s.step_ns
         messages = self._packer.pack(stamp, values, k)
