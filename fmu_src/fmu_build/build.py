@@ -9,7 +9,6 @@ validates the FMU and simulates one landing before it replaces an older file.
 from __future__ import annotations
 
 import argparse
-import errno
 import os
 import re
 import signal
@@ -25,7 +24,7 @@ from xml.etree import ElementTree
 from pythonfmu.builder import FmuBuilder
 
 from rlv_landing.errors import LandingError
-from rlv_landing.text.durable import unwritable, write_durably, writing
+from rlv_landing.text.durable import NO_ROOM, unwritable, write_durably, writing
 
 from .binary import record_libpython, replace_binaries
 from .cross.cores import compile_cores
@@ -39,8 +38,6 @@ from .terminals import write_terminals
 from .trial import check, expected
 from .wanted import FMI_VERSIONS, MODEL_NAME, Wanted
 
-# what the system says where a disk takes no more
-FULL = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
 # endings of files that can be run, or be loaded
 LIBRARIES = (".so", ".dll", ".dylib", ".pyd")
 # pythonfmu's command line, CSV tool and builder, which no slave needs
@@ -156,8 +153,8 @@ def _workshop() -> Iterator[Path]:
             yield Path(name)
     except OSError as e:
         # where whole folders are copied the error has a list of errors, and no number
-        numbers = [e.errno, *(n for n in FULL if os.strerror(n) in str(e))]
-        full = next((n for n in numbers if n in FULL), None)
+        numbers = [e.errno, *(n for n in NO_ROOM if os.strerror(n) in str(e))]
+        full = next((n for n in numbers if n in NO_ROOM), None)
         if full is None:
             raise
         remedy = "name another folder by TMPDIR"

@@ -9,7 +9,14 @@ from .errors import LandingError
 from .state import LATEST
 
 
-def sample_count(start: float, until: float, every: float, numbers: int) -> int:
+def sample_count(
+    start: float,
+    until: float,
+    every: float,
+    numbers: int,
+    *,
+    costs: tuple[float, float] = (SECONDS_PER_SECOND, SECONDS_PER_SAMPLE),
+) -> int:
     """The number of samples from `start` until `until` [s], one every `every` [s].
 
     Args:
@@ -17,6 +24,7 @@ def sample_count(start: float, until: float, every: float, numbers: int) -> int:
         until: Time that no sample is behind [s].
         every: Time between two samples [s].
         numbers: Numbers that are held for each sample at once.
+        costs: Least wall time that a second of landing takes, and a sample of it [s].
 
     Raises:
         LandingError: `every` is not above 0, `until` is not ahead, the samples need more memory
@@ -33,7 +41,7 @@ def sample_count(start: float, until: float, every: float, numbers: int) -> int:
     remedy = "land shorter, or sample more seldom"
     count = (until - start) / every
     check_memory(span, 8.0 * numbers * count, remedy)
-    seconds = SECONDS_PER_SECOND * (until - start) + SECONDS_PER_SAMPLE * count
+    seconds = costs[0] * (until - start) + costs[1] * count
     check_duration(span, seconds, remedy)
     # a rounding of the quotient takes no sample away
     return int(count * (1.0 + 1e-12) + 1e-9) + 1

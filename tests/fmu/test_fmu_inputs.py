@@ -191,7 +191,7 @@ def test_a_table_that_is_wrong_is_refused(table, text, reason):
 @pytest.mark.parametrize(
     ("arguments", "reason"),
     [
-        (["--until", "0"], "until = 0 s must be finite, after the start at 0 s"),
+        (["--until", "0"], "until = 0 s must be finite, after the present time, 0 s"),
         (["--every", "nan"], "every = nan s must be finite and above 0 s"),
         (["--every", "1e-12"], "samples of 1e-12 s"),
         (["--set", "vehicle.mas=3"], "did you mean vehicle.mass?"),

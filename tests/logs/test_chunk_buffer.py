@@ -9,9 +9,9 @@ import pytest
 from log_tools import CDR, CLOCK_TYPE, messages_of
 from mcap.reader import make_reader
 
-from rlv_ros_bridge.logs.mcap_files.chunk_buffer import MESSAGE_TIMES
 from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
 from rlv_ros_bridge.messages.qos import TELEMETRY
+from rlv_ros_bridge.messages.wire import TIMES
 
 SIZES = {"/a": 12, "/b": 40, "/c": 16}
 SINGLE = "/single"
@@ -38,9 +38,7 @@ def record(folder: Path, chunk_messages: int, *, by_the_library: bool) -> tuple[
         data = [CDR + random.randbytes(size - len(CDR)) for size in SIZES.values()]
         recorder.write_sample(
             time,
-            b"".join(
-                prefix + MESSAGE_TIMES.pack(k, time, time) + d for prefix, d in zip(prefixes, data)
-            ),
+            b"".join(prefix + TIMES.pack(k, time, time) + d for prefix, d in zip(prefixes, data)),
         )
         for name, d in zip(SIZES, data):
             expected[name].append((time, d))

@@ -116,7 +116,7 @@ def test_a_disk_too_full_for_the_joined_file_keeps_its_parts(tmp_path, command):
 
 
 def test_the_joined_file_does_not_depend_on_its_parts(tmp_path, monkeypatch):
-    monkeypatch.setattr("rlv_landing.studies.sweep.result_files.GROUP_ROWS", 16)
+    monkeypatch.setattr("rlv_landing.studies.sweep.row_table.GROUP_ROWS", 16)
     study = write_study(tmp_path, samples=30)
     task = Task(read := read_study(study), read.design)
     made = [

@@ -180,7 +180,7 @@ def test_rrms_and_discrepancies_are_in_json_and_tables(command, validation, tmp_
         ("time,body.pitch\n0,1\n", "1 rows of numbers"),
         ("time,body.pitch\n0,1\n1,nan\n", "row 3: body.pitch = 'nan' is not a finite number"),
         ("time,body.pitch\n0,1\n1,\n", "row 3: body.pitch = '' is not a finite number"),
-        ("time,body.pitch\n0,1\n1,2,3\n", "row 3: 3 values for 2 columns"),
+        ("time,body.pitch\n0,1\n1,2,3\n", "row 3: 3 values under 2 headings"),
         ("time,body.pitch\n0,1\n0.2,2\n0.1,3\n", "row 4: time = 0.1 s does not come after 0.2 s"),
         ("time,body.pitch\n0,1\n0.1,2\n0.2,3\n0.5,3\n", "time goes on by 0.3 s at t = 0.2 s"),
         ("time,body.pitch\n5,1\n5.1,2\n5.2,3\n", "do not overlap"),

@@ -19,8 +19,7 @@ from .convergence import Convergence, convergence
 from .energy import energy
 from .momentum import contact, flight
 from .rest import rest
-
-AFTER_CONTACT = 1.0
+from .transverse import AFTER_CONTACT
 
 
 @dataclass(frozen=True)

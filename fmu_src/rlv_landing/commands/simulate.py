@@ -77,11 +77,10 @@ def simulate(output: Path | None, plot: Path | None, *, force: bool, **options: 
 def _landing(options: dict[str, Any]) -> Landing:
     """The landing that the options choose, at its start."""
     from ..choices import parse_pairs
-    from ..quantities import INPUT_QUANTITIES
+    from ..quantities import INPUTS_BY_NAME
 
     parameters = chosen_parameters(
         options["preset"], options["file"], options["mode"], options["pairs"]
     )
-    quantities = {q.name: q for q in INPUT_QUANTITIES}
-    inputs = parse_pairs(options["inputs"], quantities, "input")
+    inputs = parse_pairs(options["inputs"], INPUTS_BY_NAME, "input")
     return Landing(parameters, rtol=options["rtol"], method=options["method"], inputs=inputs)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..history import History
 from ..quantities import LEGS, MODES
-from .plots import COLOURS
+from .plots import COLOURS, MAIN_FORCE, MAIN_STROKE
 from .wireframe import ground_height, wireframe
 
 if TYPE_CHECKING:
@@ -20,10 +20,7 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT = 9.6, 5.28
 INK, FAINT, GROUND = "#222222", "#999999", "#555555"
-CURVES = (
-    ("main_strut.force", 1e-3, "main strut force [kN]"),
-    ("main_strut.stroke", 1e3, "main strut stroke [mm]"),
-)
+CURVES = (MAIN_FORCE, MAIN_STROKE)
 WIDTHS = {"hull": 0.6, "outline": 1.4, "main": 2.2, "auxiliary": 1.2}
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..history import History
-from ..quantities import MODES
+from ..quantities import touchdown_groups
 from ..text.durable import whole_file
 
 if TYPE_CHECKING:
@@ -20,11 +20,12 @@ if TYPE_CHECKING:
 
 COLOURS = ("#0b6e99", "#c8553d", "#5b8c3e")
 # outputs of a leg, and the factor to the unit of their axis
-DRAWN_OF_A_LEG = (
-    ("main_strut.force", 1e-3),
-    ("main_strut.stroke", 1e3),
-    ("auxiliary_strut.force", 1e-3),
-)
+# what is drawn of a leg, and of the body: the column, its factor from SI, and the axis's label
+MAIN_FORCE = ("main_strut.force", 1e-3, "main strut force [kN]")
+MAIN_STROKE = ("main_strut.stroke", 1e3, "main strut stroke [mm]")
+AUXILIARY_FORCE = ("auxiliary_strut.force", 1e-3, "auxiliary strut force [kN]")
+DRAWN_OF_A_LEG = (MAIN_FORCE, MAIN_STROKE, AUXILIARY_FORCE)
+TOP_ACCELERATION = ("body.top_axial_acceleration", 1.0, "axial acceleration\nat the top [m/s²]")
 
 
 def draw_peaks(ax: Axes, history: History, column: str, factor: float, colour: str) -> None:
@@ -60,7 +61,7 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
     for legs, colour in zip(groups, COLOURS):
         leg = legs[0]
         label = "leg " + "/".join(map(str, legs))
-        for ax, (what, factor) in zip(axes, DRAWN_OF_A_LEG):
+        for ax, (what, factor, _) in zip(axes, DRAWN_OF_A_LEG):
             column = f"leg[{leg}].{what}"
             ax.plot(history.time, factor * history[column], color=colour, label=label)
             draw_peaks(ax, history, column, factor, colour)
@@ -68,17 +69,10 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
         if len(touching):
             for ax in axes:
                 ax.axvline(history.time[touching[0]], color=colour, linestyle=":", linewidth=0.8)
-    axes[3].plot(
-        history.time, history["body.top_axial_acceleration"], color="#333333", linewidth=1.0
-    )
-    draw_peaks(axes[3], history, "body.top_axial_acceleration", 1.0, "#333333")
-    labels = (
-        "main strut force [kN]",
-        "main strut stroke [mm]",
-        "auxiliary strut force [kN]",
-        "axial acceleration\nat the top [m/s²]",
-    )
-    for ax, label in zip(axes, labels):
+    column, factor, _ = TOP_ACCELERATION
+    axes[3].plot(history.time, factor * history[column], color="#333333", linewidth=1.0)
+    draw_peaks(axes[3], history, column, factor, "#333333")
+    for ax, (_, _, label) in zip(axes, (*DRAWN_OF_A_LEG, TOP_ACCELERATION)):
         ax.set_ylabel(label)
         ax.axhline(0.0, color="#999999", linewidth=0.6)
         ax.grid(visible=True, linewidth=0.3)
@@ -146,4 +140,4 @@ def _groups(history: History) -> list[tuple[int, ...]]:
     mode = history.parameters.drop.mode if history.parameters is not None else None
     if mode is None:
         return [(1,), (2,), (3,)]
-    return [tuple(sorted(leg for leg, _ in g.legs)) for g in MODES[mode]]
+    return touchdown_groups(mode)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..history import History
-from ..quantities import MODES
+from ..quantities import touchdown_groups
 from .plots import COLOURS, draw_peaks
 from .report_marks import ACCELERATION, PAPER, TEST, Curve, draw_marks, marks
 
@@ -25,19 +25,14 @@ ORDINALS = ("first", "second", "third")
 NUMBERS = {"2-2": (7, 8, 9, 10, 11, 12), "1-2-1": (13, 14, 15, 16, 17, 18)}
 
 
-def groups(mode: str) -> list[tuple[int, ...]]:
-    """The legs of each touchdown, in their order."""
-    return [tuple(sorted(leg for leg, _ in g.legs)) for g in MODES[mode]]
-
-
 def curve_figure(found: Validation, mode: str, curve: Curve) -> tuple[Figure, dict[str, str]]:
     """A quantity of the struts over time, a panel for each touchdown.
 
     It is the counterpart of Figs. 7, 8, 10, 13, 14 and 16.
     """
-    figure, axes = _panels(len(groups(mode)))
+    figure, axes = _panels(len(touchdown_groups(mode)))
     history, measured, tooltips = found.histories[mode], found.measured.get(mode), {}
-    for i, (ax, legs) in enumerate(zip(axes, groups(mode))):
+    for i, (ax, legs) in enumerate(zip(axes, touchdown_groups(mode))):
         ax.plot(
             history.time,
             history[curve.column.format(legs[0])] * curve.factor,
@@ -58,9 +53,9 @@ def loop_figure(found: Validation, mode: str) -> tuple[Figure, dict[str, str]]:
 
     The shaded area is the energy absorbed in the first compression.
     """
-    figure, axes = _panels(len(groups(mode)))
+    figure, axes = _panels(len(touchdown_groups(mode)))
     history, measured = found.sensed[mode], found.measured.get(mode)
-    for i, (ax, legs) in enumerate(zip(axes, groups(mode))):
+    for i, (ax, legs) in enumerate(zip(axes, touchdown_groups(mode))):
         stroke, force = (history[f"leg[{legs[0]}].main_strut.{w}"] for w in ("stroke", "force"))
         ax.plot(
             1e3 * stroke,

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..history import History
 from ..validation.paper import Comparison
+from .plots import AUXILIARY_FORCE, MAIN_FORCE, MAIN_STROKE, TOP_ACCELERATION
 
 PAPER, TEST = "#111111", "#b5379a"
 
@@ -31,16 +32,15 @@ class Curve:
     factor: float
 
 
-FORCE = Curve("main_strut_force", "leg[{}].main_strut.force", "main strut force [kN]", 1e-3)
-STROKE = Curve("main_strut_stroke", "leg[{}].main_strut.stroke", "main strut stroke [mm]", 1e3)
-AUXILIARY = Curve(
-    "aux_strut_force", "leg[{}].auxiliary_strut.force", "auxiliary strut force [kN]", 1e-3
-)
+def _of_legs(quantity: str, column: str, factor: float, label: str) -> Curve:
+    return Curve(quantity, f"leg[{{}}].{column}", label, factor)
+
+
+FORCE = _of_legs("main_strut_force", *MAIN_FORCE)
+STROKE = _of_legs("main_strut_stroke", *MAIN_STROKE)
+AUXILIARY = _of_legs("aux_strut_force", *AUXILIARY_FORCE)
 ACCELERATION = Curve(
-    "axial_acceleration_top",
-    "body.top_axial_acceleration",
-    "axial acceleration\nat the top [m/s²]",
-    1.0,
+    "axial_acceleration_top", TOP_ACCELERATION[0], TOP_ACCELERATION[2], TOP_ACCELERATION[1]
 )
 PITCH = Curve("pose", "body.pitch", "pitch [deg]", 57.29577951308232)
 

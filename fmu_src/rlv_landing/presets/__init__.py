@@ -9,7 +9,7 @@ from typing import Any
 from ..errors import LandingError, unknown
 from ..parameters import GROUPS, PARAMETER_QUANTITIES, Parameters
 from ..quantities import MODES
-from ..text.files import parse_document, read_text, toml_text
+from ..text.files import parse_document, read_text, toml_table, toml_text
 from ..text.values import parse_value
 
 FOLDER = Path(__file__).parent
@@ -72,10 +72,10 @@ def _from_document(document: dict[str, Any]) -> Parameters:
     values, sources = _flat({k: v for k, v in document.items() if k in GROUPS})
     _check_complete(document, values)
     parameters = parameters.with_values(values, sources)
-    for mode, tables in _table(document.get("mode", {}), "mode").items():
+    for mode, tables in toml_table(document.get("mode", {}), "mode").items():
         if mode not in MODES:
             raise unknown("landing mode", mode, MODES)
-        own, own_sources = _flat(_table(tables, f"mode.{mode}"))
+        own, own_sources = _flat(toml_table(tables, f"mode.{mode}"))
         parameters = parameters.with_mode_values({mode: own}, own_sources)
     return parameters.for_mode(parameters.drop.mode)
 
@@ -99,21 +99,13 @@ def _check_complete(document: Mapping[str, Any], values: Mapping[str, Any]) -> N
         )
 
 
-def _table(value: Any, name: str) -> dict[str, Any]:
-    if not isinstance(value, dict):
-        raise LandingError(
-            f"{name} = {value!r} must be a table: write [{name}] and its values below"
-        )
-    return value
-
-
 def _flat(tables: Mapping[str, Any]) -> tuple[dict[str, float | str], dict[str, str]]:
     values: dict[str, float | str] = {}
     sources: dict[str, str] = {}
     for group, table in tables.items():
         if group not in GROUPS:
             raise unknown("table", group, GROUPS)
-        for what, entry in _table(table, group).items():
+        for what, entry in toml_table(table, group).items():
             name = f"{group}.{what}"
             if name not in PARAMETER_QUANTITIES:
                 raise unknown("parameter", name, PARAMETER_QUANTITIES)

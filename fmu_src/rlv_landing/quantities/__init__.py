@@ -5,14 +5,15 @@ Everything that names a quantity is made from this table or from the annotated p
 reference pages.
 """
 
-from .inputs import INPUT_NAMES, INPUT_QUANTITIES
-from .legs import LEGS, MIRRORED, MODES, LegGroup, azimuth
+from .inputs import INPUT_NAMES, INPUT_QUANTITIES, INPUTS_BY_NAME
+from .legs import LEGS, MIRRORED, MODES, LegGroup, azimuth, touchdown_groups
 from .outputs import (
     BODY_QUANTITIES,
     ENERGY_QUANTITIES,
     LEG_QUANTITIES,
     OUTPUT_NAMES,
     OUTPUT_QUANTITIES,
+    OUTPUTS_BY_NAME,
     SHARED_QUANTITIES,
     STATUS_QUANTITIES,
 )
@@ -25,6 +26,7 @@ __all__ = [
     "BODY_QUANTITIES",
     "DISPLAY_UNITS",
     "ENERGY_QUANTITIES",
+    "INPUTS_BY_NAME",
     "INPUT_NAMES",
     "INPUT_QUANTITIES",
     "LEGS",
@@ -32,6 +34,7 @@ __all__ = [
     "MIRRORED",
     "MODES",
     "NOMINALS",
+    "OUTPUTS_BY_NAME",
     "OUTPUT_NAMES",
     "OUTPUT_QUANTITIES",
     "PEAKS",
@@ -45,5 +48,6 @@ __all__ = [
     "azimuth",
     "flat_name",
     "shown",
+    "touchdown_groups",
     "whole_name",
 ]

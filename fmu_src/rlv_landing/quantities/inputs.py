@@ -64,3 +64,4 @@ INPUT_QUANTITIES: tuple[Quantity, ...] = (
 )
 
 INPUT_NAMES: tuple[str, ...] = tuple(q.name for q in INPUT_QUANTITIES)
+INPUTS_BY_NAME: dict[str, Quantity] = {q.name: q for q in INPUT_QUANTITIES}

@@ -31,6 +31,11 @@ MODES: dict[str, tuple[LegGroup, ...]] = {
 }
 
 
+def touchdown_groups(mode: str) -> list[tuple[int, ...]]:
+    """The numbers of the legs that touch down together, in the order of touchdown."""
+    return [tuple(sorted(leg for leg, _ in group.legs)) for group in MODES[mode]]
+
+
 @cache
 def azimuth(degrees: int) -> tuple[float, float]:
     """Sine and cosine of an azimuth [deg], exactly 0 at multiples of 90 degrees."""

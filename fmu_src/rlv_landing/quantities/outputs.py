@@ -175,3 +175,4 @@ OUTPUT_QUANTITIES: tuple[Quantity, ...] = SHARED_QUANTITIES + tuple(
     _leg_quantity(leg, q) for leg in LEGS for q in LEG_QUANTITIES
 )
 OUTPUT_NAMES: tuple[str, ...] = tuple(q.name for q in OUTPUT_QUANTITIES)
+OUTPUTS_BY_NAME: dict[str, Quantity] = {q.name: q for q in OUTPUT_QUANTITIES}

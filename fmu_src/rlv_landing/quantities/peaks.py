@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from .legs import LEGS
-from .outputs import OUTPUT_QUANTITIES
+from .outputs import OUTPUTS_BY_NAME
 from .quantity import Quantity
 
 
@@ -49,12 +49,11 @@ PEAKS_OF_A_LEG: tuple[tuple[str, tuple[Literal["min", "max"], ...]], ...] = (
     ("auxiliary_strut.force", ("min", "max")),
     ("contact.force", ("max",)),
 )
-_BY_NAME = {q.name: q for q in OUTPUT_QUANTITIES}
 PEAKS: tuple[Peak, ...] = (
-    _peak(_BY_NAME["body.top_axial_acceleration"], "max"),
-    _peak(_BY_NAME["status.stability_margin"], "min"),
+    _peak(OUTPUTS_BY_NAME["body.top_axial_acceleration"], "max"),
+    _peak(OUTPUTS_BY_NAME["status.stability_margin"], "min"),
     *(
-        _peak(_BY_NAME[f"leg[{leg}].{name}"], side)
+        _peak(OUTPUTS_BY_NAME[f"leg[{leg}].{name}"], side)
         for leg in LEGS
         for name, sides in PEAKS_OF_A_LEG
         for side in sides

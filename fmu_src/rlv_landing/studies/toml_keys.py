@@ -12,7 +12,7 @@ from typing import Any
 from ..errors import LandingError, unknown
 from ..parameters import check_value
 from ..quantities import Quantity
-from ..text.files import parse_document, read_text
+from ..text.files import parse_document, read_text, toml_table
 from ..text.values import parse_value
 
 
@@ -28,10 +28,7 @@ def read(path: Path) -> tuple[dict[str, Any], str]:
 
 def table(document: Mapping[str, Any], key: str) -> dict[str, Any]:
     """The table [key], empty where it is missing."""
-    value = document.get(key, {})
-    if not isinstance(value, dict):
-        raise LandingError(f"{key} = {value!r} must be a table: write [{key}] and its values below")
-    return value
+    return toml_table(document.get(key, {}), key)
 
 
 def tables(document: Mapping[str, Any], key: str) -> list[dict[str, Any]]:

@@ -145,6 +145,17 @@ def check_sum(record: Mapping[str, Any]) -> int:
     return zlib.crc32(json.dumps(kept, sort_keys=True).encode())
 
 
+def toml_table(value: Any, key: str) -> dict[str, Any]:
+    """The `value` that a TOML document has for the table [`key`].
+
+    Raises:
+        LandingError: It is no table.
+    """
+    if not isinstance(value, dict):
+        raise LandingError(f"{key} = {value!r} must be a table: write [{key}] and its values below")
+    return value
+
+
 def parse_document(text: str, name: str) -> dict[str, Any]:
     """The document of a TOML text.
 

@@ -113,6 +113,19 @@ def split_heading(heading: str) -> tuple[str, str]:
     return (found[1], found[2] or "") if found else (heading.strip(), "")
 
 
+def check_row(values: Sequence[str], headings: Sequence[object]) -> None:
+    """Check that a row of a table has a value under each heading.
+
+    Raises:
+        LandingError: It has more or fewer.
+    """
+    if len(values) != len(headings):
+        raise LandingError(
+            f"{len(values)} values under {len(headings)} headings; give every column a value, "
+            "with a point and no comma in it"
+        )
+
+
 def _from_text(q: Quantity, text: str, default: str) -> float:
     try:
         number, unit = split(text)

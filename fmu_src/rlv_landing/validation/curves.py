@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from ..errors import LandingError, unknown
 from ..history import History
-from ..quantities import OUTPUT_NAMES, OUTPUT_QUANTITIES, Quantity
+from ..quantities import OUTPUT_NAMES, OUTPUTS_BY_NAME, Quantity
 from ..text.files import read_csv
 from ..text.units import Unit, UnitError, parse_number
-from ..text.values import number_in_si, split_heading, unit_of
+from ..text.values import check_row, number_in_si, split_heading, unit_of
 
 # times [s] from which on they are those of a clock, not of a landing
 EPOCH = 1e7
@@ -27,7 +27,7 @@ EPOCH = 1e7
 # record of a landing [s]
 COARSEST, LONGEST = 0.1 * (1.0 + 1e-9), 60.0
 FINER = (("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9))
-QUANTITIES = {"time": Quantity("s", "time", name="time"), **{q.name: q for q in OUTPUT_QUANTITIES}}
+QUANTITIES = {"time": Quantity("s", "time", name="time"), **OUTPUTS_BY_NAME}
 
 
 def read_curves(path: str | Path) -> History:
@@ -119,11 +119,10 @@ def _columns(path: Path, header: list[str]) -> list[tuple[str, Unit]]:
 
 
 def _numbers(path: Path, row: list[str], columns: list[tuple[str, Unit]], line: int) -> list[float]:
-    if len(row) != len(columns):
-        raise LandingError(
-            f"{path}, row {line}: {len(row)} values for {len(columns)} columns; "
-            "give every column a value in every row, with a point and no comma in it"
-        )
+    try:
+        check_row(row, columns)
+    except LandingError as e:
+        raise LandingError(f"{path}, row {line}: {e}") from None
     numbers = []
     for (name, unit), text in zip(columns, row):
         try:

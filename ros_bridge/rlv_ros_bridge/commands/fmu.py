@@ -270,15 +270,14 @@ def _inputs(given: tuple[str, ...]) -> list[Setting]:
     Raises:
         LandingError: There are two tables, an input is in both, or one of them is wrong.
     """
-    from rlv_landing.quantities import INPUT_QUANTITIES
+    from rlv_landing.quantities import INPUTS_BY_NAME
 
     from ..fmu.input_table import constants, read_inputs
 
     files = [text for text in given if "=" not in text]
     if len(files) > 1:
         raise LandingError(f"give one table of inputs, not {len(files)}; join them")
-    quantities = {q.name: q for q in INPUT_QUANTITIES}
-    values = parse_pairs([text for text in given if "=" in text], quantities, "input")
+    values = parse_pairs([text for text in given if "=" in text], INPUTS_BY_NAME, "input")
     if not files:
         return constants(values) if values else []
     table = read_inputs(Path(files[0]))

@@ -7,9 +7,9 @@ from collections.abc import Callable, Mapping
 from typing import Any, ClassVar
 
 from rlv_landing.errors import LandingError
+from rlv_landing.inputs.driven import RATE_INPUTS
 
 from .fmi2 import Call, Log, function
-from .input_table import RATES
 
 DO_STEP = (
     ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_bool, *[ctypes.c_void_p] * 4,
@@ -90,8 +90,8 @@ def with_ground_rates(values: Mapping[str, float], rates: Mapping[str, float]) -
     """
     found = dict(values)
     for name, rate in rates.items():
-        if name in RATES:
-            found[RATES[name]] = rate
+        if name in RATE_INPUTS:
+            found[RATE_INPUTS[name]] = rate
         elif rate != 0.0:
             raise LandingError(
                 f"{name} has a rate of {rate:g} per second, which FMI 3.0 cannot tell; set it in "

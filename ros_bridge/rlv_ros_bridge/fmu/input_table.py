@@ -16,16 +16,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 from rlv_landing.errors import LandingError, unknown
+from rlv_landing.inputs.driven import RATE_INPUTS
 from rlv_landing.parameters import check_value
-from rlv_landing.quantities import INPUT_QUANTITIES, Quantity
+from rlv_landing.quantities import INPUTS_BY_NAME, Quantity
 from rlv_landing.text.files import read_csv
 from rlv_landing.text.units import Unit, UnitError, parse_number
-from rlv_landing.text.values import number_in_si, split_heading, unit_of
+from rlv_landing.text.values import check_row, number_in_si, split_heading, unit_of
 
 TIME = Quantity("s", "time since the start", 0.0, inf, name="time")
-QUANTITIES = {q.name: q for q in INPUT_QUANTITIES}
-# inputs whose rate is an input of its own
-RATES = {"ground.heave": "ground.heave_rate", "ground.tilt": "ground.tilt_rate"}
 
 
 class Setting(NamedTuple):
@@ -65,7 +63,7 @@ class InputTable:
         interval = inf if last else self.times[i + 1] - self.times[i]
         rates = {}
         for name, column in self.columns.items():
-            if RATES.get(name) in self.columns or name in RATES.values():
+            if RATE_INPUTS.get(name) in self.columns or name in RATE_INPUTS.values():
                 continue
             step = 0.0 if last else column[i + 1] - column[i]
             rates[name] = step / interval if interval > 0.0 else 0.0
@@ -106,9 +104,9 @@ def _headings(path: Path, cells: list[str]) -> tuple[list[str], list[Unit]]:
     for heading in cells:
         name, unit = split_heading(heading)
         try:
-            if name != TIME.name and name not in QUANTITIES:
-                raise unknown("input", name, [TIME.name, *QUANTITIES])
-            units.append(unit_of(QUANTITIES.get(name, TIME), unit))
+            if name != TIME.name and name not in INPUTS_BY_NAME:
+                raise unknown("input", name, [TIME.name, *INPUTS_BY_NAME])
+            units.append(unit_of(INPUTS_BY_NAME.get(name, TIME), unit))
         except LandingError as e:
             raise LandingError(f"{path}, column {heading!r}: {e}") from None
         if name in names:
@@ -123,14 +121,10 @@ def _headings(path: Path, cells: list[str]) -> tuple[list[str], list[Unit]]:
 
 
 def _values(names: list[str], units: list[Unit], cells: list[str]) -> list[float]:
-    if len(cells) != len(names):
-        raise LandingError(
-            f"{len(cells)} values under {len(names)} headings; give every column a value, "
-            "with a point and no comma in it"
-        )
+    check_row(cells, names)
     values = []
     for name, unit, text in zip(names, units, cells):
-        q = QUANTITIES.get(name, TIME)
+        q = INPUTS_BY_NAME.get(name, TIME)
         try:
             number = parse_number(text.strip())
         except UnitError as e:
@@ -145,7 +139,7 @@ def _values(names: list[str], units: list[Unit], cells: list[str]) -> list[float
 def sloped(settings: Sequence[Setting]) -> list[str]:
     """The inputs that have rates which are no inputs of their own, by name."""
     rates = (name for s in settings for name, rate in s.rates.items() if rate != 0.0)
-    return [name for name in dict.fromkeys(rates) if name not in RATES]
+    return [name for name in dict.fromkeys(rates) if name not in RATE_INPUTS]
 
 
 def in_steps(settings: Sequence[Setting], step: float, until: float) -> Iterator[Setting]:
@@ -160,7 +154,7 @@ def in_steps(settings: Sequence[Setting], step: float, until: float) -> Iterator
         if setting.time >= until:
             return
         rates = {name: setting.rates[name] for name in sloped([setting])}
-        others = {name: rate for name, rate in setting.rates.items() if name in RATES}
+        others = {name: rate for name, rate in setting.rates.items() if name in RATE_INPUTS}
         time, end, values = setting.time, min(following.time, until), setting.values
         first = floor(time / step * (1.0 + 1e-12) + 1e-9) + 1
         last = ceil(end / step * (1.0 - 1e-12) - 1e-9) if rates else first

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from math import ceil, inf
+from math import ceil
 from pathlib import Path
 
 import numpy as np
 
-from rlv_landing.effort import check_duration, check_memory
-from rlv_landing.errors import LandingError
+from rlv_landing.effort import check_duration
 from rlv_landing.history import History
 from rlv_landing.parameters import Parameters
 from rlv_landing.quantities import OUTPUT_NAMES
-from rlv_landing.state import LATEST
+from rlv_landing.sampling import sample_count
 
 from .input_table import Setting, in_steps, sloped
 from .peaks import known_extremes
@@ -50,25 +49,17 @@ def land_fmu(
     Raises:
         LandingError: A time is out of bounds, or the FMU does not load, or refuses with its reason.
     """
-    if not 0.0 < every < inf:
-        raise LandingError(f"every = {every:g} s must be finite and above 0 s")
-    if not 0.0 < until <= LATEST:
-        raise LandingError(
-            f"until = {until:g} s must be finite, after the start at 0 s, and at most {LATEST:g} s"
-        )
-    span = f"a landing until {until:g} s in samples of {every:g} s"
-    remedy = "land shorter, or sample more seldom"
-    count = until / every
-    check_memory(span, 8.0 * len(OUTPUT_NAMES) * count, remedy)
-    check_duration(span, SECONDS_PER_SAMPLE * count, remedy)
-    times = [k * every for k in range(int(count * (1.0 + 1e-12) + 1e-9) + 1)]
+    count = sample_count(0.0, until, every, len(OUTPUT_NAMES), costs=(0.0, SECONDS_PER_SAMPLE))
+    times = [k * every for k in range(count)]
     rows = np.empty((len(times), len(OUTPUT_NAMES)))
     with FmuRunner(path, dict(parameters.items())) as runner:
         settings = iter(inputs)
         if sloped(inputs) and not runner.takes_rates:
             step = every / ceil(every / LONGEST_STEP)
             check_duration(
-                f"{span}, with loads in steps", SECONDS_PER_SAMPLE * until / step, remedy
+                f"a landing until {until:g} s with loads in steps of {step:g} s",
+                SECONDS_PER_SAMPLE * until / step,
+                "land shorter, or sample more seldom",
             )
             settings = in_steps(inputs, step, until)
         waiting = next(settings, None)

@@ -8,19 +8,14 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from rlv_landing.core import Phase
 from rlv_landing.errors import LandingError
 from rlv_landing.summary import OUTCOMES, unfinished
 from rlv_landing.tables.landing import decimals
 
 from ..messages.topics import DIAGNOSTICS
 from .history import choose_topics, read_history
-from .landing_record import landing_summary, read_landing
+from .landing_record import PHASES, landing_summary, read_landing
 from .reader import Decoder, LogReader
-
-# The phases in `/diagnostics`, in the order of `rlv_landing.summary.OUTCOMES`.
-PHASES = tuple(phase.name.lower() for phase in Phase)
-
 
 STATES = {
     "summary": "complete by its summary (--check reads all of it)",

@@ -14,6 +14,7 @@ from typing import Any, get_args
 
 import numpy as np
 
+from rlv_landing.core import Phase
 from rlv_landing.errors import LandingError
 from rlv_landing.history import History
 from rlv_landing.parameters import Parameters
@@ -38,6 +39,8 @@ COLUMNS: tuple[str, ...] = (
     "body.top_axial_acceleration",
 )
 PHASE = OUTPUT_NAMES.index("status.phase")
+# names of the phases, as in `/diagnostics`, in the order of `rlv_landing.summary.OUTCOMES`
+PHASES = tuple(phase.name.lower() for phase in Phase)
 ENDED = ("complete", "not compressed")
 # The fields of a leg, and what is neither number nor None among them and among the landing's.
 LEG_NUMBERS = (

@@ -15,7 +15,7 @@ from typing import Any
 
 from rlv_landing.errors import LandingError
 from rlv_landing.parameters import check_value
-from rlv_landing.quantities import INPUT_QUANTITIES
+from rlv_landing.quantities import INPUTS_BY_NAME
 
 from .axes import IN_PLANE, from_ros, to_ros
 from .topics import APPLIED_GROUND, APPLIED_WRENCH, WORLD_FRAME
@@ -25,7 +25,6 @@ HEAVE = ("ground.heave", "ground.heave_rate")
 TILT = ("ground.tilt", "ground.tilt_rate")
 # joint of `ground` -> the inputs that its position and velocity are
 JOINTS: dict[str, tuple[str, str]] = {"ground_heave": HEAVE, "ground_tilt": TILT}
-QUANTITIES = {q.name: q for q in INPUT_QUANTITIES}
 
 
 def read_wrench(message: Any) -> dict[str, float]:
@@ -98,7 +97,7 @@ def merged(ground: Mapping[str, float], later: Mapping[str, float]) -> dict[str,
 
 
 def _checked(values: Mapping[str, float]) -> dict[str, float]:
-    return {name: float(check_value(QUANTITIES[name], value)) for name, value in values.items()}
+    return {name: float(check_value(INPUTS_BY_NAME[name], value)) for name, value in values.items()}
 
 
 # What a log holds of them: topic, relative to the namespace -> the inputs that act from the

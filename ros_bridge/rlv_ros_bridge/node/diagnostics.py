@@ -2,21 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
-from rlv_landing.core import Phase
+from rlv_landing.quantities import OUTPUT_NAMES
 
+from ..logs.landing_record import PHASE, PHASES
 from ..messages.samples import set_stamp
+from ..messages.wire import NANOSECONDS
 from .pacer import Pacer
 
-PHASES = tuple(phase.name.lower() for phase in Phase)
+BALANCE = OUTPUT_NAMES.index("energy.balance")
 
 
 def phase_name(phase: float) -> str:
     """The name of the output `status.phase`."""
     return PHASES[int(phase)] if 0 <= phase < len(PHASES) else "unknown"
+
+
+@dataclass(frozen=True)
+class LandingCount:
+    """What has been counted in a landing: samples, messages, inputs, and what the FMU counts."""
+
+    samples: int
+    unpublished: int
+    recorded: int
+    received: int
+    refused: int
+    of_fmu: Mapping[str, int]
 
 
 class DiagnosticsMessage:
@@ -30,6 +45,41 @@ class DiagnosticsMessage:
     def __init__(self, name: str, mode: str) -> None:
         self._status = DiagnosticStatus(name=name, hardware_id=f"rlv-landing {mode}")
         self.message = DiagnosticArray(status=[self._status])
+
+    def of_landing(
+        self,
+        nanoseconds: int,
+        values: Sequence[float],
+        count: LandingCount,
+        pacer: Pacer,
+        failure: str,
+    ) -> DiagnosticArray:
+        """Fills the message with the state of a landing, and returns it.
+
+        Args:
+            nanoseconds: simulation time [ns].
+            values: the landing's outputs.
+            count: what has been counted.
+            pacer: the landing's pacer.
+            failure: makes the level ERROR unless it is empty.
+        """
+        problems = {
+            "steps late": pacer.late_steps,
+            "messages not published": count.unpublished,
+            "inputs refused": count.refused,
+        }
+        status = {
+            "phase": phase_name(values[PHASE]),
+            "energy balance [J]": f"{values[BALANCE]:.6g}",
+            "samples": str(count.samples),
+            **{name: str(number) for name, number in count.of_fmu.items()},
+            **pacing_values(pacer, nanoseconds / NANOSECONDS),
+            "messages not published": str(count.unpublished),
+            "messages recorded": str(count.recorded),
+            "inputs received": str(count.received),
+            "inputs refused": str(count.refused),
+        }
+        return self.update(nanoseconds, status, problems, failure)
 
     def update(
         self,

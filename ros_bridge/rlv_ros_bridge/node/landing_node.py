@@ -13,24 +13,22 @@ from typing import Any
 from geometry_msgs.msg import WrenchStamped
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.parameter import Parameter
-from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
-from std_msgs.msg import String
 
 from rlv_landing.audit.transverse import joint_warning
-from rlv_landing.errors import LandingError, reason_of
+from rlv_landing.errors import LandingError
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES
 
 from ..messages import topics
 from ..messages.qos import PROFILES, TELEMETRY
 from ..messages.rclpy_qos import qos_profile
-from ..messages.robot_description import robot_description, variables
 from ..ros.rclpy_internals import lifecycle_state
-from ..ros.setup import wait_for_acknowledgement, wait_until_matched
+from ..ros.setup import wait_for_acknowledgement
 from .input_queue import InputQueue
 from .landing_run import Identity, LandingRun
 from .landing_services import create_landing_services
+from .landing_thread import LandingThread, as_landing_error
 from .parameters import NodeParameters
 from .publishing import create_publishing
 from .run_summary import RunSummary
@@ -44,12 +42,6 @@ SUCCESS, FAILURE, ERROR = (
 )
 # Shortest time between two warnings of one kind [s].
 WARN_SECONDS = 1.0
-
-
-def _as_landing_error(error: Exception) -> LandingError:
-    if isinstance(error, LandingError):
-        return error
-    return LandingError(f"{type(error).__name__}: {reason_of(error)}")
 
 
 class LandingNode(LifecycleNode):
@@ -76,9 +68,8 @@ class LandingNode(LifecycleNode):
         self.failure: LandingError | None = None
         self.ended = threading.Event()
         self.landing: LandingRun | None = None
-        self._thread: threading.Thread | None = None
+        self._thread: LandingThread | None = None
         self.values = NodeParameters(self, lambda: self.is_landing, self._parameters_changed)
-        self._pause = threading.Event()
         self._landing_error: LandingError | None = None
         self._previous: LandingRun | None = None
         self._landings = 0
@@ -138,7 +129,7 @@ class LandingNode(LifecycleNode):
             action()
             return SUCCESS
         except Exception as e:
-            self.failure = _as_landing_error(e)
+            self.failure = as_landing_error(e)
         # With `autostart` the command prints the error.
         if not self.values["autostart"]:
             self.get_logger().error(str(self.failure))
@@ -171,53 +162,36 @@ class LandingNode(LifecycleNode):
         )
         listed = publishing.names[topics.VARIABLES]
         self.get_logger().info(f"{fmu.path}, version {fmu.version}: {counts}, listed on {listed}")
-        landing.description = serialize_message(
-            String(data=robot_description(landing.settings.parameters))
-        )
-        publishing.publishers[topics.VARIABLES].publish(serialize_message(String(data=variables())))
-        publishing.publishers[topics.ROBOT_DESCRIPTION].publish(landing.description)
+        landing.description = publishing.describe(landing.settings.parameters)
 
     def _start(self) -> None:
         landing = self._require_landing()
         self._open_log(landing)
-        self._pause.clear()
         self.ended.clear()
-        self._thread = threading.Thread(
-            target=self._land, args=(landing,), name="landing", daemon=True
-        )
+        awaited = self._publishing.publishers[topics.STRUTS]
+        self._thread = LandingThread(landing, awaited, self._note_end, self._note_error)
         self._thread.start()
 
     def _open_log(self, landing: LandingRun) -> None:
-        if landing.recorder is None and not landing.samples:
+        if landing.log.recorder is None and not landing.samples:
             landing.open_log()
             self._landings += 1
 
-    def _land(self, landing: LandingRun) -> None:
-        try:
-            if not landing.samples:
-                s = landing.settings
-                wait_until_matched(
-                    self._publishing.publishers[topics.STRUTS].publisher,
-                    s.wait_for_subscribers,
-                    s.wait_timeout,
-                    self._pause.is_set,
-                )
-            landing.run(self._pause.is_set)
-            if landing.end:
-                self.get_logger().debug(f"{landing.end} after {landing.time:g} s")
-                landing.close_log()
-                self.ended.set()
-        except Exception as e:
-            self._landing_error = _as_landing_error(e)
-            # Transitions must run in the executor's thread.
-            if self.executor is not None:
-                self.executor.create_task(self.trigger_deactivate)
+    def _note_end(self) -> None:
+        landing = self._require_landing()
+        self.get_logger().debug(f"{landing.end} after {landing.time:g} s")
+        self.ended.set()
+
+    def _note_error(self, error: LandingError) -> None:
+        self._landing_error = error
+        # Transitions must run in the executor's thread.
+        if self.executor is not None:
+            self.executor.create_task(self.trigger_deactivate)
 
     def _stop(self) -> None:
         thread, self._thread = self._thread, None
         if thread is not None:
-            self._pause.set()
-            thread.join()
+            thread.stop()
 
     def _stop_or_raise(self) -> None:
         self._stop()

@@ -12,36 +12,27 @@ from typing import Any
 
 from rclpy.serialization import serialize_message
 
-from rlv_landing import Landing, LandingError
-from rlv_landing.presets import to_toml
-from rlv_landing.quantities import OUTPUT_NAMES
+from rlv_landing import Landing
+from rlv_landing.core import Phase
 
 from ..fmu.runner import FmuRunner
-from ..logs.landing_record import LandingRows
-from ..logs.peaks import peak_texts
-from ..logs.recorder import RecordedTopic, Recorder
+from ..logs.landing_record import PHASE
 from ..messages import topics
 from ..messages.markers import Wireframe
-from ..messages.qos import LATCHED
 from ..messages.samples import SampleBytes
 from ..messages.topics import Topic
 from ..messages.transforms import Transforms
 from ..messages.wire import padded
-from .diagnostics import DiagnosticsMessage, pacing_values, phase_name
+from .diagnostics import DiagnosticsMessage, LandingCount
 from .input_queue import InputQueue
-from .log_metadata import log_metadata
-from .pacer import Pacer, lateness_percentiles
+from .landing_log import LandingLog
+from .pacer import Pacer, RunningMean, lateness_percentiles
 from .publishing import Publishing
 from .run_summary import RunSummary
 from .settings import Settings
 
-PHASE = OUTPUT_NAMES.index("status.phase")
-BALANCE = OUTPUT_NAMES.index("energy.balance")
-TOPPLED = 3
 # Longest time for publishing the last samples while a subscriber takes nothing [s of wall time].
 DRAIN_SECONDS = 0.5
-# Weight of a new sample in the running mean of the time that computing one takes.
-MEAN_WEIGHT = 1.0 / 32.0
 # How long another thread, such as one that answers a service, may hold Python's global lock when a
 # sample is due [s]. Python's default of 5 ms is the time of five samples.
 THREAD_SWITCH_SECONDS = 2e-4
@@ -58,9 +49,9 @@ class Identity:
 class LandingRun:
     """A landing at time 0, ready to run.
 
-    `samples` counts the samples computed. `end` is "finished", "toppled", or empty. `recorder` is
-    None until `open_log`, and where nothing is recorded. `description` is the serialised message of
-    `robot_description`, with which the log begins.
+    `samples` counts the samples computed. `end` is "finished", "toppled", or empty. `log` is opened
+    by `open_log`. `description` is the serialised message of `robot_description`, with which the
+    log begins.
 
     Args:
         settings: the landing's settings.
@@ -88,14 +79,11 @@ class LandingRun:
         self.samples = 0
         self.end = ""
         self.realtime_factor = settings.realtime_factor
-        self.recorder: Recorder | None = None
+        self.log = LandingLog(settings, folder, publishing, identity.namespace, on_error)
         self.description = b""
-        self._folder, self._publishing, self._inputs = folder, publishing, inputs
-        self._identity, self._on_error = identity, on_error
-        self._error_reported = False
+        self._publishing, self._inputs = publishing, inputs
         self._queue = publishing.queue
         self._set_packer(SampleBytes())
-        self._rows = LandingRows(settings.parameters)
         self._wireframe = Wireframe(settings.parameters)
         self._transforms = Transforms(settings.parameters)
         self._diagnostics = DiagnosticsMessage(identity.node, settings.mode)
@@ -103,8 +91,8 @@ class LandingRun:
             settings.every[t] for t in (topics.MARKERS, topics.TF, topics.DIAGNOSTICS)
         )
         self._pacer = Pacer(0.0)
-        # Running mean of the wall time that computing a sample takes [s].
-        self._sample_cost = 0.0
+        # wall time that computing a sample takes [s]
+        self._sample_cost = RunningMean()
         self._dropped_before = self._queue.dropped
         self.fmu = FmuRunner(settings.fmu, dict(settings.parameters.items()))
         inputs.clear(settings.step_ns, lambda values: Landing(settings.parameters, inputs=values))
@@ -116,28 +104,9 @@ class LandingRun:
         Raises:
             LandingError: the log's folder exists or cannot be made.
         """
-        if self._folder is None or self.recorder is not None:
-            return
-        names, qos = self._publishing.names, self._publishing.qos
-        recorded = [
-            RecordedTopic(names[t], t.type_name, LATCHED if t is topics.ROBOT_DESCRIPTION else qos)
-            for t in topics.RECORDED
-        ]
-        self.recorder = Recorder(
-            self._folder,
-            recorded,
-            log_metadata(self.settings, self._identity.namespace, self.fmu),
-            {"parameters.toml": to_toml(self.settings.parameters).encode("utf-8")},
-        )
-        self.recorder.write(names[topics.ROBOT_DESCRIPTION], 0, padded(self.description))
-        packer = self._packer
-        sizes = {
-            t: part.stop - part.start
-            for t, part in zip(packer.topics, packer.slices)
-            if t in topics.RECORDED
-        }
-        prefixes = self.recorder.begin_samples({names[t]: size for t, size in sizes.items()})
-        self._set_packer(SampleBytes(dict(zip(sizes, prefixes))))
+        packer = self.log.open(self.fmu, self.description, self._packer)
+        if packer is not None:
+            self._set_packer(packer)
 
     def _set_packer(self, packer: SampleBytes) -> None:
         self._packer = packer
@@ -174,11 +143,11 @@ class LandingRun:
                 started = time.perf_counter()
                 values, messages = self._compute_sample(k)
                 cost = time.perf_counter() - started
-                self._sample_cost += MEAN_WEIGHT * (cost - self._sample_cost)
+                self._sample_cost.add(cost)
                 pacer.sleep_until_due(k, interrupted)
                 queue.enqueue_sample(self._slices, messages, k, pacer.due(k))
                 self.samples = k + 1
-                latest = pacer.due(k + 1) - 1.5 * self._sample_cost
+                latest = pacer.due(k + 1) - 1.5 * self._sample_cost.value
                 # The sample is published before the occasional messages are made.
                 queue.publish(latest)
                 if self._enqueue_occasional(k, values):
@@ -213,24 +182,17 @@ class LandingRun:
 
     def _compute_sample(self, k: int) -> tuple[list[float], bytes]:
         """Steps to sample k and records it; its outputs and its messages."""
-        s, recorder = self.settings, self.recorder
+        s = self.settings
         # the inputs of time 0 place the vehicle: they are applied before sample 0
         if k != 1:
             self._apply_inputs(max(0, k - 1) * s.step_ns)
         if k:
             self.fmu.step(k - 1, s.step_size)
         values = self.fmu.values()
-        toppled = values[PHASE] == TOPPLED
+        toppled = values[PHASE] == Phase.TOPPLED
         self.end = "toppled" if toppled else "finished" if k == s.steps else ""
-        stamp = k * s.step_ns
-        messages = self._packer.pack(stamp, values, k)
-        if recorder is not None:
-            recorder.write_sample(stamp, messages[self._recorded])
-            self._rows.add(k * s.step_size, values)
-            recorder.flush()
-            if recorder.error and not self._error_reported:
-                self._error_reported = True
-                self._on_error(f"{recorder.error}; the landing continues without recording")
+        messages = self._packer.pack(k * s.step_ns, values, k)
+        self.log.write_sample(k, values, messages[self._recorded])
         return values, messages
 
     def _apply_inputs(self, now: int) -> None:
@@ -256,8 +218,7 @@ class LandingRun:
         return bool(due)
 
     def _record_and_enqueue(self, topic: Topic, stamp: int, data: bytes) -> None:
-        if self.recorder is not None:
-            self.recorder.write(self._publishing.names[topic], stamp, data)
+        self.log.write(topic, stamp, data)
         publisher = self._publishing.publishers.get(topic)
         if publisher is not None:
             self._queue.enqueue(publisher, data)
@@ -267,25 +228,16 @@ class LandingRun:
             self._pacer.note_published(due)
 
     def _diagnostics_message(self, k: int, values: Sequence[float]) -> Any:
-        recorder = self.recorder
-        problems = {
-            "steps late": self._pacer.late_steps,
-            "messages not published": self.dropped,
-            "inputs refused": self._inputs.refused,
-        }
-        status = {
-            "phase": phase_name(values[PHASE]),
-            "energy balance [J]": f"{values[BALANCE]:.6g}",
-            "samples": str(k + 1),
-            **{name: str(count) for name, count in self.fmu.statistics().items()},
-            **pacing_values(self._pacer, k * self.settings.step_size),
-            "messages not published": str(self.dropped),
-            "messages recorded": str(recorder.count if recorder else 0),
-            "inputs received": str(self._inputs.received),
-            "inputs refused": str(self._inputs.refused),
-        }
-        failure = recorder.error if recorder else ""
-        return self._diagnostics.update(k * self.settings.step_ns, status, problems, failure)
+        count = LandingCount(
+            samples=k + 1,
+            unpublished=self.dropped,
+            recorded=self.log.count,
+            received=self._inputs.received,
+            refused=self._inputs.refused,
+            of_fmu=self.fmu.statistics(),
+        )
+        stamp = k * self.settings.step_ns
+        return self._diagnostics.of_landing(stamp, values, count, self._pacer, self.log.error)
 
     @property
     def dropped(self) -> int:
@@ -300,11 +252,11 @@ class LandingRun:
             signal: number of the signal that interrupted it, or 0.
             acknowledged: whether all reliable subscribers have acknowledged all samples.
         """
-        pacer, recorder = self._pacer, self.recorder
+        pacer, recorder = self._pacer, self.log.recorder
         median, p99, largest = lateness_percentiles(pacer.lateness)
         return RunSummary(
             samples=self.samples,
-            recorded=recorder.count if recorder else 0,
+            recorded=self.log.count,
             simulated=self.time,
             wall=pacer.elapsed,
             late_steps=pacer.late_steps,
@@ -317,25 +269,12 @@ class LandingRun:
             end=end,
             signal=signal,
             acknowledged=acknowledged,
-            recording_error=recorder.error if recorder else "",
+            recording_error=self.log.error,
         )
-
-    def _end_records(self) -> tuple[dict[str, str], dict[str, str]]:
-        """The records of peaks and landing; empty where the FMU has failed, or is freed."""
-        try:
-            peaks = self.fmu.peaks()
-        except LandingError:
-            return {}, {}
-        found = {name.removeprefix("peak."): peak for name, peak in peaks.items()}
-        return peak_texts(peaks, self.time), self._rows.texts(found)
 
     def close_log(self) -> None:
         """Completes the log; removes it if no sample was recorded."""
-        if self.recorder is not None:
-            if self.samples:
-                self.recorder.close(*self._end_records())
-            else:
-                self.recorder.discard()
+        self.log.close(self.fmu, self.samples, self.time)
 
     def close(self) -> None:
         """Completes the log and frees the FMU."""

@@ -11,6 +11,22 @@ from collections.abc import Callable, Sequence
 STALL_SECONDS = 0.1
 # Longest sleep before the interruption is checked [s].
 INTERRUPT_POLL_SECONDS = 0.05
+# Weight of a new value in a running mean.
+MEAN_WEIGHT = 1.0 / 32.0
+
+
+class RunningMean:
+    """The mean of the last values, 0 before the first; older ones fade away.
+
+    `value` is the mean.
+    """
+
+    def __init__(self) -> None:
+        self.value = 0.0
+
+    def add(self, value: float) -> None:
+        """Takes a new value in."""
+        self.value += MEAN_WEIGHT * (value - self.value)
 
 
 class Pacer:

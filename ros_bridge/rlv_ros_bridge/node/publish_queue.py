@@ -14,6 +14,8 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from .pacer import RunningMean
+
 # One second of all messages at 1 kHz.
 QUEUE_MESSAGES = 16_000
 # Period of asking for the number of subscriptions [s].
@@ -21,8 +23,6 @@ SUBSCRIPTION_POLL_SECONDS = 0.05
 # A write takes some 15 us of processor time, one to a subscriber that takes nothing 250 us. Wall
 # time would also hold the time of other processes.
 SLOW_WRITE_SECONDS = 80e-6
-# Weight of a new write in the running mean of their cost.
-MEAN_WEIGHT = 1.0 / 32.0
 # Longest time without any write [s].
 PROBE_SECONDS = 0.1
 
@@ -53,7 +53,7 @@ class PublishQueue:
         self.dropped = 0
         # Publisher and bytes of a message; None and the due time after a sample's last message.
         self._queue: deque[tuple[TopicPublisher | None, bytes, float]] = deque()
-        self._write_cost = 0.0
+        self._write_cost = RunningMean()
         self._polled = self._written = 0.0
         self._on_published: Callable[[float], None] = lambda due: None
 
@@ -69,7 +69,7 @@ class PublishQueue:
     @property
     def writes_are_slow(self) -> bool:
         """Whether a write costs so much at present that some subscriber must take nothing."""
-        return self._write_cost > SLOW_WRITE_SECONDS
+        return self._write_cost.value > SLOW_WRITE_SECONDS
 
     def poll_subscriptions(self, now: float = 0.0) -> None:
         """Asks each publisher for its subscriptions, unless that was done just before `now`.
@@ -130,7 +130,7 @@ class PublishQueue:
     @property
     def _expected_cost(self) -> float:
         # Slow writes differ much from each other, so twice their mean is expected.
-        return self._write_cost * (2.0 if self.writes_are_slow else 1.0)
+        return self._write_cost.value * (2.0 if self.writes_are_slow else 1.0)
 
     def _publish(self, now: float, until: float, count: int) -> None:
         """Publishes at least `count` messages, and further ones that fit in before `until`."""
@@ -144,7 +144,7 @@ class PublishQueue:
             publisher.publish(data)
             count -= 1
             before, spent = spent, processor()
-            self._write_cost += MEAN_WEIGHT * (spent - before - self._write_cost)
+            self._write_cost.add(spent - before)
             self._written = now = clock()
 
     def drain(self, seconds: float) -> None:

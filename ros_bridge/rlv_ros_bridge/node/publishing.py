@@ -7,11 +7,16 @@ from dataclasses import dataclass
 from typing import Any
 
 from rclpy.node import Node
+from rclpy.serialization import serialize_message
+from std_msgs.msg import String
+
+from rlv_landing.parameters import Parameters
 
 from ..messages import topics
 from ..messages.message_types import is_installed, message_class
 from ..messages.qos import CLOCK, LATCHED, Qos
 from ..messages.rclpy_qos import qos_profile
+from ..messages.robot_description import robot_description, variables
 from ..messages.topics import Topic, resolve
 from .publish_queue import PublishQueue, TopicPublisher
 
@@ -28,6 +33,17 @@ class Publishing:
     publishers: Mapping[Topic, TopicPublisher]
     names: Mapping[Topic, str]
     qos: Qos
+
+    def describe(self, parameters: Parameters) -> bytes:
+        """Publishes the FMU's variables and the vehicle's description.
+
+        Returns:
+            The serialised message of the description.
+        """
+        description: bytes = serialize_message(String(data=robot_description(parameters)))
+        self.publishers[topics.VARIABLES].publish(serialize_message(String(data=variables())))
+        self.publishers[topics.ROBOT_DESCRIPTION].publish(description)
+        return description
 
     def acknowledging(self) -> list[Any]:
         """The rclpy publishers whose subscribers should acknowledge all samples of a landing."""

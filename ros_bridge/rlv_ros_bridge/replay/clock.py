@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-# A longer delay is not made up for [s of wall time]: subscribers do not expect such a burst of
-# messages.
-STALL_SECONDS = 0.1
+from ..node.pacer import STALL_SECONDS
+
 SLOWEST, FASTEST = 1e-3, 1e3
 
 

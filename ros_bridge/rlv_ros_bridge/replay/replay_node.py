@@ -34,18 +34,8 @@ from .clock import ReplayClock
 from .keyboard import Keyboard
 from .restamp import Restamper
 from .selection import ReplayOptions, Selection
+from .waiting import ReplayWaits
 
-# The system ends a sleep up to some hundred microseconds late, so the last part of a wait is a busy
-# loop [s].
-BUSY_WAIT_SECONDS = 300e-6
-# Serving the node's services once costs half a millisecond. It is done every SERVICE_SECONDS if the
-# next message is not due for SERVICE_GAP_SECONDS, else every LONGEST_SERVICE_SECONDS.
-SERVICE_SECONDS = 0.05
-SERVICE_GAP_SECONDS = 2e-3
-LONGEST_SERVICE_SECONDS = 0.5
-# Period of reading the keyboard [s], and the factor by which a cursor key changes the rate.
-KEY_SECONDS = 0.02
-RATE_FACTOR = 1.1
 BAR = "replay {percentage:3.0f}%|{bar}| {n:.2f}/{total:.2f} s [{elapsed}<{remaining}]{postfix}"
 
 
@@ -91,12 +81,13 @@ class ReplayNode(Node):
         super().__init__("replay_node")
         self._selection = selection
         self._options = options
-        self._keyboard = keyboard
         self._stop = stop
-        self._quit = False
         self._replay_clock = ReplayClock(options.rate, paused=options.start_paused)
         self._service_executor = SingleThreadedExecutor(context=self.context)
         self._service_executor.add_node(self)
+        self._waits = ReplayWaits(
+            self._replay_clock, keyboard, stop, self._service_executor.spin_once
+        )
         self._create_services()
         # A subscriber that waits for a match on `struts` finds the others matched: it comes last,
         # as in the landing node.
@@ -121,7 +112,6 @@ class ReplayNode(Node):
                 type(self._clock_message), landing_topics.CLOCK.name, qos_profile(CLOCK)
             )
         self._lateness: list[float] = []
-        self._services_served = self._keyboard_read = 0.0
 
     def _create_services(self) -> None:
         clock = self._replay_clock
@@ -154,7 +144,7 @@ class ReplayNode(Node):
         try:
             messages = selection.begin()
             self._replay_clock.start(time.perf_counter())
-            while not self._ended:
+            while not self._waits.ended:
                 # One step of the log lies between the last message of a round and the first of the
                 # next.
                 epoch = rounds * (selection.length + selection.step)
@@ -177,7 +167,7 @@ class ReplayNode(Node):
             messages=played,
             rounds=rounds,
             signal=stop.number,
-            quit=self._quit,
+            quit=self._waits.quit,
             median_lateness=median,
             p99_lateness=p99,
             largest_lateness=largest,
@@ -185,10 +175,6 @@ class ReplayNode(Node):
             acknowledged=acknowledged,
             cut=selection.cut,
         )
-
-    @property
-    def _ended(self) -> bool:
-        return bool(self._stop) or self._quit
 
     def _play_round(
         self, messages: Generator[LogMessage, None, None], epoch: int
@@ -209,18 +195,18 @@ class ReplayNode(Node):
                 disable=not sys.stderr.isatty(),
                 bar_format=BAR,
                 file=sys.stderr,
-                postfix=self._status,
+                postfix=self._waits.status,
             ) as bar,
         ):
             for message in messages:
                 position = (epoch + message.log_time - selection.first) / 1e9
                 while next_tick <= position:
-                    if not self._wait_until(next_tick, bar):
+                    if not self._waits.wait_until(next_tick, bar):
                         return count, False
                     self._publish_clock(selection.first + round(next_tick * 1e9))
                     # Messages of /clock are even in wall time, at any rate.
                     next_tick += clock.rate / self._options.clock
-                if not self._wait_until(position, bar):
+                if not self._waits.wait_until(position, bar):
                     return count, False
                 late = time.perf_counter() - clock.due(position)
                 data = message.data if restamp is None else restamp(message.topic, message.data)
@@ -234,50 +220,6 @@ class ReplayNode(Node):
                 if played - bar.n > 0.02 or clock.paused:
                     bar.update(played - bar.n)
         return count, True
-
-    def _wait_until(self, position: float, bar: Any) -> bool:
-        """Waits until the time `position` [s] of the log is due; False if the replay is to end."""
-        clock = self._replay_clock
-        while not self._ended:
-            now = time.perf_counter()
-            if self._keyboard.available and now - self._keyboard_read > KEY_SECONDS:
-                self._keyboard_read = now
-                self._handle_keys(self._keyboard.keys(), bar)
-                continue
-            left = clock.due(position) - now
-            if left <= 0.0:
-                return True
-            if clock.paused:
-                self._service_executor.spin_once(timeout_sec=KEY_SECONDS)
-            elif left > BUSY_WAIT_SECONDS:
-                unserved = now - self._services_served
-                in_gap = unserved > SERVICE_SECONDS and left > SERVICE_GAP_SECONDS
-                if in_gap or unserved > LONGEST_SERVICE_SECONDS:
-                    self._service_executor.spin_once(timeout_sec=0)
-                    self._services_served = time.perf_counter()
-                else:
-                    time.sleep(min(left - BUSY_WAIT_SECONDS, KEY_SECONDS))
-        return False
-
-    def _handle_keys(self, keys: Sequence[str], bar: Any) -> None:
-        clock = self._replay_clock
-        for key in keys:
-            now = time.perf_counter()
-            if key == "space":
-                (clock.resume if clock.paused else clock.pause)(now)
-            elif key == "right":
-                clock.step()
-            elif key == "q":
-                self._quit = True
-            else:
-                clock.change_rate(RATE_FACTOR if key == "up" else 1.0 / RATE_FACTOR, now)
-        if keys:
-            bar.set_postfix_str(self._status)
-
-    @property
-    def _status(self) -> str:
-        clock = self._replay_clock
-        return f"rate {clock.rate:.3g}{', paused' if clock.paused else ''}"
 
     def _publish_clock(self, nanoseconds: int) -> None:
         if self._clock_publisher is not None:

@@ -22,6 +22,7 @@ from ..messages.message_types import message_class
 from ..messages.qos import Qos
 from ..messages.rclpy_qos import qos_profile
 from ..messages.topics import CONTACTS, MARKERS, RPY, STRUTS, TWIST, Topic, resolve
+from ..messages.wire import NANOSECONDS
 from ..ros.setup import StopFlag, ros_context
 from ..ros.spinner import Spinner
 from .rerun_scene import AUXILIARY, BODY, MAIN, Scene
@@ -31,7 +32,6 @@ WATCHED: tuple[Topic, ...] = (STRUTS, RPY, TWIST, *CONTACTS)
 QOS = Qos(reliability="best_effort", depth=1000)
 # Samples that lack a topic are dropped when a sample is newer by this [ns].
 LONGEST_GAP = 100_000_000
-NANOSECONDS = 1_000_000_000
 # Period of drawing [s], and of checking for signals [s].
 DRAW_SECONDS, POLL_SECONDS = 0.05, 0.1
 NO_CONTACT = dict.fromkeys(

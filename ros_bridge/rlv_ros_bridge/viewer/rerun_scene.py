@@ -16,8 +16,8 @@ import rerun as rr
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from rlv_landing.figures.plots import COLOURS
-from rlv_landing.quantities import LEGS, MODES
+from rlv_landing.figures.plots import COLOURS, DRAWN_OF_A_LEG
+from rlv_landing.quantities import LEGS, touchdown_groups
 from rlv_landing.text.durable import whole_file, writing
 
 Array = NDArray[np.float64]
@@ -51,19 +51,14 @@ class Curve(NamedTuple):
     colours: tuple[str, ...]
 
 
-def leg_groups(mode: str) -> list[tuple[int, ...]]:
-    """The legs that touch down together, in order of touchdown; each group has one colour."""
-    return [tuple(sorted(leg for leg, _ in g.legs)) for g in MODES[mode]]
-
-
 def curves(mode: str) -> list[Curve]:
     """The plots of a landing in `mode`."""
-    legs = leg_groups(mode)
+    legs = touchdown_groups(mode)
     names = {f"leg {'/'.join(map(str, group))}": group[0] for group in legs}
 
-    def strut(entity: str, title: str, column: str, factor: float) -> Curve:
+    def strut(column: str, factor: float, title: str) -> Curve:
         return Curve(
-            entity,
+            column.replace(".", "/"),
             title,
             {name: f"leg[{leg}].{column}" for name, leg in names.items()},
             factor,
@@ -71,9 +66,7 @@ def curves(mode: str) -> list[Curve]:
         )
 
     return [
-        strut("main_strut/force", "main strut force [kN]", "main_strut.force", 1e-3),
-        strut("main_strut/stroke", "main strut stroke [mm]", "main_strut.stroke", 1e3),
-        strut("auxiliary_strut/force", "auxiliary strut force [kN]", "auxiliary_strut.force", 1e-3),
+        *(strut(*drawn) for drawn in DRAWN_OF_A_LEG),
         Curve("body/pitch", "pitch [deg]", {"pitch": "body.pitch"}, float(np.degrees(1.0)), (INK,)),
         Curve(
             "body/speed", "speed [m/s]", {"forward": "body.vx", "up": "body.vy"}, 1.0, (INK, FORCE)
@@ -91,7 +84,9 @@ class Scene:
         self.mode = mode
         self.stream = rr.RecordingStream("rlv-landing")
         colours = {
-            leg: rgb(colour) for group, colour in zip(leg_groups(mode), COLOURS) for leg in group
+            leg: rgb(colour)
+            for group, colour in zip(touchdown_groups(mode), COLOURS)
+            for leg in group
         }
         legs = [colours[leg] for leg in LEGS]
         self._log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP)

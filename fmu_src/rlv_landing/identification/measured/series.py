@@ -9,14 +9,13 @@ from numpy.typing import NDArray
 
 from ...errors import LandingError, unknown
 from ...history import History
-from ...quantities import MODES, OUTPUT_QUANTITIES, shown
+from ...quantities import MODES, OUTPUTS_BY_NAME, shown
 from ..counting.soft_count import TOLERANCE
 
 Vector = NDArray[np.float64]
 CURVE_SAMPLES = 100
 # the time after the first contact [s] by which curves of a landing have begun, and have ended
 LATEST_START, LATEST_END = 5.0, 30.0
-_QUANTITIES = {q.name: q for q in OUTPUT_QUANTITIES}
 
 
 @dataclass(frozen=True)
@@ -115,7 +114,7 @@ class Series:
         """Each curve beside that of a landing, in the unit that people read."""
         found = []
         for name in self.curves.names:
-            off, (unit, size) = self._differences(history, name), shown(_QUANTITIES[name])
+            off, (unit, size) = self._differences(history, name), shown(OUTPUTS_BY_NAME[name])
             rms = float(np.sqrt(np.mean(off**2)))
             own = float(np.sqrt(np.mean(self.curves[name] ** 2)))
             largest = float(np.abs(off).max()) / size

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...errors import LandingError, unknown
 from ...parameters import PARAMETER_QUANTITIES, check_value
-from ...quantities import INPUT_QUANTITIES, Quantity, shown
+from ...quantities import INPUTS_BY_NAME, Quantity, shown
 from ...text.values import check_together, is_number, to_si, unit_of
 from .. import toml_keys
 
@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 # most points of a study
 LARGEST = 100_000_000
 # quantities that a study may vary or set: every parameter, and every input as a constant
-VARIABLES: dict[str, Quantity] = {**PARAMETER_QUANTITIES, **{q.name: q for q in INPUT_QUANTITIES}}
+VARIABLES: dict[str, Quantity] = {**PARAMETER_QUANTITIES, **INPUTS_BY_NAME}
 DISTRIBUTIONS = {
     "uniform": ("low", "high", "count"),
     "normal": ("mean", "deviation", "low", "high"),

@@ -10,53 +10,34 @@
 
 from __future__ import annotations
 
-import io
 import json
-import platform
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from hashlib import sha256
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-import numpy
-import scipy
-
-from ... import __version__
 from ...errors import LandingError, reason_of
-from ...quantities import Quantity
 from ...text.durable import LOCK, PART, FolderLock, unwritable, whole_file, write_durably
 from ...text.files import read_record
-from .extras import arrow
 from .parts import (
     check_part,
     check_results,
-    opened,
     part_files,
     part_name,
     remove_unfinished,
 )
+from .row_table import RowTable
 from .sweep_row import Task
 
 STUDY, COPY, PARTS, RESULTS = "study.json", "study.toml", "parts", "results.parquet"
 # what a sweep that was killed before its first file leaves
 OWN = (LOCK, COPY, f"{COPY}{PART}", f"{STUDY}{PART}")
 ANOTHER = "name another folder by --results"
-LEADING = (
-    Quantity("", "number of the landing, from 0", name="index", kind="integer"),
-    Quantity(
-        "",
-        "number of the sample, from 0: landings of one sample differ in mode only",
-        name="sample",
-        kind="integer",
-    ),
-    Quantity("", "the study's seed", name="seed", kind="integer"),
-)
 PART_ROWS = 1000
 PART_SECONDS = 1.0
-GROUP_ROWS = 10_000
 
 
 class Results:
@@ -72,11 +53,10 @@ class Results:
     def __init__(self, folder: Path, task: Task, *, resume: bool = False) -> None:
         self.folder = folder
         self.count = len(task)
-        self._pyarrow, self._parquet = arrow()
-        self._quantities = [*LEADING, *task.quantities()]
         about = task.about()
         self._about = {"fingerprint": fingerprint(about), **about}
         self._text = task.study.text
+        self._table = RowTable(task.quantities(), self._about, self._text)
         self._rows: list[list[Any]] = []
         self._since = time.monotonic()
         self._check_folder(resume=resume)
@@ -162,7 +142,7 @@ class Results:
         parts = self.folder / PARTS
         if (self.folder / RESULTS).exists():
             check_results(
-                self.folder / RESULTS, self._about["fingerprint"], self._schema(), self.count
+                self.folder / RESULTS, self._about["fingerprint"], self._table.schema, self.count
             )
             self._remove_parts()
             return [(0, self.count)]
@@ -175,7 +155,7 @@ class Results:
         for path in part_files(parts):
             after = ranges[-1][1] if ranges else 0
             ranges.append(
-                check_part(path, self._about["fingerprint"], self._schema(), self.count, after)
+                check_part(path, self._about["fingerprint"], self._table.schema, self.count, after)
             )
         return ranges
 
@@ -209,40 +189,11 @@ class Results:
     def flush(self) -> None:
         """Write the rows in memory to a part."""
         if self._rows:
-            buffer = io.BytesIO()
-            # a part that is changed later is noticed
-            self._parquet.write_table(self._table(self._rows), buffer, write_page_checksum=True)
-            write_durably(self.folder / PARTS / part_name(self._rows[0][0]), buffer.getvalue())
+            part = self.folder / PARTS / part_name(self._rows[0][0])
+            write_durably(part, self._table.content(self._rows))
             self.done = sorted({*self.done, (self._rows[0][0], self._rows[-1][0] + 1)})
             self._rows = []
         self._since = time.monotonic()
-
-    def _schema(self) -> Any:
-        pa = self._pyarrow
-        kinds = {
-            "real": pa.float64(),
-            "integer": pa.int64(),
-            "boolean": pa.bool_(),
-            "string": pa.string(),
-        }
-        fields = [
-            pa.field(q.name, kinds[q.kind], metadata={"unit": q.unit, "meaning": q.meaning})
-            for q in self._quantities
-        ]
-        metadata = {
-            "study.json": json.dumps(self._about),
-            "study.toml": self._text,
-            "versions": json.dumps(versions()),
-        }
-        return pa.schema(fields, metadata=metadata)
-
-    def _table(self, rows: Sequence[Sequence[Any]]) -> Any:
-        columns = []
-        for field, values in zip(self._schema(), zip(*rows)):
-            if self._pyarrow.types.is_floating(field.type):
-                values = tuple(None if isinstance(v, str) else v for v in values)
-            columns.append(self._pyarrow.array(values, field.type))
-        return self._pyarrow.table(columns, schema=self._schema())
 
     def finish(self) -> Path:
         """Join the parts to one file, in the order of the indices, and remove them.
@@ -258,30 +209,10 @@ class Results:
         if path.exists():
             return path
         self.flush()
-        with (
-            whole_file(path) as file,
-            self._parquet.ParquetWriter(file, self._schema(), write_page_checksum=True) as writer,
-        ):
-            for table in self._groups():
-                writer.write_table(table, row_group_size=GROUP_ROWS)
+        with whole_file(path) as file:
+            self._table.join(part_files(self.folder / PARTS), file)
         self._remove_parts()
         return path
-
-    def _groups(self) -> Iterator[Any]:
-        """All rows in tables of GROUP_ROWS.
-
-        The size does not depend on the parts: neither does the file.
-        """
-        pending = self._schema().empty_table()
-        for part in part_files(self.folder / PARTS):
-            with opened(part) as file:
-                table = self._pyarrow.Table.from_arrays(file.read().columns, schema=self._schema())
-            pending = self._pyarrow.concat_tables([pending, table])
-            while pending.num_rows >= GROUP_ROWS:
-                yield pending.slice(0, GROUP_ROWS).combine_chunks()
-                pending = pending.slice(GROUP_ROWS)
-        if pending.num_rows:
-            yield pending.combine_chunks()
 
     def _remove_parts(self) -> None:
         parts = self.folder / PARTS
@@ -295,13 +226,3 @@ class Results:
 def fingerprint(about: Mapping[str, Any]) -> str:
     """The SHA-256 of everything that decides a study's rows."""
     return sha256(json.dumps(about, sort_keys=True).encode()).hexdigest()
-
-
-def versions() -> dict[str, str]:
-    """The versions of the software that made the rows."""
-    return {
-        "rlv-landing": __version__,
-        "python": platform.python_version(),
-        "numpy": numpy.__version__,
-        "scipy": scipy.__version__,
-    }

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ...errors import LandingError, reason_of
 from ...text.files import read_csv
 from ...text.units import UnitError, parse_number
-from ...text.values import number_in_si, split_heading, unit_of
+from ...text.values import check_row, number_in_si, split_heading, unit_of
 from .design import Design
 from .extras import arrow
 from .factors import column, variable
@@ -87,11 +87,10 @@ def _csv(path: Path) -> tuple[list[str], list[str], list[list[float | str]]]:
             headings = [h.strip() for h in row]
             cells = [[] for _ in headings]
             continue
-        if len(row) != len(headings):
-            raise LandingError(
-                f"{path}, line {line}: {len(row)} values under {len(headings)} headings; "
-                "give every column a value, with a point and no comma in it"
-            )
+        try:
+            check_row(row, headings)
+        except LandingError as e:
+            raise LandingError(f"{path}, line {line}: {e}") from None
         for values, text in zip(cells, row):
             values.append(_cell(text))
     return headings, [""] * len(headings), cells

@@ -14,7 +14,8 @@ from typing import Any, Protocol
 
 from ...errors import LandingError
 from ...workers import default_workers
-from .result_files import LEADING, Results
+from .result_files import Results
+from .row_table import LEADING
 from .sweep_row import Plan, Task
 
 Rows = list[list[Any]]

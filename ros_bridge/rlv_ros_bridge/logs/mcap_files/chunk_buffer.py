@@ -14,14 +14,14 @@ from mcap.opcode import Opcode
 from mcap.records import MessageIndex
 from numpy.typing import NDArray
 
+from ...messages.wire import TIMES
 from .internals import chunk_builder, statistics
 from .records import MESSAGE_HEAD_BYTES, RECORD_HEAD, decode_record, split_records
 
 # Before a message's data: opcode, length, channel (MESSAGE_PREFIX), then sequence number, log time
-# and publish time (MESSAGE_TIMES).
+# and publish time (TIMES).
 MESSAGE_PREFIX = struct.Struct("<BQH")
-MESSAGE_TIMES = struct.Struct("<IQQ")
-RECORD_SIZE = MESSAGE_PREFIX.size + MESSAGE_TIMES.size
+RECORD_SIZE = MESSAGE_PREFIX.size + TIMES.size
 # The start of a message index: opcode, length, channel, bytes of the entries.
 INDEX_HEAD = struct.Struct("<BQHI")
 
@@ -80,7 +80,7 @@ class ChunkBuffer:
 
     def add(self, channel: int, sequence: int, time: int, data: bytes) -> None:
         """Adds a message of `channel`, logged and published at `time` [ns]."""
-        head = message_prefix(channel, len(data)) + MESSAGE_TIMES.pack(sequence, time, time)
+        head = message_prefix(channel, len(data)) + TIMES.pack(sequence, time, time)
         offset = self._append(head + data)
         self._singles.setdefault(channel, []).append((time, offset))
 

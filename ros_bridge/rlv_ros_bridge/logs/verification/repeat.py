@@ -13,6 +13,7 @@ from rlv_landing.text.units import parse_number
 
 from ...messages.inputs import READINGS
 from ...messages.topics import APPLIED, resolve
+from ...messages.wire import NANOSECONDS
 from ..peaks import landing_peaks
 from ..reader import Decoder, LogReader
 
@@ -132,7 +133,7 @@ def _inputs(reader: LogReader, step_ns: int, refusal: str) -> Inputs:
         decoded = decode(message)
         stamp = decoded.header.stamp
         k, rest = divmod(message.log_time, step_ns)
-        if stamp.sec * 1_000_000_000 + stamp.nanosec != message.log_time:
+        if stamp.sec * NANOSECONDS + stamp.nanosec != message.log_time:
             raise LandingError(
                 at + f"has the stamp {stamp.sec}.{stamp.nanosec:09d} s; one of the two was changed"
             )

@@ -1,0 +1,171 @@
+"""The log of a landing: opened before its first sample, completed with its records at the end."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable, Sequence
+from datetime import datetime, timezone
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from rlv_landing import LandingError, __version__
+from rlv_landing.presets import to_toml
+
+from ..fmu.builds import build_metadata
+from ..fmu.runner import FmuRunner
+from ..logs.landing_record import LandingRows
+from ..logs.peaks import peak_texts
+from ..logs.recorder import RecordedTopic, Recorder
+from ..messages import topics
+from ..messages.qos import LATCHED
+from ..messages.samples import SampleBytes
+from ..messages.topics import Topic
+from ..messages.wire import padded
+from .publishing import Publishing
+from .settings import Settings
+
+
+class LandingLog:
+    """The log of a landing; it does nothing where nothing is recorded.
+
+    `recorder` is None until it is opened, and where nothing is recorded.
+
+    Args:
+        settings: the landing's settings.
+        folder: the log's folder, which must not exist; None: no recording.
+        publishing: the node's publishers: names and quality of service of the topics.
+        namespace: the node's namespace.
+        on_error: called once with a text when recording fails.
+    """
+
+    def __init__(
+        self,
+        settings: Settings,
+        folder: Path | None,
+        publishing: Publishing,
+        namespace: str,
+        on_error: Callable[[str], object],
+    ) -> None:
+        self.recorder: Recorder | None = None
+        self._settings, self._folder, self._publishing = settings, folder, publishing
+        self._namespace, self._on_error = namespace, on_error
+        self._error_reported = False
+        self._rows = LandingRows(settings.parameters)
+
+    def open(self, fmu: FmuRunner, description: bytes, packer: SampleBytes) -> SampleBytes | None:
+        """Opens the log, if the landing is to be recorded and it is not open.
+
+        Args:
+            fmu: the landing's FMU.
+            description: the serialised message of `robot_description`, with which the log begins.
+            packer: what packs the samples.
+
+        Returns:
+            What packs samples with the log's prefixes from now on; None where nothing was opened.
+
+        Raises:
+            LandingError: the log's folder exists or cannot be made.
+        """
+        if self._folder is None or self.recorder is not None:
+            return None
+        names, qos = self._publishing.names, self._publishing.qos
+        recorded = [
+            RecordedTopic(names[t], t.type_name, LATCHED if t is topics.ROBOT_DESCRIPTION else qos)
+            for t in topics.RECORDED
+        ]
+        self.recorder = Recorder(
+            self._folder,
+            recorded,
+            _metadata(self._settings, self._namespace, fmu),
+            {"parameters.toml": to_toml(self._settings.parameters).encode("utf-8")},
+        )
+        self.recorder.write(names[topics.ROBOT_DESCRIPTION], 0, padded(description))
+        sizes = {
+            t: part.stop - part.start
+            for t, part in zip(packer.topics, packer.slices)
+            if t in topics.RECORDED
+        }
+        prefixes = self.recorder.begin_samples({names[t]: size for t, size in sizes.items()})
+        return SampleBytes(dict(zip(sizes, prefixes)))
+
+    def write_sample(self, k: int, values: Sequence[float], messages: bytes) -> None:
+        """Writes the messages of sample `k`, whose outputs are `values`."""
+        recorder = self.recorder
+        if recorder is None:
+            return
+        recorder.write_sample(k * self._settings.step_ns, messages)
+        self._rows.add(k * self._settings.step_size, values)
+        recorder.flush()
+        if recorder.error and not self._error_reported:
+            self._error_reported = True
+            self._on_error(f"{recorder.error}; the landing continues without recording")
+
+    def write(self, topic: Topic, stamp: int, data: bytes) -> None:
+        """Writes a message with the time `stamp` [ns]."""
+        if self.recorder is not None:
+            self.recorder.write(self._publishing.names[topic], stamp, data)
+
+    @property
+    def count(self) -> int:
+        """The number of messages written."""
+        return self.recorder.count if self.recorder else 0
+
+    @property
+    def error(self) -> str:
+        """Why recording has failed; empty where it has not."""
+        return self.recorder.error if self.recorder else ""
+
+    def close(self, fmu: FmuRunner, samples: int, time: float) -> None:
+        """Completes the log; removes it if no sample was recorded.
+
+        Args:
+            fmu: the landing's FMU.
+            samples: the number of samples.
+            time: simulation time of the last one [s].
+        """
+        if self.recorder is not None:
+            if samples:
+                self.recorder.close(*self._end_records(fmu, time))
+            else:
+                self.recorder.discard()
+
+    def _end_records(self, fmu: FmuRunner, time: float) -> tuple[dict[str, str], dict[str, str]]:
+        """The records of peaks and landing; empty where the FMU has failed, or is freed."""
+        try:
+            peaks = fmu.peaks()
+        except LandingError:
+            return {}, {}
+        found = {name.removeprefix("peak."): peak for name, peak in peaks.items()}
+        return peak_texts(peaks, time), self._rows.texts(found)
+
+
+def _metadata(settings: Settings, namespace: str, fmu: FmuRunner) -> dict[str, str]:
+    """What is needed to repeat the run, as texts by name.
+
+    Args:
+        settings: the landing's settings.
+        namespace: namespace of the node and its topics.
+        fmu: the FMU that computes the landing.
+    """
+    metadata = {
+        "mode": settings.mode,
+        "preset": settings.preset,
+        "step_size": repr(settings.step_size),
+        "stop_time": repr(settings.stop_time),
+        "realtime_factor": repr(settings.realtime_factor),
+        "namespace": namespace,
+        "recorded": datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        "fmu_guid": fmu.guid,
+        "fmu_version": fmu.version,
+        "fmu_made_by": fmu.made_by,
+        "fmu_core": "compiled" if fmu.is_compiled() else "not compiled",
+        "version_rlv_landing": __version__,
+        "version_python": platform.python_version(),
+        **build_metadata(settings.fmu),
+    }
+    for package in ("fmpy", "pythonfmu"):
+        try:
+            metadata[f"version_{package}"] = version(package)
+        except PackageNotFoundError:
+            continue
+    return metadata

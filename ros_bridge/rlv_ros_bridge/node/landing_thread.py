@@ -1,0 +1,70 @@
+"""The thread that lands, beside the one in which the node serves its callbacks."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+
+from rlv_landing.errors import LandingError, reason_of
+
+from ..ros.setup import wait_until_matched
+from .landing_run import LandingRun
+from .publish_queue import TopicPublisher
+
+
+class LandingThread:
+    """Runs a landing in a thread of its own, until it ends, fails or is stopped.
+
+    Before the first sample it waits for the subscribers that the settings ask for.
+
+    Args:
+        landing: the landing, whose log is open.
+        awaited: the publisher whose subscribers are waited for.
+        on_end: called in the thread when the landing has ended and its log is complete.
+        on_error: called in the thread with the error of a landing that has failed.
+    """
+
+    def __init__(
+        self,
+        landing: LandingRun,
+        awaited: TopicPublisher,
+        on_end: Callable[[], object],
+        on_error: Callable[[LandingError], object],
+    ) -> None:
+        self._landing, self._awaited = landing, awaited
+        self._on_end, self._on_error = on_end, on_error
+        self._pause = threading.Event()
+        self._thread = threading.Thread(target=self._land, name="landing", daemon=True)
+
+    def start(self) -> None:
+        """Starts the thread; once."""
+        self._thread.start()
+
+    def _land(self) -> None:
+        landing, s = self._landing, self._landing.settings
+        try:
+            if not landing.samples:
+                wait_until_matched(
+                    self._awaited.publisher,
+                    s.wait_for_subscribers,
+                    s.wait_timeout,
+                    self._pause.is_set,
+                )
+            landing.run(self._pause.is_set)
+            if landing.end:
+                landing.close_log()
+                self._on_end()
+        except Exception as e:
+            self._on_error(as_landing_error(e))
+
+    def stop(self) -> None:
+        """Pauses the landing after its present sample, and waits for the thread's end."""
+        self._pause.set()
+        self._thread.join()
+
+
+def as_landing_error(error: Exception) -> LandingError:
+    """An error as one that is told in one line; another than ours with its type."""
+    if isinstance(error, LandingError):
+        return error
+    return LandingError(f"{type(error).__name__}: {reason_of(error)}")
