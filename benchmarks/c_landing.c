@@ -458,7 +458,7 @@ static void replace_linear_growth(const Stiff *c, double *q, double growth, doub
 
 static void try_step(Landing *s, double h)
 {
-    int n = s->n, groups = s->groups;
+    int n = s->n, m = n - INTEGRALS, groups = s->groups;
     double t = s->t, half = 0.5 * h;
     double *restrict y = s->y, *restrict z = s->y_stage, *restrict e = s->deviation,
                      *restrict end = s->y_new;
@@ -467,7 +467,7 @@ static void try_step(Landing *s, double h)
     for (int g = 0; g < groups; g++)
         phi_weights(&s->stiff[g], h);
 
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < m; i++)
         z[i] = y[i] + half * k1[i];
     for (int g = 0, j = BODY; g < groups; g++, j += LEG) {
         const Stiff *c = &s->stiff[g];
@@ -475,7 +475,7 @@ static void try_step(Landing *s, double h)
                               half * (k1[j + Z2] - k1[j + Z1]));
     }
     nonlinear_rate(s, t + half, 1, z, k2);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < m; i++)
         z[i] = y[i] + half * k2[i];
     for (int g = 0, j = BODY; g < groups; g++, j += LEG) {
         const Stiff *c = &s->stiff[g];
@@ -483,7 +483,7 @@ static void try_step(Landing *s, double h)
                               half * (k2[j + Z2] - k2[j + Z1]));
     }
     nonlinear_rate(s, t + half, 2, z, k3);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < m; i++)
         z[i] = y[i] + h * k3[i];
     for (int g = 0, j = BODY; g < groups; g++, j += LEG) {
         const Stiff *c = &s->stiff[g];
@@ -501,14 +501,14 @@ static void try_step(Landing *s, double h)
                               (end[j + Z2] - end[j + Z1]) - (y[j + Z2] - y[j + Z1]));
     }
     nonlinear_rate(s, t + h, 4, end, k5);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < m; i++)
         e[i] = h * (1.0 / 6.0) * (k4[i] - k5[i]);
     for (int g = 0, j = BODY; g < groups; g++, j += LEG) {
         const Stiff *c = &s->stiff[g];
         replace_linear_growth(c, e + j, h * c->b4 * (c->driven[3] - c->driven[4]),
                               e[j + Z2] - e[j + Z1]);
     }
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < m; i++)
         if (s->relative[i] == 0.0)
             e[i] = fabs(e[i]) + 0.3 * h * (1.0 / 6.0) * fabs(k1[i] - k2[i] - k3[i] + k4[i]);
 }

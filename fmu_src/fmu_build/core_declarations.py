@@ -19,10 +19,14 @@ TRANSLATED = (RECORDS, "access", "memory")
 MATH = (
     "from cython cimport final\n"
     "from libc.math cimport INFINITY as inf, cos, exp, expm1, fabs, log, pow, sin, sqrt, tanh\n"
+    "from libc.string cimport memcpy\n"
 )
 DATA = """
 cdef inline double* data(double[::1] numbers) noexcept nogil:
     return &numbers[0]
+
+cdef inline void copy(double* source, double* target, int count) noexcept nogil:
+    memcpy(target, source, count * sizeof(double))
 """
 TYPES = {
     "float": "double",

@@ -43,6 +43,12 @@ def data(numbers: Buffer) -> Doubles:
     return numbers
 
 
+def copy(source: Doubles, target: Doubles, count: int) -> None:
+    """Copy `count` numbers to another place."""
+    for i in range(count):
+        target[i] = source[i]
+
+
 def stored(records: Sequence[Record]) -> Records[Record]:
     """A copy of `records` where kernels can read them."""
     return list(records)

@@ -76,24 +76,12 @@ def narrowed(b: Bend, t: float, v: float) -> Bend:
 
 def mark_turns(
     first: Doubles, middle: Doubles, following: Doubles, level: float, turns: Doubles, count: int
-) -> int:
+) -> None:
     """Write below 0 to `turns` for each quantity that turns in the middle of three times.
 
     One that comes to a level there counts as well. There are neither branches nor calls, so that
     the compiler takes several of the `count` quantities at once.
-
-    Returns:
-        The number of quantities that turn.
     """
-    found = 0
     for i in range(count):
         rise = middle[i] - first[i]
         turns[i] = rise * (following[i] - middle[i] - level * rise)
-        found += 1 if turns[i] < 0.0 else 0
-    return found
-
-
-def copy(source: Doubles, target: Doubles, count: int) -> None:
-    """Copy `count` numbers."""
-    for i in range(count):
-        target[i] = source[i]

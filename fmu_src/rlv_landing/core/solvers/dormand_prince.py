@@ -58,23 +58,24 @@ class DormandPrince(Solver):
     def _try_step(self, h: float) -> None:
         """Write the seven stages and the new state of a step of `h` [s]."""
         n = self.n
+        m = self.system.controlled
         t = self.t
         y, s, end, e = data(self.y), data(self.y_stage), data(self.y_new), data(self.deviation)
         k1, k2, k3, k4 = data(self.k1), data(self.k2), data(self.k3), data(self.k4)
         k5, k6, k7 = data(self.k5), data(self.k6), data(self.k_end)
-        for i in range(n):
+        for i in range(m):
             s[i] = y[i] + h * (A21 * k1[i])
         self._derivatives(t + 0.2 * h, s, k2)
-        for i in range(n):
+        for i in range(m):
             s[i] = y[i] + h * (A31 * k1[i] + A32 * k2[i])
         self._derivatives(t + 0.3 * h, s, k3)
-        for i in range(n):
+        for i in range(m):
             s[i] = y[i] + h * (A41 * k1[i] + A42 * k2[i] + A43 * k3[i])
         self._derivatives(t + 0.8 * h, s, k4)
-        for i in range(n):
+        for i in range(m):
             s[i] = y[i] + h * (A51 * k1[i] + A52 * k2[i] + A53 * k3[i] + A54 * k4[i])
         self._derivatives(t + 8.0 / 9.0 * h, s, k5)
-        for i in range(n):
+        for i in range(m):
             s[i] = y[i] + h * (A61 * k1[i] + A62 * k2[i] + A63 * k3[i] + A64 * k4[i] + A65 * k5[i])
         self._derivatives(t + h, s, k6)
         for i in range(n):
@@ -82,7 +83,7 @@ class DormandPrince(Solver):
                 A71 * k1[i] + A73 * k3[i] + A74 * k4[i] + A75 * k5[i] + A76 * k6[i]
             )
         self._derivatives(t + h, end, k7)
-        for i in range(n):
+        for i in range(m):
             e[i] = h * (E1 * k1[i] + E3 * k3[i] + E4 * k4[i] + E5 * k5[i] + E6 * k6[i] + E7 * k7[i])
 
     def _dense_correction(self, h: float, at: int) -> None:

@@ -102,7 +102,7 @@ class Exponential(Solver):
         `k` are the rates of the stage before, `k_next` becomes those of this stage.
         """
         y, s, d = data(self.y), data(self.y_stage), data(self.driven)
-        for j in range(self.n):
+        for j in range(self.system.controlled):
             s[j] = y[j] + ahead * k[j]
         for g in range(self.system.stiff_pairs):
             pair = stiff_pair_of(self._pairs, g)
@@ -158,7 +158,8 @@ class Exponential(Solver):
             data(self.k4),
             data(self.k_end),
         )
-        for i in range(self.n):
+        m = self.system.controlled
+        for i in range(m):
             e[i] = h * SIXTH * (k4[i] - k5[i])
         for g in range(self.system.stiff_pairs):
             pair = stiff_pair_of(self._pairs, g)
@@ -168,7 +169,7 @@ class Exponential(Solver):
                 pair, e, h * w.b4 * (d[q + 3] - d[q + 4]), e[pair.j] - e[pair.i]
             )
         # without branches, so that the compiler takes several states at once
-        for i in range(self.n):
+        for i in range(m):
             kink = KINK * h * SIXTH * fabs(k1[i] - k2[i] - k3[i] + k4[i])
             e[i] = fabs(e[i]) + kink if relative[i] == 0.0 else e[i]
 

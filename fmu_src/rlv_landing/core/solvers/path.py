@@ -8,7 +8,7 @@ from __future__ import annotations
 from array import array
 
 from ..bodies.system import System
-from ..memory import Buffer, Doubles, data
+from ..memory import Buffer, Doubles, copy, data
 
 # parts of an interpolant, each as long as the state
 PARTS = 5
@@ -96,8 +96,7 @@ class Path:
         d = data(self.dense)
         for i in range(2 * PARTS * self.n):
             d[i] = 0.0
-        for i in range(self.n):
-            d[i] = y[i]
+        copy(y, d, self.n)
 
     def outputs_at(self, t: float, y: Buffer, out: Buffer) -> None:
         """Write the outputs at time `t` [s] and state `y` [n] to `out` [row]."""

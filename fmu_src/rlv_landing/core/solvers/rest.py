@@ -13,7 +13,7 @@ from array import array
 from math import fabs, inf
 
 from ..bodies.system import System
-from ..memory import Buffer, Doubles, data
+from ..memory import Buffer, Doubles, copy, data
 from .linear import solve
 from .watch import Watch
 
@@ -87,8 +87,7 @@ class Rest(Watch):
             return False
         self.waited = 0
         place = data(self._place)
-        for i in range(self.n):
-            place[i] = y[i]
+        copy(y, place, self.n)
         if not self._reach_rest(place):
             return False
         look = data(self._look)
@@ -138,8 +137,7 @@ class Rest(Watch):
         """Write 1/FAR - J at the state `y`, states in parts of their scales, to `_matrix`."""
         f0, f1, nudged, a = data(self._f0), data(self._f1), data(self._nudged), data(self._matrix)
         m = self.system.controlled
-        for i in range(self.n):
-            nudged[i] = y[i]
+        copy(y, nudged, self.n)
         for j in range(m):
             nudged[j] = y[j] + NUDGE * self._scale(y, j)
             self.system.rhs(nudged, data(self.u_now), f1)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from math import inf
 
 from ..bodies.system import System
-from ..memory import Buffer, Doubles, data, nogil
+from ..memory import Buffer, Doubles, copy, data, nogil
 from ..records import Fault
 from .step_control import (
     FIRST_STEP,
@@ -127,9 +127,8 @@ class Solver(Trial):
         self._next_row()
         self.system.note(data(self.last))
         self.dense_at = self._other_dense()
-        for i in range(n):
-            y[i] = end[i]
-            k1[i] = k_end[i]
+        copy(end, y, n)
+        copy(k_end, k1, n)
         self.system.project(y)
         self.t_before = self.t_old
         self.t_old = self.t
@@ -166,8 +165,7 @@ class Solver(Trial):
         y, place = data(self.y), data(self._place)
         if self._found_rest(y):
             self._cut(self.t)
-            for i in range(self.n):
-                y[i] = place[i]
+            copy(place, y, self.n)
             self._restart(self.t)
             self._watch(self.t)
             self.asleep = True

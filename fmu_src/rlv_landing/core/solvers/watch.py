@@ -11,9 +11,9 @@ from array import array
 from math import fabs, inf
 
 from ..bodies.system import System
-from ..memory import Buffer, Doubles, data
+from ..memory import Buffer, Doubles, copy, data
 from ..records import Bend
-from .bend import LEVEL, copy, expected, mark_turns, narrowed, where_to_look
+from .bend import LEVEL, expected, mark_turns, narrowed, where_to_look
 from .path import Path
 
 # a crest is no higher above the middle of a bend than so many times its higher side
@@ -201,8 +201,7 @@ class Watch(Path):
             self._note_row(middle, t1, found, since)
             return
         turns = data(self._turns)
-        if mark_turns(first, middle, following, LEVEL, turns, self.row) == 0:
-            return
+        mark_turns(first, middle, following, LEVEL, turns, self.row)
         for i in range(self.row):
             if turns[i] < 0.0 and self._may_raise(i, first[i], middle[i], following[i], found):
                 sign = 1.0 if middle[i] > first[i] else -1.0
