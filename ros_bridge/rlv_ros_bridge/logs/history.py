@@ -6,7 +6,7 @@ Values are SI, in the paper's axes.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -132,12 +132,12 @@ class HistoryParts:
             time = _seconds(self._reader, nanoseconds)
             if not self._choice.takes(time):
                 continue
-            row: dict[str, Any] = {}
+            row: dict[str, float] = {}
             for topic, message in messages.items():
                 columns, reading = READINGS[self._chosen[topic]]
-                row.update(zip(columns, reading(decode(message))))
+                row.update(zip(columns, decode.read(message, _floats_of(reading))))
             times.append(time)
-            rows.append([float(row[name]) for name in self.names])
+            rows.append([row[name] for name in self.names])
             count += 1
             if len(rows) >= self._size:
                 yield self._history(times, rows)
@@ -176,6 +176,10 @@ class HistoryParts:
     def notes(self) -> list[str]:
         """What was left out, after all parts have been read."""
         return _notes(self._reader, self._chosen, self._incomplete)
+
+
+def _floats_of(reading: Callable[[Any], Iterable[Any]]) -> Callable[[Any], list[float]]:
+    return lambda message: [float(value) for value in reading(message)]
 
 
 def choose_topics(reader: LogReader, topics: Sequence[str]) -> dict[str, str]:

@@ -9,9 +9,10 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from rlv_landing.core import Phase
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, one_line
 from rlv_landing.summary import OUTCOMES, unfinished
 from rlv_landing.tables.landing import decimals
+from rlv_landing.text.terminal import legible_lines
 
 from ..messages.topics import DIAGNOSTICS
 from .history import choose_topics, read_history
@@ -21,6 +22,8 @@ from .reader import Decoder, LogReader
 # The phases in `/diagnostics`, in the order of `rlv_landing.summary.OUTCOMES`.
 PHASES = tuple(phase.name.lower() for phase in Phase)
 
+# Characters of a name of a topic or a type that are shown.
+LONGEST_NAME = 100
 
 STATES = {
     "summary": "complete by its summary (--check reads all of it)",
@@ -112,12 +115,15 @@ class LogInfo:
         lines += [f"landing    {self.no_landing}"] if self.no_landing else []
         lines += [f"{'damage' if i == 0 else '':<10} {text}" for i, text in enumerate(self.damage)]
         if self.topics:
-            width = max(len(t.name) for t in self.topics)
+            names = [one_line(t.name, LONGEST_NAME) for t in self.topics]
+            width = max(map(len, names))
             lines += ["", f"{'topic':<{width}}  {'messages':>8}  {'Hz':>7}  type"]
             lines += [
-                f"{t.name:<{width}}  {t.messages:>8}  {t.rate:>7.1f}  {t.type}" for t in self.topics
+                f"{name:<{width}}  {t.messages:>8}  {t.rate:>7.1f}  "
+                f"{one_line(t.type, LONGEST_NAME)}"
+                for name, t in zip(names, self.topics)
             ]
-        return "\n".join([*lines, *(self._peaks() if self.landing else [])])
+        return legible_lines([*lines, *(self._peaks() if self.landing else [])])
 
     def _peaks(self) -> list[str]:
         head = (
@@ -214,7 +220,7 @@ def _by_messages(reader: LogReader, *, checked: bool) -> LogInfo:
         ):
             # Another node's message may come without a definition.
             with suppress(LandingError):
-                phase = _phase(decode(message)) or phase
+                phase = decode.read(message, _phase) or phase
     read = "checked" if checked else "whole"
     found = _info(reader, counts, first or 0, last, read=read)
     try:

@@ -39,6 +39,8 @@ COLUMNS: tuple[str, ...] = (
 )
 PHASE = OUTPUT_NAMES.index("status.phase")
 ENDED = ("complete", "not compressed")
+# A text longer than this is none of it [characters].
+LONGEST = 64 * 1024
 # The fields of a leg, and what is neither number nor None among them and among the landing's.
 LEG_NUMBERS = (
     *("main_strut_force_min", "main_strut_stroke_max", "auxiliary_strut_force_min"),
@@ -133,6 +135,8 @@ def read_landing(texts: Mapping[str, str]) -> dict[str, Any] | None:
     Args:
         texts: the record.
     """
+    if len(texts.get(LANDING, "")) > LONGEST:
+        return None
     try:
         landing = json.loads(texts[LANDING])
         numbers = [landing["end_time"], landing["top_axial_acceleration_max"]]
