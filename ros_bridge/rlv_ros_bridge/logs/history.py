@@ -122,6 +122,7 @@ class HistoryParts:
             OrderError: messages are out of order by more than the size of a part.
         """
         times: list[float] = []
+        stamps: list[int] = []
         rows: list[list[float]] = []
         decode = Decoder(self._reader)
         self._incomplete, count = 0, 0
@@ -137,13 +138,14 @@ class HistoryParts:
                 columns, reading = READINGS[self._chosen[topic]]
                 row.update(zip(columns, decode.read(message, _floats_of(reading))))
             times.append(time)
+            stamps.append(nanoseconds)
             rows.append([row[name] for name in self.names])
             count += 1
             if len(rows) >= self._size:
-                yield self._history(times, rows)
-                times, rows = [], []
+                yield self._history(times, stamps, rows)
+                times, stamps, rows = [], [], []
         if rows:
-            yield self._history(times, rows)
+            yield self._history(times, stamps, rows)
         if not count:
             self._choice.refuse()
             raise LandingError(
@@ -151,8 +153,10 @@ class HistoryParts:
                 f"{', '.join(self._chosen.values())}"
             )
 
-    def _history(self, times: list[float], rows: list[list[float]]) -> History:
-        return History(np.array(times), self.names, np.array(rows), self.parameters)
+    def _history(self, times: list[float], stamps: list[int], rows: list[list[float]]) -> History:
+        history = History(np.array(times), self.names, np.array(rows), self.parameters)
+        history.stamps = stamps
+        return history
 
     def peaks(self) -> dict[str, Found]:
         """The peaks of the log's record by `OUTPUT.SIDE`; none where rows were chosen by time."""

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
+from datetime import datetime, timezone
 from typing import Any
 
 from rlv_landing.core import Phase
@@ -22,6 +23,8 @@ from .reader import Decoder, LogReader
 # The phases in `/diagnostics`, in the order of `rlv_landing.summary.OUTCOMES`.
 PHASES = tuple(phase.name.lower() for phase in Phase)
 
+# A log that starts later has the time of the day: that of 1973 [s].
+WALL_TIME = 1e8
 # Characters of a name of a topic or a type that are shown.
 LONGEST_NAME = 100
 
@@ -89,7 +92,7 @@ class LogInfo:
             f"log        {self.path}",
             f"state      {state}",
             f"size       {self.size / 1024:.0f} KiB",
-            f"start      {self.start:g} s (simulation time)",
+            f"start      {_start(self.start)}",
             f"duration   {self.duration:g} s",
             f"messages   {self.messages}",
         ]
@@ -148,6 +151,17 @@ class LogInfo:
             f"largest axial acceleration at the top: {largest:.1f} m/s2",
             *([f"bottomed out: main strut of leg {bottomed}"] if bottomed else []),
         ]
+
+
+def _start(seconds: float) -> str:
+    """The first time of a log, and whether it is the landing's or the day's."""
+    if seconds < WALL_TIME:
+        return f"{seconds:g} s (simulation time)"
+    try:
+        date = datetime.fromtimestamp(seconds, timezone.utc).isoformat(timespec="milliseconds")
+    except (ValueError, OverflowError, OSError):
+        return f"{seconds:.9g} s"
+    return f"{date} (wall time, by which its writer has stamped it)"
 
 
 def _origin(peaks_of: str) -> str:

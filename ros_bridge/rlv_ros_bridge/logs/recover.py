@@ -15,7 +15,7 @@ from rlv_landing.text.units import UnitError, parse_number
 
 from ..messages.qos import profiles
 from .bag_writer import BagTopic, BagWriter
-from .log_files import check_file, find_files, log_name
+from .log_files import FINISHED, UNFINISHED, check_file, find_files, log_name
 from .mcap_files.stream import RecordStream
 from .reader import Definitions
 
@@ -93,6 +93,7 @@ def recover(path: Path, folder: Path | None = None) -> Recovery:
         LandingError: no log, nothing whole in it, the folder exists, or it cannot be written.
             Nothing is left behind.
     """
+    _refuse_foreign(path)
     files = find_files(path)
     for file in files:
         check_file(file)
@@ -118,6 +119,26 @@ def recover(path: Path, folder: Path | None = None) -> Recovery:
         raise
     found.folder = str(target)
     return found
+
+
+def _refuse_foreign(path: Path) -> None:
+    """Says what to do with a recording that is not plain MCAP.
+
+    Raises:
+        LandingError: it is one.
+    """
+    names = [path.name] if path.is_file() else [f.name for f in path.glob("*")]
+    if any(name.endswith((FINISHED, UNFINISHED)) for name in names):
+        return
+    if any(name.endswith(".zstd") for name in names):
+        raise LandingError(
+            f"{path} is compressed as a whole; decompress its files by zstd -d first"
+        )
+    if databases := [name for name in names if name.endswith(".db3")]:
+        raise LandingError(
+            f"{path} is a recording in sqlite3, of which sqlite3 itself saves what is whole: "
+            f"sqlite3 {databases[0]} .recover | sqlite3 whole.db3, then ros2 bag reindex"
+        )
 
 
 def _is_complete(path: Path, files: list[Path]) -> bool:

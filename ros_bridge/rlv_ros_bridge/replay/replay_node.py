@@ -21,9 +21,10 @@ from rclpy.validate_full_topic_name import validate_full_topic_name
 from std_srvs.srv import Trigger
 from tqdm import tqdm
 
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, one_line
 
-from ..logs.reader import LogMessage, LogReader
+from ..logs.bag_reader import open_log
+from ..logs.reader import LogMessage
 from ..messages import topics as landing_topics
 from ..messages.message_types import message_class
 from ..messages.qos import CLOCK, parse_qos
@@ -327,7 +328,10 @@ def replay(options: ReplayOptions, ros_args: Sequence[str], stop: StopFlag) -> R
         LandingError: bad options, or a log or topic that does not exist.
     """
     options.check()
-    selection = Selection(LogReader(options.path), options)
+    selection = Selection(open_log(options.path), options)
+    for topic, kind in selection.left_out.items():
+        warning = f"warning: {topic} is left out: its type {kind} is not installed here"
+        print(one_line(warning), file=sys.stderr)
     with ros_context(ros_args), Keyboard() as keyboard:
         node = ReplayNode(selection, options, keyboard, stop)
         try:

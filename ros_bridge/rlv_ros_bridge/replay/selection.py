@@ -85,10 +85,13 @@ class Selection:
         indexed = reader.read_summary()
         self._indexed = indexed
         begin, end = _indexed_span(reader) if indexed else self._read_through()
-        chosen = {
-            t
-            for t in reader.select(options.topics)
-            if options.topics or can_be_published(reader.channels[t].type_name)
+        named = reader.select(options.topics)
+        chosen = {t for t in named if options.topics or is_installed(reader.channels[t].type_name)}
+        # Whose types are not installed here; /tf of our own logs is left out without a word.
+        self.left_out = {
+            t: reader.channels[t].type_name
+            for t in named
+            if t not in chosen and reader.channels[t].type_name != TF.type_name
         }
         self.first = begin + round(options.start * 1e9)
         self._last = (
@@ -96,6 +99,12 @@ class Selection:
             if math.isfinite(options.duration)
             else math.inf
         )
+        if not chosen:
+            raise LandingError(
+                f"{reader.path}: none of its types is installed here "
+                f"({', '.join(sorted(set(self.left_out.values())))}); install their packages, or "
+                "source your ROS 2"
+            )
         self._chosen = chosen
         last = (
             last_time(reader, chosen, self.first, self._last)
@@ -199,14 +208,6 @@ def _nothing_in(reader: LogReader) -> LandingError:
     return LandingError(
         f"{reader.path} holds no message that can be read; there is nothing to play"
     )
-
-
-def can_be_published(type_name: str) -> bool:
-    """Whether messages of the type can be published here.
-
-    Of the types in our logs only that of `/tf` may not be installed.
-    """
-    return type_name != TF.type_name or is_installed(type_name)
 
 
 def remapped_names(
