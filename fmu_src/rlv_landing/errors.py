@@ -28,8 +28,11 @@ def one_line(text: str, longest: int = LONGEST_LINE) -> str:
     Control characters are escaped. Where the line is too long, long words are shortened first, then
     its middle is left out, for the start says what is wrong and the end what to do.
     """
+    # of a text of megabytes no more than its ends is looked at
+    kept = 4 * longest
+    text = text.strip() if len(text) <= 2 * kept else text[:kept] + text[-kept:]
     line = "".join(
-        c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text.strip()
+        c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text
     )
     for length in _LONGEST_WORDS:
         if len(line) > longest:

@@ -41,6 +41,7 @@ class History:
         data: The columns, (n, names).
         parameters: The landing's parameters, where they are known.
         ground: Motion of the ground from the first of the times on; by default it is at rest.
+        stamps: The times in whole nanoseconds, (n,), where a log has them; else None.
         extremes: Extremes of outputs by name, over the whole span, also between the samples; None
             where there are samples only. A log has those of some outputs.
 
@@ -68,6 +69,7 @@ class History:
         self.parameters = parameters
         self.ground = ground
         self.extremes = extremes
+        self.stamps: Sequence[int] | None = None
         self._index = {name: i for i, name in enumerate(self.names)}
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
@@ -138,14 +140,29 @@ class History:
             self.write_csv(text)
 
     def write_csv(self, file: TextIO, *, heading: bool = True) -> None:
-        """Write all columns to an open CSV file, SI units, full precision, names first."""
+        """Write all columns to an open CSV file, SI units, full precision, names first.
+
+        Times are the exact decimals of the stamps, where there are any.
+        """
         writer = csv.writer(file)
         if heading:
             writer.writerow(list(self))
         for first in range(0, len(self), ROWS_AT_ONCE):
             part = slice(first, first + ROWS_AT_ONCE)
-            for t, row in zip(self.time[part].tolist(), self.data[part].tolist()):
-                writer.writerow([repr(t), *map(repr, row)])
+            times = (
+                map(repr, self.time[part].tolist())
+                if self.stamps is None
+                else map(_decimals, self.stamps[part])
+            )
+            for t, row in zip(times, self.data[part].tolist()):
+                writer.writerow([t, *map(repr, row)])
+
+
+def _decimals(nanoseconds: int) -> str:
+    """A time in s, all of its digits."""
+    seconds, rest = divmod(abs(nanoseconds), 10**9)
+    digits = f"{rest:09d}".rstrip("0") or "0"
+    return f"{'-' if nanoseconds < 0 else ''}{seconds}.{digits}"
 
     def units(self) -> dict[str, str]:
         """The SI unit of the time and of each column; empty for plain numbers."""
@@ -190,7 +207,7 @@ class History:
         """Draw columns of one unit over time.
 
         Args:
-            names: The columns.
+            *names: The columns.
             axes: Where to draw [default: new axes of matplotlib's pyplot].
 
         Raises:

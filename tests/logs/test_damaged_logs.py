@@ -115,7 +115,7 @@ def test_log_info_refuses_what_is_no_log(tmp_path: Path) -> None:
         (tmp_path / "missing", "there is no log"),
         (text, "is not MCAP"),
         (empty, "is empty"),
-        (folder, "holds no .mcap file"),
+        (folder, "holds no .mcap or .db3 file"),
     ):
         done: subprocess.CompletedProcess[str] = run("log", "info", path)
         assert message in one_error_line(done)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import resource
 import subprocess
+from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
@@ -137,8 +138,10 @@ def test_csv_and_parquet_hold_every_digit_the_units_and_the_parameters(
         assert done.returncode == 0, done.stderr
         assert "1001 instants from 0 s to 1 s, 46 columns" in done.stdout
     lines = (tmp_path / "out.csv").read_text().splitlines()
-    data = np.array([[float(x) for x in line.split(",")] for line in lines[1:]])
-    same(History(data[:, 0], lines[0].split(",")[1:], np.ascontiguousarray(data[:, 1:])), expected)
+    rows = [line.split(",") for line in lines[1:]]
+    assert [Decimal(row[0]) for row in rows] == [Decimal(k) / 1000 for k in range(1001)]
+    data = np.array([[float(x) for x in row[1:]] for row in rows])
+    same(History(expected.time, lines[0].split(",")[1:], data), expected)
     table = parquet.read_table(tmp_path / "out.parquet")
     columns = {name: table[name].to_numpy() for name in table.column_names}
     same(
@@ -245,8 +248,8 @@ def test_a_file_that_is_no_recording_is_refused_in_one_line(tmp_path: Path) -> N
     (broken / "metadata.yaml").write_text("nothing: [")
     lonely.write_bytes(b"SQLite format 3\0")
     for path, message in (
-        (broken, "cannot be read as a rosbag2 recording"),
-        (lonely, "name its folder"),
+        (broken, "holds no .mcap or .db3 file"),
+        (lonely, "cannot be read as a rosbag2 recording"),
         (tmp_path / "no", "there is no log"),
     ):
         for subcommand in (("info",), ("verify",), ("export", tmp_path / "out.csv")):

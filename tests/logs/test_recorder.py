@@ -50,13 +50,13 @@ def test_layout_is_that_of_rosbag2(tmp_path: Path) -> None:
         assert channels["/a"].metadata["topic_type_hash"].startswith("RIHS01_")
         names = [m.name for m in reader.iter_metadata()]
         assert names.count("rlv_landing") == 1
-        serialized = next(
-            m.metadata["serialized_metadata"]
-            for m in reader.iter_metadata()
-            if "serialized_metadata" in m.metadata
+        # as rosbag2's recorder has it, at the start and at the end
+        early, serialized = (
+            m.metadata["serialized_metadata"] for m in reader.iter_metadata() if m.name == "rosbag2"
         )
     beside = yaml.safe_load((folder / "metadata.yaml").read_text())["rosbag2_bagfile_information"]
     assert yaml.safe_load(serialized) == beside
+    assert yaml.safe_load(early)["message_count"] == 0
     assert beside["version"] == 9
     assert beside["duration"]["nanoseconds"] == 9000
     with Reader(folder) as bag:

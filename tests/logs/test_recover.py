@@ -25,7 +25,7 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.rosbag2 import Reader
 
 from rlv_landing.errors import LandingError
-from rlv_ros_bridge.logs.mcap_files.records import LARGEST_CHUNK
+from rlv_ros_bridge.logs.mcap_files.chunks import LARGEST_CHUNK
 from rlv_ros_bridge.logs.mcap_files.stream import RecordStream
 from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.logs.recover import recover

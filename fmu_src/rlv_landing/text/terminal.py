@@ -6,6 +6,9 @@ import codecs
 import os
 import sys
 import unicodedata
+from collections.abc import Iterable
+
+from ..errors import LONGEST_LINE, one_line
 
 ERRORS = "rlv_landing.legible"
 
@@ -24,6 +27,17 @@ def _in_ascii(character: str) -> str:
     upright = any(word in name for word in ("VERTICAL", "UP", "DOWN"))
     level = any(word in name for word in ("HORIZONTAL", "LEFT", "RIGHT"))
     return "+" if upright and level else "|" if upright else "-"
+
+
+def legible_lines(lines: Iterable[str]) -> str:
+    """Lines with texts of a file that others have written, without what commands a terminal.
+
+    Control characters are escaped, and lines of more than 300 characters shortened.
+    """
+    return "\n".join(
+        line if line.isprintable() and len(line) <= LONGEST_LINE else one_line(line)
+        for line in lines
+    )
 
 
 def columns() -> int | None:

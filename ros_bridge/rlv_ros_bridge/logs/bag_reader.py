@@ -1,101 +1,115 @@
-"""Reads rosbag2 recordings that are not plain MCAP: sqlite3 `.db3`, compressed files.
-
-rosbags reads them; `BagReader` has the interface of `LogReader`.
-"""
+"""Opens logs of every kind: ours, rosbag2's in MCAP or sqlite3, split, compressed."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import shutil
+import weakref
 from pathlib import Path
-from typing import Any
+from tempfile import gettempdir
 
-from rlv_landing.errors import LandingError, reason_of
+from rlv_landing.errors import LandingError
+from rlv_landing.text.durable import writing
 
-from .log_files import FINISHED, UNFINISHED
-from .reader import Channel, LogMessage, LogReader
+from ..fmu.folder import ProcessFolder
+from ..messages.qos import read_yaml
+from .log_files import FINISHED, UNFINISHED, in_order
+from .mcap_files.chunks import FILE_BYTES, FILE_RATIO
+from .reader import LogReader
+from .sqlite_reader import SqliteReader
 
 METADATA_FILE = "metadata.yaml"
+LONGEST_METADATA = 4 * 1024 * 1024
+SQLITE, COMPRESSED = ".db3", ".zstd"
+FOLDER_PREFIX = "rlv-landing-log-"
+COPY_BYTES = 1024 * 1024
 
 
 def open_log(path: str | Path) -> LogReader:
-    """Opens the log at `path`: a log of ours, a rosbag2 recording, or one MCAP file.
+    """Opens the log at `path`: a log of ours, a rosbag2 recording, or one file of one.
+
+    Files that are compressed as a whole are decompressed into a temporary folder, which lasts as
+    long as the reader.
 
     Raises:
         LandingError: there is no log, or it cannot be read.
     """
-    folder = Path(path)
-    if folder.is_file() and folder.suffix == ".db3":
+    log = Path(path)
+    files = _files(log, COMPRESSED)
+    if not files or _files(log, FINISHED) or _files(log, UNFINISHED) or _files(log, SQLITE):
+        return _open(log, log)
+    with writing(Path(gettempdir()), "name another folder by TMPDIR"):
+        folder = ProcessFolder(FOLDER_PREFIX)
+        try:
+            for file in files:
+                _decompress(file, folder.path / file.name.removesuffix(COMPRESSED))
+            reader = _open(folder.path, log)
+        except BaseException:
+            folder.remove()
+            raise
+    weakref.finalize(reader, folder.remove)
+    return reader
+
+
+def _open(place: Path, named: Path) -> LogReader:
+    """The log whose files are at `place`, and which was named `named`."""
+    mode = _compression(named)
+    databases = _files(place, SQLITE)
+    if databases and not _files(place, FINISHED) and not _files(place, UNFINISHED):
+        return SqliteReader(named, in_order(databases), compressed=mode == "message")
+    reader = LogReader(place)
+    reader.path = named
+    if mode == "message":
         raise LandingError(
-            f"{folder} is only a part of a recording; name its folder, in which {METADATA_FILE} is"
+            f"{named} has each message compressed by itself, which is read of sqlite3 only; "
+            "convert it by `ros2 bag convert`"
         )
-    is_mcap = any(any(folder.glob(f"*{ending}")) for ending in (FINISHED, UNFINISHED))
-    if is_mcap or not (folder / METADATA_FILE).is_file():
-        return LogReader(folder)
-    return BagReader(folder)
+    return reader
 
 
-class BagReader(LogReader):
-    """The folder of a rosbag2 recording, with the interface of `LogReader`.
+def _files(log: Path, ending: str) -> list[Path]:
+    """The files of a log with this ending; for a file itself."""
+    if log.is_file():
+        return [log] if log.name.endswith(ending) else []
+    return sorted(f for f in log.glob(f"*{ending}") if f.is_file())
+
+
+def _compression(log: Path) -> str:
+    """What a recording's metadata say is compressed: `file`, `message`, or nothing."""
+    metadata = (log if log.is_dir() else log.parent) / METADATA_FILE
+    try:
+        text = metadata.read_text(encoding="utf-8")
+        found = read_yaml(text, LONGEST_METADATA)["rosbag2_bagfile_information"]
+        return str(found.get("compression_mode", "")).lower()
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+        # It is not needed for anything else.
+        return ""
+
+
+def _decompress(source: Path, target: Path) -> None:
+    """Decompresses a file, no further than its size can justify.
 
     Raises:
-        LandingError: rosbags cannot read it.
+        LandingError: it is damaged, or holds more.
+        OSError: the disk refuses.
     """
+    import zstandard
 
-    def __init__(self, path: Path) -> None:
-        from rosbags.rosbag2 import Reader
-        from rosbags.typesys import Stores, get_typestore
-
-        self.path = path
-        self.metadata: dict[str, str] = {}
-        self.peaks: dict[str, str] = {}
-        self.landing: dict[str, str] = {}
-        self.attachments: dict[str, bytes] = {}
-        self.cut = False
-        self.damage: list[str] = []
-        self._types = get_typestore(Stores.ROS2_JAZZY)
+    left = FILE_BYTES + FILE_RATIO * source.stat().st_size
+    with source.open("rb") as packed, target.open("wb") as file:
+        # No window of gigabytes, whatever the file says.
+        reader = zstandard.ZstdDecompressor(max_window_size=2**27).stream_reader(
+            packed, read_across_frames=True
+        )
         try:
-            self._reader = Reader(path)
-            with self._reader as reader:
-                self.channels = {
-                    c.topic: Channel(c.topic, c.msgtype, "") for c in reader.connections
-                }
-            self.files = [f for f in path.iterdir() if f.is_file() and f.name != METADATA_FILE]
-        except Exception as e:
-            raise self._error(e) from None
-
-    def _error(self, e: Exception) -> LandingError:
-        return LandingError(f"{self.path} cannot be read as a rosbag2 recording: {reason_of(e)}")
-
-    def read_summary(self) -> bool:
-        """False: such a recording has nothing of a landing in its metadata."""
-        return False
-
-    def messages(self, topics: Iterable[str] | None = None) -> Iterator[LogMessage]:
-        """The messages of all topics, or of `topics`, in the order of their times."""
-        wanted = None if topics is None else set(topics)
-        try:
-            with self._reader as reader:
-                chosen = [c for c in reader.connections if wanted is None or c.topic in wanted]
-                if chosen:
-                    yield from (
-                        LogMessage(c.topic, time, bytes(data))
-                        for c, time, data in reader.messages(chosen)
+            while data := reader.read(COPY_BYTES):
+                left -= len(data)
+                if left < 0 or shutil.disk_usage(target.parent).free < COPY_BYTES:
+                    raise LandingError(
+                        f"{source} holds more than a file of its size, or this disk, can; "
+                        f"decompress it by zstd -d {source.name}"
                     )
-        except LandingError:
-            raise
-        except Exception as e:
-            raise self._error(e) from None
-
-    def decoder(self, topic: str) -> Any:
-        """A function from bytes to messages of `topic`, by ROS 2's own definition of its type.
-
-        Raises:
-            LandingError: the type is not known.
-        """
-        type_name = self.channels[topic].type_name
-        if type_name not in self._types.types:
+                file.write(data)
+        except zstandard.ZstdError as e:
             raise LandingError(
-                f"{self.path}: {topic} is of the type {type_name}, which is not known here; "
-                "leave it out by --topics"
-            )
-        return lambda data: self._types.deserialize_cdr(data, type_name)
+                f"{source} cannot be decompressed: {e}; it is cut or damaged"
+            ) from None

@@ -125,10 +125,17 @@ class BagWriter:
                 enable_data_crcs=True,
             )
             self.mcap.start(profile="ros2", library=f"{LIBRARY} {__version__}")
-            self.mcap.add_metadata("rosbag2", {"ROS_DISTRO": ros_distro()})
+            self._add_metadata()
         except BaseException:
             self.discard()
             raise
+
+    def _add_metadata(self) -> None:
+        """Adds rosbag2's record of what the log holds so far, which it has at both ends."""
+        serialized = to_yaml(self.bag.metadata())
+        self.mcap.add_metadata(
+            "rosbag2", {"ROS_DISTRO": ros_distro(), "serialized_metadata": serialized}
+        )
 
     @property
     def is_open(self) -> bool:
@@ -152,10 +159,7 @@ class BagWriter:
         """Completes the file and syncs it to the disk, renames it, and writes `metadata.yaml`."""
         file = self._file
         assert file is not None
-        serialized = to_yaml(self.bag.metadata())
-        self.mcap.add_metadata(
-            "rosbag2", {"ROS_DISTRO": ros_distro(), "serialized_metadata": serialized}
-        )
+        self._add_metadata()
         self.mcap.finish()
         file.flush()
         os.fsync(file.fileno())

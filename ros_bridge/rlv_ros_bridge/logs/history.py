@@ -6,7 +6,7 @@ Values are SI, in the paper's axes.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -122,6 +122,7 @@ class HistoryParts:
             OrderError: messages are out of order by more than the size of a part.
         """
         times: list[float] = []
+        stamps: list[int] = []
         rows: list[list[float]] = []
         decode = Decoder(self._reader)
         self._incomplete, count = 0, 0
@@ -132,18 +133,19 @@ class HistoryParts:
             time = _seconds(self._reader, nanoseconds)
             if not self._choice.takes(time):
                 continue
-            row: dict[str, Any] = {}
+            row: dict[str, float] = {}
             for topic, message in messages.items():
                 columns, reading = READINGS[self._chosen[topic]]
-                row.update(zip(columns, reading(decode(message))))
+                row.update(zip(columns, decode.read(message, _floats_of(reading))))
             times.append(time)
-            rows.append([float(row[name]) for name in self.names])
+            stamps.append(nanoseconds)
+            rows.append([row[name] for name in self.names])
             count += 1
             if len(rows) >= self._size:
-                yield self._history(times, rows)
-                times, rows = [], []
+                yield self._history(times, stamps, rows)
+                times, stamps, rows = [], [], []
         if rows:
-            yield self._history(times, rows)
+            yield self._history(times, stamps, rows)
         if not count:
             self._choice.refuse()
             raise LandingError(
@@ -151,8 +153,10 @@ class HistoryParts:
                 f"{', '.join(self._chosen.values())}"
             )
 
-    def _history(self, times: list[float], rows: list[list[float]]) -> History:
-        return History(np.array(times), self.names, np.array(rows), self.parameters)
+    def _history(self, times: list[float], stamps: list[int], rows: list[list[float]]) -> History:
+        history = History(np.array(times), self.names, np.array(rows), self.parameters)
+        history.stamps = stamps
+        return history
 
     def peaks(self) -> dict[str, Found]:
         """The peaks of the log's record by `OUTPUT.SIDE`; none where rows were chosen by time."""
@@ -176,6 +180,10 @@ class HistoryParts:
     def notes(self) -> list[str]:
         """What was left out, after all parts have been read."""
         return _notes(self._reader, self._chosen, self._incomplete)
+
+
+def _floats_of(reading: Callable[[Any], Iterable[Any]]) -> Callable[[Any], list[float]]:
+    return lambda message: [float(value) for value in reading(message)]
 
 
 def choose_topics(reader: LogReader, topics: Sequence[str]) -> dict[str, str]:

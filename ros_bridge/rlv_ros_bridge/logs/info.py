@@ -6,16 +6,23 @@ from collections import Counter
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
+from datetime import datetime, timezone
 from typing import Any
 
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, one_line
 from rlv_landing.summary import OUTCOMES, unfinished
 from rlv_landing.tables.landing import decimals
+from rlv_landing.text.terminal import legible_lines
 
 from ..messages.topics import DIAGNOSTICS
 from .history import choose_topics, read_history
 from .landing_record import PHASES, landing_summary, read_landing
 from .reader import Decoder, LogReader
+
+# A log that starts later has the time of the day: that of 1973 [s].
+WALL_TIME = 1e8
+# Characters of a name of a topic or a type that are shown.
+LONGEST_NAME = 100
 
 STATES = {
     "summary": "complete by its summary (--check reads all of it)",
@@ -81,7 +88,7 @@ class LogInfo:
             f"log        {self.path}",
             f"state      {state}",
             f"size       {self.size / 1024:.0f} KiB",
-            f"start      {self.start:g} s (simulation time)",
+            f"start      {_start(self.start)}",
             f"duration   {self.duration:g} s",
             f"messages   {self.messages}",
         ]
@@ -107,12 +114,15 @@ class LogInfo:
         lines += [f"landing    {self.no_landing}"] if self.no_landing else []
         lines += [f"{'damage' if i == 0 else '':<10} {text}" for i, text in enumerate(self.damage)]
         if self.topics:
-            width = max(len(t.name) for t in self.topics)
+            names = [one_line(t.name, LONGEST_NAME) for t in self.topics]
+            width = max(map(len, names))
             lines += ["", f"{'topic':<{width}}  {'messages':>8}  {'Hz':>7}  type"]
             lines += [
-                f"{t.name:<{width}}  {t.messages:>8}  {t.rate:>7.1f}  {t.type}" for t in self.topics
+                f"{name:<{width}}  {t.messages:>8}  {t.rate:>7.1f}  "
+                f"{one_line(t.type, LONGEST_NAME)}"
+                for name, t in zip(names, self.topics)
             ]
-        return "\n".join([*lines, *(self._peaks() if self.landing else [])])
+        return legible_lines([*lines, *(self._peaks() if self.landing else [])])
 
     def _peaks(self) -> list[str]:
         head = (
@@ -137,6 +147,17 @@ class LogInfo:
             f"largest axial acceleration at the top: {largest:.1f} m/s2",
             *([f"bottomed out: main strut of leg {bottomed}"] if bottomed else []),
         ]
+
+
+def _start(seconds: float) -> str:
+    """The first time of a log, and whether it is the landing's or the day's."""
+    if seconds < WALL_TIME:
+        return f"{seconds:g} s (simulation time)"
+    try:
+        date = datetime.fromtimestamp(seconds, timezone.utc).isoformat(timespec="milliseconds")
+    except (ValueError, OverflowError, OSError):
+        return f"{seconds:.9g} s"
+    return f"{date} (wall time, by which its writer has stamped it)"
 
 
 def _origin(peaks_of: str) -> str:
@@ -209,7 +230,7 @@ def _by_messages(reader: LogReader, *, checked: bool) -> LogInfo:
         ):
             # Another node's message may come without a definition.
             with suppress(LandingError):
-                phase = _phase(decode(message)) or phase
+                phase = decode.read(message, _phase) or phase
     read = "checked" if checked else "whole"
     found = _info(reader, counts, first or 0, last, read=read)
     try:

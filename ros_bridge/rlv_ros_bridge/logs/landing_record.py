@@ -42,6 +42,8 @@ PHASE = OUTPUT_NAMES.index("status.phase")
 # names of the phases, as in `/diagnostics`, in the order of `rlv_landing.summary.OUTCOMES`
 PHASES = tuple(phase.name.lower() for phase in Phase)
 ENDED = ("complete", "not compressed")
+# A text longer than this is none of it [characters].
+LONGEST = 64 * 1024
 # The fields of a leg, and what is neither number nor None among them and among the landing's.
 LEG_NUMBERS = (
     *("main_strut_force_min", "main_strut_stroke_max", "auxiliary_strut_force_min"),
@@ -136,6 +138,8 @@ def read_landing(texts: Mapping[str, str]) -> dict[str, Any] | None:
     Args:
         texts: the record.
     """
+    if len(texts.get(LANDING, "")) > LONGEST:
+        return None
     try:
         landing = json.loads(texts[LANDING])
         numbers = [landing["end_time"], landing["top_axial_acceleration_max"]]

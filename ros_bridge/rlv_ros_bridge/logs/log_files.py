@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from rlv_landing.errors import LandingError, reason_of
@@ -24,14 +25,15 @@ def find_files(path: Path) -> list[Path]:
     if not path.is_dir():
         raise LandingError(f"there is no log {path}; name a log's folder or its .mcap file")
     try:
-        files = sorted(
-            (f for f in path.iterdir() if f.name.endswith((FINISHED, UNFINISHED)) and f.is_file()),
-            key=_number,
+        files = in_order(
+            f for f in path.iterdir() if f.name.endswith((FINISHED, UNFINISHED)) and f.is_file()
         )
     except OSError as e:
         raise LandingError(f"{path} cannot be read: {reason_of(e)}") from None
     if not files:
-        raise LandingError(f"{path} holds no .mcap file; name a log's folder or its .mcap file")
+        raise LandingError(
+            f"{path} holds no .mcap or .db3 file; name a log's folder or its .mcap file"
+        )
     return files
 
 
@@ -40,9 +42,14 @@ def log_name(file: Path) -> str:
     return file.name.removesuffix(UNFINISHED).removesuffix(FINISHED)
 
 
+def in_order(files: Iterable[Path]) -> list[Path]:
+    """The files of a log in the order in which they were recorded."""
+    return sorted(files, key=_number)
+
+
 def _number(file: Path) -> tuple[str, int]:
     # The files of a split log end in `_0`, `_1`, ..., `_10`.
-    name = log_name(file)
+    name = log_name(file).removesuffix(".db3")
     stem, _, number = name.rpartition("_")
     return (stem, int(number)) if number.isdecimal() else (name, 0)
 

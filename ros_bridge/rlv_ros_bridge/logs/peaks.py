@@ -67,7 +67,7 @@ def read_peaks(texts: Mapping[str, str], where: str) -> tuple[dict[str, Found], 
             if name in texts:
                 record = json.loads(texts[name])
                 found[name] = _finite(record["value"]), _finite(record["time"])
-    except (ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
         raise LandingError(
             f"{where}: its record of peaks has {name} = {texts.get(name)!r}, "
             "which is not its layout; it was changed"

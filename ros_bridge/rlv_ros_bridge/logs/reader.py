@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from rlv_landing.errors import LandingError, reason_of, unknown
 from rlv_landing.parameters import Parameters
@@ -17,6 +17,10 @@ from .log_files import check_file, find_files
 from .mcap_files.stream import RecordStream
 from .mcap_files.summary import Summary, read_summary
 from .peaks import RECORD as PEAKS_RECORD
+
+Result = TypeVar("Result")
+# What a topic of a landing never needs: a longer message, or definition, is a false one [bytes].
+LARGEST_MESSAGE = LARGEST_DEFINITION = 256 * 1024
 
 
 @dataclass(frozen=True)
@@ -189,10 +193,16 @@ class LogReader:
         """
         from mcap_ros2.decoder import DecoderFactory
 
+        schema = self._schemas.get(topic)
+        if schema is not None and len(schema.data) > LARGEST_DEFINITION:
+            raise LandingError(
+                f"{self.path}: the definition of {topic} has {len(schema.data)} bytes, more than "
+                f"the {LARGEST_DEFINITION} of one that can be"
+            )
         try:
             # A factory for each topic: it identifies schemas by number only, and each file of a log
             # has its own numbers.
-            decode = DecoderFactory().decoder_for("cdr", self._schemas.get(topic))
+            decode = DecoderFactory().decoder_for("cdr", schema)
         except Exception as e:
             raise LandingError(
                 f"{self.path}: the definition of {topic} cannot be read: {reason_of(e)}"
@@ -208,11 +218,14 @@ class LogReader:
         from rlv_landing.presets import parse_toml
 
         data = self.attachments.get("parameters.toml")
-        return (
-            None
-            if data is None
-            else parse_toml(data.decode("utf-8", "replace"), f"{self.path}: parameters.toml")
-        )
+        if data is None:
+            return None
+        name = f"{self.path}: parameters.toml"
+        if len(data) > LARGEST_DEFINITION:
+            raise LandingError(
+                f"{name} has {len(data)} bytes, more than the {LARGEST_DEFINITION} of any vehicle"
+            )
+        return parse_toml(data.decode("utf-8", "replace"), name)
 
 
 class Definitions:
@@ -271,14 +284,34 @@ class Decoder:
         Raises:
             LandingError: it cannot be decoded.
         """
+        if len(message.data) > LARGEST_MESSAGE:
+            raise LandingError(
+                f"{self._reader.path}: a message of {message.topic} at "
+                f"{message.log_time / 1e9:g} s has {len(message.data)} bytes, more than the "
+                f"{LARGEST_MESSAGE} that are decoded; leave its topic out"
+            )
         if message.topic not in self._decoders:
             self._decoders[message.topic] = self._reader.decoder(message.topic)
         try:
             return self._decoders[message.topic](message.data)
         except Exception:
-            at = (
-                f"{self._reader.path}: a message of {message.topic} at {message.log_time / 1e9:g} s"
-            )
-            raise LandingError(
-                f"{at} is not what its definition says; it cannot be decoded"
-            ) from None
+            raise self._unlike(message, "its definition says; it cannot be decoded") from None
+
+    def read(self, message: LogMessage, reading: Callable[[Any], Result]) -> Result:
+        """What `reading` makes of the message decoded.
+
+        Raises:
+            LandingError: it cannot be decoded, or its definition is not that of its type.
+        """
+        decoded = self(message)
+        try:
+            return reading(decoded)
+        except LandingError:
+            raise
+        except (AttributeError, TypeError, ValueError, LookupError, OverflowError):
+            kind = self._reader.channels[message.topic].type_name
+            raise self._unlike(message, f"{kind} is in ROS 2; its definition is another") from None
+
+    def _unlike(self, message: LogMessage, what: str) -> LandingError:
+        at = f"{self._reader.path}: a message of {message.topic} at {message.log_time / 1e9:g} s"
+        return LandingError(f"{at} is not what {what}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
-from functools import cache
 from math import isfinite, nan
 from pathlib import Path
 from typing import Any
@@ -11,10 +10,12 @@ from typing import Any
 from rlv_landing.errors import LandingError
 from rlv_landing.text.durable import unwritable
 from rlv_landing.text.files import shown_name
+from rlv_landing.text.terminal import legible_lines
 from rlv_landing.text.units import UnitError, parse_number
 
+from ..messages.qos import profiles
 from .bag_writer import BagTopic, BagWriter
-from .log_files import check_file, find_files, log_name
+from .log_files import FINISHED, UNFINISHED, check_file, find_files, log_name
 from .mcap_files.stream import RecordStream
 from .reader import Definitions
 
@@ -70,7 +71,7 @@ class Recovery:
             )
         elif not self.finished:
             lines.append(f"missing  what was recorded after {self.end:g} s, if anything")
-        return "\n".join(lines)
+        return legible_lines(lines)
 
 
 def recovered_folder(path: Path) -> Path:
@@ -92,6 +93,7 @@ def recover(path: Path, folder: Path | None = None) -> Recovery:
         LandingError: no log, nothing whole in it, the folder exists, or it cannot be written.
             Nothing is left behind.
     """
+    _refuse_foreign(path)
     files = find_files(path)
     for file in files:
         check_file(file)
@@ -117,6 +119,26 @@ def recover(path: Path, folder: Path | None = None) -> Recovery:
         raise
     found.folder = str(target)
     return found
+
+
+def _refuse_foreign(path: Path) -> None:
+    """Says what to do with a recording that is not plain MCAP.
+
+    Raises:
+        LandingError: it is one.
+    """
+    names = [path.name] if path.is_file() else [f.name for f in path.glob("*")]
+    if any(name.endswith((FINISHED, UNFINISHED)) for name in names):
+        return
+    if any(name.endswith(".zstd") for name in names):
+        raise LandingError(
+            f"{path} is compressed as a whole; decompress its files by zstd -d first"
+        )
+    if databases := [name for name in names if name.endswith(".db3")]:
+        raise LandingError(
+            f"{path} is a recording in sqlite3, of which sqlite3 itself saves what is whole: "
+            f"sqlite3 {databases[0]} .recover | sqlite3 whole.db3, then ros2 bag reindex"
+        )
 
 
 def _is_complete(path: Path, files: list[Path]) -> bool:
@@ -201,7 +223,7 @@ class _Copy:
             registered = self._writer.mcap.register_channel(
                 channel.topic, channel.message_encoding, number, metadata
             )
-            qos = _profiles(metadata.get("offered_qos_profiles", ""))
+            qos = profiles(metadata.get("offered_qos_profiles", ""))
             topic = BagTopic(
                 channel.topic,
                 schema.name if schema is not None else "",
@@ -219,19 +241,3 @@ class _Copy:
         if key not in self._schemas:
             self._schemas[key] = self._writer.mcap.register_schema(*key)
         return self._schemas[key]
-
-
-@cache
-def _profiles(text: str) -> list[dict[str, Any]]:
-    """The QoS profiles in a channel's metadata; none where they cannot be read."""
-    import yaml
-
-    try:
-        found = yaml.safe_load(text)
-    except yaml.YAMLError:
-        return []
-    return (
-        [dict(p) for p in found]
-        if isinstance(found, list) and all(isinstance(p, dict) for p in found)
-        else []
-    )

@@ -11,6 +11,10 @@ INFINITE = {"sec": 9223372036, "nsec": 854775807}
 HISTORY = {1: "keep_last", 2: "keep_all"}
 RELIABILITY = {1: "reliable", 2: "best_effort"}
 DURABILITY = {1: "transient_local", 2: "volatile"}
+# Profiles longer, and nested deeper, than these are none [characters].
+LONGEST, DEEPEST = 64 * 1024, 16
+# A publisher that keeps more than this is one whose log was changed.
+MOST_KEPT = 100_000
 
 
 @dataclass(frozen=True)
@@ -62,16 +66,56 @@ def parse_qos(text: str) -> Qos:
     Returns:
         The profile, or `TELEMETRY` where the text has none that can be read.
     """
-    import yaml
-
     try:
-        first = yaml.safe_load(text)[0]
+        first = profiles(text)[0]
         return Qos(
             reliability=RELIABILITY.get(first["reliability"], first["reliability"]),
             durability=DURABILITY.get(first["durability"], first["durability"]),
-            depth=max(1, int(first["depth"]))
+            depth=min(max(1, int(first["depth"])), MOST_KEPT)
             if HISTORY.get(first["history"], first["history"]) == "keep_last"
             else TELEMETRY.depth,
         )
-    except (yaml.YAMLError, LookupError, TypeError, ValueError):
+    except (LookupError, TypeError, ValueError, OverflowError):
         return TELEMETRY
+
+
+def profiles(text: str) -> list[dict[str, Any]]:
+    """The `offered_qos_profiles` of a log's channel; none where they cannot be read.
+
+    Args:
+        text: the profiles as YAML.
+    """
+    try:
+        found = read_yaml(text, LONGEST)
+    except ValueError:
+        return []
+    return found if isinstance(found, list) and all(isinstance(p, dict) for p in found) else []
+
+
+def read_yaml(text: str, longest: int) -> Any:
+    """What a YAML text of rosbag2 says; it has no aliases, by which a short text grows huge.
+
+    Args:
+        text: the text.
+        longest: the most characters that it may have.
+
+    Raises:
+        ValueError: it is no YAML, is longer, nested deeper than 16, or has aliases.
+    """
+    import yaml
+
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    if len(text) > longest:
+        raise ValueError(f"it has {len(text)} characters, more than {longest}")
+    depth = 0
+    try:
+        for event in yaml.parse(text, Loader=loader):
+            if isinstance(event, yaml.AliasEvent):
+                raise ValueError("it has YAML aliases")
+            opens = isinstance(event, (yaml.SequenceStartEvent, yaml.MappingStartEvent))
+            depth += opens - isinstance(event, (yaml.SequenceEndEvent, yaml.MappingEndEvent))
+            if depth > DEEPEST:
+                raise ValueError(f"it is nested deeper than {DEEPEST}")
+        return yaml.load(text, Loader=loader)
+    except (yaml.YAMLError, OverflowError, AttributeError, TypeError) as e:
+        raise ValueError(" ".join(str(e).split())) from None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import math
+import struct
 import sys
 import time
 from collections.abc import Callable, Generator, Sequence
@@ -20,9 +21,10 @@ from rclpy.validate_full_topic_name import validate_full_topic_name
 from std_srvs.srv import Trigger
 from tqdm import tqdm
 
-from rlv_landing.errors import LandingError, reason_of
+from rlv_landing.errors import LandingError, one_line, reason_of
 
-from ..logs.reader import LogMessage, LogReader
+from ..logs.bag_reader import open_log
+from ..logs.reader import LogMessage
 from ..messages import topics as landing_topics
 from ..messages.message_types import message_class
 from ..messages.qos import CLOCK, parse_qos
@@ -209,8 +211,11 @@ class ReplayNode(Node):
                 if not self._waits.wait_until(position, bar):
                     return count, False
                 late = time.perf_counter() - clock.due(position)
-                data = message.data if restamp is None else restamp(message.topic, message.data)
-                self._publisher_of[message.topic].publish(data)
+                try:
+                    data = message.data if restamp is None else restamp(message.topic, message.data)
+                    self._publisher_of[message.topic].publish(data)
+                except (RuntimeError, AssertionError, struct.error) as e:
+                    raise _not_published(message, e) from None
                 count += 1
                 if math.isfinite(late):
                     self._lateness.append(late)
@@ -238,6 +243,14 @@ def _answer(action: Callable[[float], bool], refusal: str, _request: Any, respon
     return response
 
 
+def _not_published(message: LogMessage, error: Exception) -> LandingError:
+    """The error where ROS 2 takes no message, as it does of one without its first four bytes."""
+    return LandingError(
+        f"a message of {message.topic} at {message.log_time / 1e9:g} s, of {len(message.data)} "
+        f"bytes, cannot be published: {' '.join(str(error).split())}; leave it out by --topics"
+    )
+
+
 def _check_name(name: str) -> None:
     try:
         validate_full_topic_name(name)
@@ -257,7 +270,10 @@ def replay(options: ReplayOptions, ros_args: Sequence[str], stop: StopFlag) -> R
         LandingError: bad options, or a log or topic that does not exist.
     """
     options.check()
-    selection = Selection(LogReader(options.path), options)
+    selection = Selection(open_log(options.path), options)
+    for topic, kind in selection.left_out.items():
+        warning = f"warning: {topic} is left out: its type {kind} is not installed here"
+        print(one_line(warning), file=sys.stderr)
     with ros_context(ros_args), Keyboard() as keyboard:
         node = ReplayNode(selection, options, keyboard, stop)
         try:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +15,9 @@ from ..logs.reader import LogMessage, LogReader
 from ..messages.message_types import is_installed
 from ..messages.topics import TF, resolve
 from .clock import FASTEST, SLOWEST
+
+# Messages of a log without a summary are kept up to so many bytes, with those of each in memory.
+MOST_KEPT, MESSAGE_BYTES = 32 * 1024 * 1024, 200
 
 
 @dataclass(frozen=True)
@@ -64,7 +67,8 @@ class Selection:
     """The part of a log that is to be played.
 
     A log that has its summary is read while it is iterated over, chunk by chunk, from the chunk of
-    the first message on; another is read into memory at once.
+    the first message on. Another is read through once for its span, and again while it is played;
+    a small one is kept in memory instead.
 
     The messages come in the log's order, from the time `first` on, over `length` [ns]. `step` is
     the smallest time between two of them [ns] in a row, as far as they were read; 1 ms where there
@@ -79,13 +83,15 @@ class Selection:
         self._gap: int | None = None
         self._messages: list[LogMessage] | None = None
         indexed = reader.read_summary()
-        if not indexed:
-            self._messages = list(reader.messages())
-        begin, end = _span(reader, self._messages)
-        chosen = {
-            t
-            for t in reader.select(options.topics)
-            if options.topics or can_be_published(reader.channels[t].type_name)
+        self._indexed = indexed
+        begin, end = _indexed_span(reader) if indexed else self._read_through()
+        named = reader.select(options.topics)
+        chosen = {t for t in named if options.topics or is_installed(reader.channels[t].type_name)}
+        # Whose types are not installed here; /tf of our own logs is left out without a word.
+        self.left_out = {
+            t: reader.channels[t].type_name
+            for t in named
+            if t not in chosen and reader.channels[t].type_name != TF.type_name
         }
         self.first = begin + round(options.start * 1e9)
         self._last = (
@@ -93,17 +99,17 @@ class Selection:
             if math.isfinite(options.duration)
             else math.inf
         )
+        if not chosen:
+            raise LandingError(
+                f"{reader.path}: none of its types is installed here "
+                f"({', '.join(sorted(set(self.left_out.values())))}); install their packages, or "
+                "source your ROS 2"
+            )
         self._chosen = chosen
-        if self._messages is not None:
-            self._messages = [
-                m
-                for m in self._messages
-                if m.topic in chosen and self.first <= m.log_time <= self._last
-            ]
         last = (
             last_time(reader, chosen, self.first, self._last)
-            if self._messages is None
-            else max((m.log_time for m in self._messages), default=None)
+            if indexed
+            else max((m.log_time for m in self._unindexed()), default=None)
         )
         if last is None:
             raise LandingError(
@@ -113,6 +119,36 @@ class Selection:
         self.channels = [c for c in reader.channels.values() if c.topic in chosen]
         self.names = remapped_names(reader, sorted(chosen), options.remap)
         self.length = last - self.first
+
+    def _read_through(self) -> tuple[int, int]:
+        """The first and the last time of a log without a summary [ns]; a small one is kept."""
+        kept: list[LogMessage] | None = []
+        times: tuple[int, int] | None = None
+        size = 0
+        for m in self._reader.messages():
+            times = (
+                (m.log_time, m.log_time)
+                if times is None
+                else (min(times[0], m.log_time), max(times[1], m.log_time))
+            )
+            size += len(m.data) + MESSAGE_BYTES
+            if size > MOST_KEPT:
+                kept = None
+            if kept is not None:
+                kept.append(m)
+        self._messages = kept
+        if times is None:
+            raise _nothing_in(self._reader)
+        return times
+
+    def _unindexed(self) -> Iterator[LogMessage]:
+        """The chosen messages of a log without a summary."""
+        messages = (
+            self._messages if self._messages is not None else self._reader.messages(self._chosen)
+        )
+        for m in messages:
+            if m.topic in self._chosen and self.first <= m.log_time <= self._last:
+                yield m
 
     def begin(self) -> Generator[LogMessage, None, None]:
         """An iterator over the messages, the first of which is in memory already."""
@@ -130,9 +166,9 @@ class Selection:
     def __iter__(self) -> Generator[LogMessage, None, None]:
         before = None
         for message in (
-            self._messages
-            if self._messages is not None
-            else messages_between(self._reader, self._chosen, self.first, self._last)
+            messages_between(self._reader, self._chosen, self.first, self._last)
+            if self._indexed
+            else self._unindexed()
         ):
             if before is not None and before != message.log_time:
                 gap = abs(message.log_time - before)
@@ -151,35 +187,27 @@ class Selection:
         return self._reader.cut
 
 
-def _span(reader: LogReader, messages: Sequence[LogMessage] | None) -> tuple[int, int]:
-    """The first and the last time of a log [ns].
+def _indexed_span(reader: LogReader) -> tuple[int, int]:
+    """The first and the last time of a log by its summaries [ns].
 
     Raises:
         LandingError: it has no message.
     """
-    times = (
-        [m.log_time for m in messages]
-        if messages is not None
-        else [
-            time
-            for s in reader.summaries or ()
-            if s.statistics.message_count
-            for time in (s.statistics.message_start_time, s.statistics.message_end_time)
-        ]
-    )
+    times = [
+        time
+        for s in reader.summaries or ()
+        if s.statistics.message_count
+        for time in (s.statistics.message_start_time, s.statistics.message_end_time)
+    ]
     if not times:
-        raise LandingError(
-            f"{reader.path} holds no message that can be read; there is nothing to play"
-        )
+        raise _nothing_in(reader)
     return min(times), max(times)
 
 
-def can_be_published(type_name: str) -> bool:
-    """Whether messages of the type can be published here.
-
-    Of the types in our logs only that of `/tf` may not be installed.
-    """
-    return type_name != TF.type_name or is_installed(type_name)
+def _nothing_in(reader: LogReader) -> LandingError:
+    return LandingError(
+        f"{reader.path} holds no message that can be read; there is nothing to play"
+    )
 
 
 def remapped_names(

@@ -9,6 +9,7 @@ from itertools import chain
 from pathlib import Path
 from typing import IO, Any
 
+from .chunks import Allowance, open_chunk, records_of_cut_chunk
 from .records import (
     ATTACHMENT,
     CHANNEL,
@@ -25,15 +26,15 @@ from .records import (
     DamageError,
     checksum_differs,
     decode_record,
-    find_chunk,
-    open_chunk,
     read_record,
-    records_of_cut_chunk,
 )
+from .search import find_chunk
 
 # The library name in the header of our logs. They hold all checksums, and all messages in
 # compressed chunks.
 LIBRARY = "rlv-landing"
+# Defects of a file that are told one by one.
+MOST_TOLD = 100
 # Bytes of the footer, head included, that the summary's checksum covers.
 FOOTER_BYTES_IN_CRC = 16
 DECODED = frozenset(
@@ -64,6 +65,7 @@ class RecordStream:
         self.path = path
         self.finished = False
         self.damage: list[str] = []
+        self._defects = 0
         self.lost_bytes = 0
         self.summary_is_valid = False
         self._with_summary, self._wanted = summary, wanted
@@ -73,12 +75,12 @@ class RecordStream:
         self._messages = 0
         self._ours = False
         self._checksums_required: bool | None = None
+        self._allowance = Allowance(0)
 
     def __iter__(self) -> Iterator[Any]:
-        from mcap.records import Message
-
         with self.path.open("rb") as file:
             size = os.fstat(file.fileno()).st_size
+            self._allowance = Allowance(size)
             self._crc = zlib.crc32(file.read(len(MAGIC)))
             position = len(MAGIC)
             while True:
@@ -95,18 +97,25 @@ class RecordStream:
                     following = self._resume_position(file, position, size, following)
                     if following is None:
                         # Nothing behind can be read: the file is cut.
-                        rest = [] if self._ours else records_of_cut_chunk(file, position, size)
-                        self._messages += sum(isinstance(r, Message) for r in rest)
-                        yield from rest
+                        if not self._ours:
+                            yield from records_of_cut_chunk(file, position, size)
                         self.lost_bytes += size - position
                         return
-                    self.damage.append(f"byte {position}: {e}")
+                    self._note(f"byte {position}: {e}")
                     self.lost_bytes += following - position
                 yield from records
                 position = following
                 if opcode == FOOTER:
                     self._check_end(file, position, size)
                     return
+
+    def _note(self, damage: str) -> None:
+        """Notes a defect; of very many only the first are told one by one."""
+        self._defects += 1
+        if self._defects <= MOST_TOLD:
+            self.damage.append(damage)
+        else:
+            self.damage[MOST_TOLD:] = [f"and {self._defects - MOST_TOLD} more such defects"]
 
     def _add_to_crc(self, opcode: int, body: bytes) -> None:
         head = RECORD_HEAD.pack(opcode, len(body))
@@ -143,6 +152,10 @@ class RecordStream:
                 raise DamageError("an attachment's checksum is wrong")
         if opcode == MESSAGE and required:
             raise DamageError("a message lies outside the chunks, without a checksum")
+        if opcode == CHUNK:
+            chunk = open_chunk(body, self._allowance, checksum_required=required)
+            self._messages += chunk.count
+            return chain(chunk.definitions, chunk.messages(self._wanted))
         record = decode_record(opcode, body)
         if opcode == HEADER and record.library.startswith(LIBRARY):
             self._ours = self._checksums_required = True
@@ -158,10 +171,6 @@ class RecordStream:
             self._check_summary(record, file, position)
         elif opcode == STATISTICS and record.message_count != self._messages and not self.damage:
             self.damage.append(f"{self._messages} of {record.message_count} messages are there")
-        if opcode == CHUNK:
-            chunk = open_chunk(record, checksum_required=required)
-            self._messages += chunk.count
-            return chain(chunk.definitions, chunk.messages(self._wanted))
         if opcode == MESSAGE:
             self._messages += 1
             if self._wanted is not None and not self._wanted(record.channel_id):

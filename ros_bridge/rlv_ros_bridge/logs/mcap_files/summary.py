@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from typing import IO, Any
 
+from .chunks import Allowance, OpenChunk, open_chunk
 from .records import (
     ATTACHMENT,
     ATTACHMENT_INDEX,
@@ -27,10 +29,8 @@ from .records import (
     SCHEMA,
     STATISTICS,
     DamageError,
-    OpenChunk,
     checksum_differs,
     decode_record,
-    open_chunk,
     read_record,
     record_places,
 )
@@ -152,7 +152,27 @@ def _read(file: IO[bytes], path: Path, size: int) -> Summary | None:
         return None
     # A channel is read beside its schema.
     found.definitions.sort(key=lambda record: isinstance(record, Channel))
-    found.others = [_other(file, position, size, ours=ours) for position in sorted(others)]
+    found.others = _others(file, others, size, ours=ours)
+    return found if _lie_apart(found.chunks) else None
+
+
+def _lie_apart(places: Sequence[ChunkPlace]) -> bool:
+    """Whether no chunk is in the index twice, or within another."""
+    return all(a.position + a.length <= b.position for a, b in pairwise(places))
+
+
+def _others(file: IO[bytes], positions: Iterable[int], size: int, *, ours: bool) -> list[Any]:
+    """The metadata and attachments at `positions`.
+
+    Raises:
+        DamageError: one is none, overlaps another, or its bytes were changed.
+    """
+    found, end = [], 0
+    for position in sorted(positions):
+        if position < end:
+            raise DamageError("two of its metadata overlap")
+        found.append(_other(file, position, size, ours=ours))
+        end = file.tell()
     return found
 
 
@@ -188,13 +208,14 @@ def open_chunks(
     """
     with summary.file.open("rb") as file, ThreadPoolExecutor(1) as reader:
         size = file.seek(0, 2)
+        allowance = Allowance(size)
 
         def read(place: ChunkPlace) -> OpenChunk | None:
             try:
                 opcode, body = read_record(file, place.position, size)
                 if opcode != CHUNK:
                     return None
-                return open_chunk(decode_record(opcode, body), checksum_required=summary.ours)
+                return open_chunk(body, allowance, checksum_required=summary.ours)
             except DamageError:
                 return None
 

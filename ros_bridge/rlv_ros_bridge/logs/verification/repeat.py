@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Generator
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 from rlv_landing import Landing, Parameters
 from rlv_landing.errors import LandingError
@@ -130,22 +131,27 @@ def _inputs(reader: LogReader, step_ns: int, refusal: str) -> Inputs:
     found: Inputs = {}
     for message in reader.messages(names):
         at = f"{refusal}its input {message.topic} at {message.log_time / 1e9:.9g} s "
-        decoded = decode(message)
-        stamp = decoded.header.stamp
+        seconds, nanoseconds = decode.read(message, _stamp)
         k, rest = divmod(message.log_time, step_ns)
-        if stamp.sec * NANOSECONDS + stamp.nanosec != message.log_time:
+        if seconds * NANOSECONDS + nanoseconds != message.log_time:
             raise LandingError(
-                at + f"has the stamp {stamp.sec}.{stamp.nanosec:09d} s; one of the two was changed"
+                at + f"has the stamp {seconds}.{nanoseconds:09d} s; one of the two was changed"
             )
         if rest or k < 0:
             raise LandingError(
                 at + f"is not at a sample: those are {step_ns / 1e9:g} s apart; it was changed"
             )
         try:
-            found.setdefault(k, []).append(names[message.topic](decoded))
+            found.setdefault(k, []).append(decode.read(message, names[message.topic]))
         except LandingError as e:
             raise LandingError(at + f"cannot be: {e}") from None
     return found
+
+
+def _stamp(message: Any) -> tuple[int, int]:
+    """Seconds and nanoseconds of the stamp in a message's header."""
+    stamp = message.header.stamp
+    return int(stamp.sec), int(stamp.nanosec)
 
 
 def _seconds(reader: LogReader, name: str, refusal: str) -> float:

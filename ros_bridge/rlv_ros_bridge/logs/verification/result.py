@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from rlv_landing.text.terminal import legible_lines
+
 
 @dataclass(frozen=True)
 class Difference:
@@ -90,4 +92,4 @@ class Verification:
             lines.append("same      bit for bit")
         if self.not_exact:
             lines.append(f"note      the bits need not be the same: {self.not_exact}")
-        return "\n".join(lines)
+        return legible_lines(lines)

@@ -24,6 +24,8 @@ from .result import Difference, Verification
 # the smallest difference: one unit in the last place of a parameter makes 0.31 % within 3 s of the
 # drop tests, where a friction force switches from stick to slip.
 TOLERANCE = 0.01
+# A sample takes more than this in a log, however well it is compressed [bytes].
+SAMPLE_BYTES = 64
 
 
 def verify(reader: LogReader, fmu: Path | None = None) -> Verification:
@@ -131,8 +133,13 @@ class _Comparison:
         """
         run, found = self._run, self._found
         recorded, until = read_peaks(self._reader.peaks, str(self._reader.path))
-        # a damaged log may have lost its last messages
+        # A damaged log may have lost its last messages, as many as fit into its file.
+        last = k + self._reader.size // SAMPLE_BYTES
         while k * run.step < min(until, run.stop_time) - 0.5 * run.step:
+            if k >= last:
+                self._raise_difference(
+                    "the record of peaks", "until", k * run.step, f"{until!r} s", f"{found.end:g} s"
+                )
             next(samples)
             k += 1
         repeated = run.peaks()
@@ -162,7 +169,7 @@ class _Comparison:
         for path, recorded in leaves(self._decode(message)):
             paths.add(path)
             found.values += 1
-            repeated = expected.get(path, "" if isinstance(recorded, str) else type(recorded)(0))
+            repeated = expected.get(path, "" if isinstance(recorded, str) else 0)
             if isinstance(recorded, float) and isinstance(repeated, (float, int)):
                 if struct.pack("<d", recorded) != struct.pack("<d", repeated):
                     found.other_bits += 1
