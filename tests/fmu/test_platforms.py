@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 
 import lief
@@ -18,6 +19,16 @@ def zig():
     if not compilers.has_zig():
         pytest.skip("ziglang is not installed")
     return compilers
+
+
+def test_each_version_of_fmi_has_the_same_targets_by_its_own_names(zig, binary):
+    from fmu_build.targets import FMI2, TARGETS, of_platform
+
+    two, three = (binary.compilers("all", fmi) for fmi in ("2", "3"))
+    assert set(two) == {"linux64", "win64", "darwin64", "aarch64-linux"} == set(FMI2)
+    assert set(three) == set(TARGETS)
+    assert {t.name for folder in FMI2 for t in of_platform(folder)} == set(TARGETS)
+    assert set(chain(*two.values())) == set(chain(*three.values()))
 
 
 @pytest.mark.parametrize("name", ["aarch64-linux", "x86_64-windows", "x86_64-darwin"])
