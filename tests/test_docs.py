@@ -20,6 +20,7 @@ PACKAGES = (
     ROOT / "fmu_src" / "fmu_build",
     ROOT / "ros_bridge" / "rlv_ros_bridge",
 )
+TOPS = ("fmu_src", "ros_bridge", "tests", "docs", "benchmarks", "examples")
 MAP = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 # a code span with a slash is a path from the project's folder
 PATHS = {span for span in re.findall(r"`([^`\s]+)`", MAP) if "/" in span}
@@ -55,6 +56,27 @@ def test_the_index_lists_every_page():
 def test_every_path_on_the_map_exists():
     assert PATHS
     assert [path for path in sorted(PATHS) if not (ROOT / path).exists()] == []
+
+
+def test_every_path_in_a_page_exists():
+    """Code spans and lines of commands that begin with one of the project's folders."""
+    first = "|".join(TOPS)
+    found = {
+        (page.name, path.rstrip("."))
+        for page in PAGES
+        for path in re.findall(
+            rf"(?<![\w/.-])((?:{first})/[\w./-]+)", page.read_text(encoding="utf-8")
+        )
+    }
+    assert len(found) > len(PATHS) / 2
+    assert [p for p in sorted(found) if not (ROOT / p[1]).exists()] == []
+
+
+def test_no_folder_of_the_packages_has_more_than_16_python_files():
+    folders = {path.parent for package in PACKAGES for path in package.rglob("*.py")}
+    assert len(folders) > 20
+    crowded = {name_of(f): n for f in folders if (n := len(list(f.glob("*.py")))) > 16}
+    assert crowded == {}
 
 
 def test_the_map_names_every_folder_of_the_packages():
