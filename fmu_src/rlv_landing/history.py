@@ -204,11 +204,9 @@ def _decimals(nanoseconds: int) -> str:
         return dataset
 
     def plot(self, *names: str, axes: Axes | None = None) -> Axes:
-        """Draw columns of one unit over time.
+        """Draw the columns `names`, of one unit, over time.
 
-        Args:
-            *names: The columns.
-            axes: Where to draw [default: new axes of matplotlib's pyplot].
+        They are drawn in `axes`, or else in new axes of matplotlib's pyplot.
 
         Raises:
             LandingError: No column is named, one is unknown, or their units differ.
