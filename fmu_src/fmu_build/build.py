@@ -29,7 +29,7 @@ from rlv_landing.text.durable import NO_ROOM, unwritable, write_durably, writing
 from .binary import record_libpython, replace_binaries
 from .cross.cores import compile_cores
 from .description import describe
-from .description3 import describe3
+from .fmi3.description import describe3
 from .identity import NO_GUID, identify
 from .pages.documentation import write_documentation
 from .sources import ROOT, compiled_cores, copy_sources, source_date
@@ -210,10 +210,15 @@ def build(target: Path, wanted: Wanted) -> list[str]:
     ]
 
 
+def _end(number: int, _frame: object) -> None:
+    raise KeyboardInterrupt(number)
+
+
 def main() -> None:
     """Build the FMU of the default vehicle that the command line asks for.
 
-    An end from outside is as Ctrl-C: it leaves no temporary folder, and exit code 130.
+    An end from outside is as Ctrl-C: it leaves no temporary folder. The exit code is 128 and the
+    signal's number.
     """
     parser = argparse.ArgumentParser(
         prog="build_fmu.sh",
@@ -250,14 +255,14 @@ def main() -> None:
     wanted = Wanted(fmi=arguments.fmi, pure=arguments.pure, platforms=arguments.platforms)
     name = f"{MODEL_NAME}{'3' if wanted.fmi == '3' else ''}.fmu"
     for ending in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(ending, signal.default_int_handler)
+        signal.signal(ending, _end)
     try:
         lines = build(arguments.file or ROOT / "build" / name, wanted)
     except LandingError as e:
         raise SystemExit(f"error: {e}") from None
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as e:
         print("interrupted", file=sys.stderr)
-        raise SystemExit(130) from None
+        raise SystemExit(128 + (e.args[0] if e.args else signal.SIGINT)) from None
     print("\n".join(lines))
 
 

@@ -157,13 +157,6 @@ class History:
             for t, row in zip(times, self.data[part].tolist()):
                 writer.writerow([t, *map(repr, row)])
 
-
-def _decimals(nanoseconds: int) -> str:
-    """A time in s, all of its digits."""
-    seconds, rest = divmod(abs(nanoseconds), 10**9)
-    digits = f"{rest:09d}".rstrip("0") or "0"
-    return f"{'-' if nanoseconds < 0 else ''}{seconds}.{digits}"
-
     def units(self) -> dict[str, str]:
         """The SI unit of the time and of each column; empty for plain numbers."""
         return {name: UNITS.get(name, "") for name in self}
@@ -244,6 +237,13 @@ def _decimals(nanoseconds: int) -> str:
             f'<details open=""><summary>{len(self)} samples until {self.time[-1]:g} s</summary>'
             f"<table><tr>{head}</tr>{''.join(rows)}</table></details>"
         )
+
+
+def _decimals(nanoseconds: int) -> str:
+    """A time in s, all of its digits."""
+    seconds, rest = divmod(abs(nanoseconds), 10**9)
+    digits = f"{rest:09d}".rstrip("0") or "0"
+    return f"{'-' if nanoseconds < 0 else ''}{seconds}.{digits}"
 
 
 def _library(name: str) -> Any:

@@ -45,7 +45,7 @@ def test_fmpy_finds_no_problem_and_both_files_follow_the_schemas(fmu3, archive):
 
 
 def test_flat_names_are_those_of_the_same_arrays(fmu, fmu3, tmp_path):
-    from fmu_build.description3 import describe3
+    from fmu_build.fmi3.description import describe3
     from fmu_build.terminals import terminals_and_icons
 
     root = ElementTree.fromstring(ZipFile(fmu).read("modelDescription.xml"))

@@ -36,10 +36,12 @@ def test_an_ended_sweep_keeps_its_rows_and_resume_makes_the_rest(tmp_path, numbe
         assert "of 40000 landings are kept in r, --resume continues" in err
         assert "Traceback" not in err
     kept = [row["index"] for part in parts(folder) for row in rows(part)]
-    assert kept == list(range(len(kept)))
+    assert kept == sorted(set(kept))
     task, results = resumed(study, folder)
+    # an interrupt may lose the rows that were just being taken over
     with results:
-        assert results.missing() == [(len(kept), len(task))]
+        missing = [i for begin, end in results.missing() for i in range(begin, end)]
+    assert sorted([*kept, *missing]) == list(range(len(task)))
 
 
 def resumed(study: Path, folder: Path) -> tuple[Task, Results]:

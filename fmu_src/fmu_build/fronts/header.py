@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 from xml.etree.ElementTree import Element
 
-from ..arrays import variables
+from ..fmi3.arrays import variables
 from ..sources import source
 
 FRONT = source("fmu_src/fmu_front")

@@ -31,9 +31,9 @@ from rlv_landing.quantities import (
     whole_name,
 )
 
-from ..arrays import whole_meaning
 from ..binary import compilers
 from ..dependencies import inputs_of
+from ..fmi3.arrays import whole_meaning
 from ..sources import source
 from ..targets import tried
 from ..wanted import Wanted

@@ -16,7 +16,7 @@ import click
 from .. import __version__
 from ..commands.audit import audit
 from ..commands.envelope import envelope
-from ..commands.identify import identify
+from ..commands.identification.identify import identify
 from ..commands.options import HELP_NAMES, Group
 from ..commands.own_vehicle import draw, new
 from ..commands.parameters import parameters

@@ -27,8 +27,7 @@ from ..ros.rclpy_internals import lifecycle_state
 from ..ros.setup import wait_for_acknowledgement
 from .input_queue import InputQueue
 from .landing_run import Identity, LandingRun
-from .landing_services import create_landing_services
-from .landing_thread import LandingThread, as_landing_error
+from .landing_thread import LandingThread, as_landing_error, create_landing_services
 from .parameters import NodeParameters
 from .publishing import create_publishing
 from .run_summary import RunSummary

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ..choices import split_pair
-from ..errors import LandingError
-from ..text.files import pipes_kept
-from .options import choose
+from ...choices import split_pair
+from ...errors import LandingError
+from ...text.files import pipes_kept
+from ..options import choose
 
 if TYPE_CHECKING:
-    from ..identification.measured.series import Series
-    from ..identification.objective import Objective
-    from ..identification.targets import Wanted
-    from ..parameters import Parameters
+    from ...identification.measured.series import Series
+    from ...identification.objective import Objective
+    from ...identification.targets import Wanted
+    from ...parameters import Parameters
 
 
 def objective_of(options: dict[str, Any]) -> Objective:
@@ -22,10 +22,10 @@ def objective_of(options: dict[str, Any]) -> Objective:
     Raises:
         LandingError: An option names what does not exist, cannot be, or fits no other.
     """
-    from ..identification.conditions import CONDITIONS
-    from ..identification.free_numbers import FreeNumbers
-    from ..identification.objective import Objective
-    from ..identification.origins import with_origins
+    from ...identification.conditions import CONDITIONS
+    from ...identification.free_numbers import FreeNumbers
+    from ...identification.objective import Objective
+    from ...identification.origins import with_origins
 
     changed = [split_pair(pair, "--set")[0] for pair in options["pairs"]]
     with pipes_kept():
@@ -53,11 +53,11 @@ def _data(
     options: dict[str, Any], parameters: Parameters, modes: tuple[str, ...]
 ) -> tuple[list[Wanted], list[Series]]:
     """The scalars and curves to reach: the user's, or the paper's for the paper's vehicle."""
-    from ..identification.measured.series import Series
-    from ..identification.measured.target_file import read_targets
-    from ..identification.targets import paper_targets, targets_of_tests
-    from ..validation.curves import read_curves
-    from ..validation.paper import other_vehicle
+    from ...identification.measured.series import Series
+    from ...identification.measured.target_file import read_targets
+    from ...identification.targets import paper_targets, targets_of_tests
+    from ...validation.curves import read_curves
+    from ...validation.paper import other_vehicle
 
     only = modes[0] if len(modes) == 1 else None
     pairs = [split_pair(pair, "--series") for pair in options["series"]]
@@ -81,8 +81,8 @@ def _data(
 
 
 def _bound(text: str) -> tuple[str, tuple[float, float]]:
-    from ..identification.priors import quantity
-    from ..text.values import check_together, to_si
+    from ...identification.priors import quantity
+    from ...text.values import check_together, to_si
 
     name, value = split_pair(text, "--bound")
     lo, dots, hi = (part.strip() for part in value.partition(".."))

@@ -8,12 +8,12 @@ from typing import Any
 
 import click
 
-from ..signals.handlers import Hold
-from .identify_data import objective_of
-from .identify_run import check_effort, run, start_note
-from .number_types import NumberRange, WholeNumber
-from .options import HELP_NAMES, choose, parameter_options, workers_option
-from .printing import INTERRUPTED, print_warning
+from ...signals.handlers import Hold
+from ..number_types import NumberRange, WholeNumber
+from ..options import HELP_NAMES, choose, parameter_options, workers_option
+from ..printing import INTERRUPTED, print_warning
+from .data import objective_of
+from .run import check_effort, run, start_note
 
 NOTHING_BETTER = 1
 
@@ -154,8 +154,8 @@ def identify(work: Path, *, list_priors: bool, **options: Any) -> None:
     Exit codes: 0 done, 1 nothing better than the start was found, or a full disk, 2 bad input, 130
     interrupted (the best so far is written).
     """
-    from ..audit.transverse import joint_warning
-    from ..identification.identify import Search
+    from ...audit.transverse import joint_warning
+    from ...identification.identify import Search
 
     if list_priors:
         _print_priors(options)
@@ -194,8 +194,8 @@ def identify(work: Path, *, list_priors: bool, **options: Any) -> None:
 
 
 def _print_priors(options: dict[str, Any]) -> None:
-    from ..identification.vehicle_priors import priors_of
-    from ..tables.prior_table import prior_table
+    from ...identification.vehicle_priors import priors_of
+    from ...tables.prior_table import prior_table
 
     parameters, modes, _ = choose(
         options["preset"], options["file"], options["mode"], options["pairs"]

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from ..errors import one_line
-from ..signals.interrupts import answer
-from ..text.durable import ANOTHER_WORK, unwritable, write_durably
-from .printing import FAILED, exit_code
+from ...errors import one_line
+from ...signals.interrupts import answer
+from ...text.durable import ANOTHER_WORK, unwritable, write_durably
+from ..printing import FAILED, exit_code
 
 if TYPE_CHECKING:
-    from ..identification.free_numbers import FreeNumbers
-    from ..identification.identify import Search
-    from ..signals.handlers import Hold
+    from ...identification.free_numbers import FreeNumbers
+    from ...identification.identify import Search
+    from ...signals.handlers import Hold
 
 # a process with the model and its targets beyond what it shares, and both modes' landings, at least
 BYTES_PER_PROCESS = 30e6
@@ -35,8 +35,8 @@ def check_effort(options: dict[str, Any]) -> None:
     Raises:
         LandingError: They are more.
     """
-    from ..effort import check_duration, check_memory
-    from ..workers import default_workers
+    from ...effort import check_duration, check_memory
+    from ...workers import default_workers
 
     workers = options["workers"] or default_workers()
     check_memory(
@@ -101,7 +101,7 @@ def run(search: Search, work: Path, options: dict[str, Any], hold: Hold) -> list
 
 def _write_best(search: Search, work: Path) -> None:
     """Write the best point so far: the search's files, and `identified.toml`."""
-    from ..identification.origins import identified_toml
+    from ...identification.origins import identified_toml
 
     search.save()
     best = search.objective.free.parameters(search.best.z)
@@ -111,7 +111,7 @@ def _write_best(search: Search, work: Path) -> None:
 
 def _report(search: Search, work: Path) -> list[str]:
     """Write the report; the fit in short lines."""
-    from ..identification.identify_report import short_report, write_report
+    from ...identification.identify_report import short_report, write_report
 
     best = search.objective.free.parameters(search.best.z)
     write_durably(work / "report.md", write_report(search, best).encode())

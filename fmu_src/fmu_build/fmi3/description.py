@@ -6,9 +6,9 @@ from xml.etree.ElementTree import Element, SubElement
 
 from rlv_landing.quantities import OUTPUT_NAMES
 
+from ..dependencies import inputs_of, known_at_start
+from ..description import DIMENSIONLESS, QUANTITIES, type_name
 from .arrays import TIME, Variable, variables, whole_meaning
-from .dependencies import inputs_of, known_at_start
-from .description import DIMENSIONLESS, QUANTITIES, type_name
 
 TYPES = {"real": "Float64", "integer": "Int32", "boolean": "Boolean", "string": "String"}
 CAPABILITIES = {

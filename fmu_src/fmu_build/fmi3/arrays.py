@@ -13,7 +13,7 @@ from itertools import pairwise
 
 from rlv_landing.quantities import flat_name, whole_name
 
-from .description import QUANTITIES
+from ..description import QUANTITIES
 
 TIME = "time"
 # the quantities that have other names where names are flat
