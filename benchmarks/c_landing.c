@@ -62,6 +62,7 @@ typedef struct {
     double rtol, t, t_old, t_input, h, error_old;
     double steps, rejected, rhs_calls;
     double start_energy, dissipated, balance, most_balance;
+    int cut; /* whether slopes of the interpolant written last were cut */
     double u[INPUTS], u_rate[INPUTS];
     double scale[MAX_STATES], relative[MAX_STATES];
     double y[MAX_STATES], y_new[MAX_STATES], y_stage[MAX_STATES], deviation[MAX_STATES];
@@ -636,6 +637,7 @@ static double conserve(Landing *s, double t, double *y, double *dy)
 static void write_dense(Landing *s, double h)
 {
     int first = s->n - INTEGRALS;
+    s->cut = 0;
     for (int i = 0; i < s->n; i++) {
         double change = s->y_new[i] - s->y[i], early = h * s->k1[i], late = h * s->k5[i];
         s->dense[0][i] = s->y[i];
@@ -646,6 +648,7 @@ static void write_dense(Landing *s, double h)
             continue;
         double low = MIN(MAX(early, 0.0), 3.0 * change), high = MIN(MAX(late, 0.0), 3.0 * change);
         if (low != early || high != late) {
+            s->cut = 1;
             s->dense[2][i] = low - change;
             s->dense[3][i] = 2.0 * change - high - low;
         }
@@ -675,12 +678,12 @@ static void inside(const Landing *s, double part, double *y)
                part * (s->dense[1][i] + rest * (s->dense[2][i] + part * s->dense[3][i]));
 }
 
-/* What is lost at the quarters of a step, on its interpolant, where it bulges or the tolerance is
- * loose. */
+/* What is lost at the quarters of a step, on its interpolant, where it bulges, its slopes were cut,
+ * or the tolerance is loose. */
 static double lost_inside(Landing *s, double h)
 {
     double most = 0.0, *y = s->y_stage, dissipated, dy[MAX_STATES];
-    if (s->rtol <= 1e-4 && !bulges(s))
+    if (s->rtol <= 1e-4 && !s->cut && !bulges(s))
         return 0.0;
     for (double part = 0.25; part < 1.0; part += 0.25) {
         inside(s, part, y);

@@ -37,9 +37,11 @@ class Trial(Rest):
     Attributes:
         rhs_calls: Calls of the right-hand side so far.
         ceiling: [n] how large the error of each state may be at any tolerance.
+        flattened: Whether slopes of the interpolant written last were cut, so that a state rises.
     """
 
     rhs_calls: float
+    flattened: bool
     y: Buffer
     y_new: Buffer
     y_stage: Buffer
@@ -55,6 +57,7 @@ class Trial(Rest):
         super().__init__(system, rtol)
         n = system.n
         self.rhs_calls = 0.0
+        self.flattened = False
         self.y = array("d", bytes(8 * n))
         self.y_new = array("d", bytes(8 * n))
         self.y_stage = array("d", bytes(8 * n))
@@ -169,6 +172,7 @@ class Trial(Rest):
         n = self.n
         d, k1, k_end = data(self.dense), data(self.k1), data(self.k_end)
         first = self.system.controlled
+        self.flattened = False
         for i in range(first, first + self.system.rising):
             j = at + i
             change = d[n + j]
@@ -176,6 +180,7 @@ class Trial(Rest):
             early = h * k1[i]
             late = h * k_end[i]
             if early < 0.0 or early > most or late < 0.0 or late > most:
+                self.flattened = True
                 early = min(max(early, 0.0), most)
                 late = min(max(late, 0.0), most)
                 d[2 * n + j] = early - change
@@ -189,10 +194,10 @@ class Trial(Rest):
     def _loses_inside(self, h: float) -> bool:
         """Whether the step loses more than it may at its quarters.
 
-        They are judged where the step's interpolant leaves its ends far behind, or the tolerance is
-        loose. They are read as outputs are, brought back.
+        They are judged where the step's interpolant leaves its ends far behind or its slopes were
+        cut, or the tolerance is loose. They are read as outputs are, brought back.
         """
-        if self.rtol <= LOOSE and not self._bulges():
+        if self.rtol <= LOOSE and not self.flattened and not self._bulges():
             return False
         inside = data(self.y_stage)
         most = 0.0
