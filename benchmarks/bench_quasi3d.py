@@ -55,7 +55,7 @@ METHOD = "dormand-prince"
 UNTIL = 0.5
 TIMES = np.arange(501) * 1e-3
 MOMENT = 0.3  # s; the work is counted here, after all footpads have landed
-TARGETS = (1e-6, 1e-8)  # m
+TARGETS = (3e-7, 1e-8)  # m
 TOLERANCES = (1e-5, 1e-6, 1e-7, 1e-8, 3e-9)
 REPEATS = 5
 PURE = """
@@ -104,6 +104,12 @@ def _comparison(name: str) -> None:
     setattr(Count, name, lambda self, other: getattr(float, name)(self.value, float(other)))
 
 
+def _hypot(self: Count, other: Any) -> Count:
+    # two products, a sum and a root
+    Count.operations += 4
+    return Count(math.hypot(self.value, float(other)))
+
+
 def _method(name: str) -> None:
     def apply(self: Count) -> Count:
         Count.functions += name != "sqrt"
@@ -121,12 +127,21 @@ for _name in ("lt", "le", "gt", "ge"):
     _comparison(f"__{_name}__")
 for _name in ("sqrt", "exp", "sin", "cos", "tanh"):
     _method(_name)
+setattr(Count, "hypot", _hypot)  # noqa: B010
+
+
+# each number of an array as one that counts
+COUNTED = np.frompyfunc(lambda v: v if isinstance(v, Count) else Count(v), 1, 1)
 
 
 class Counted3D(Vehicle3D):
     """The 3-D model; counts its linear solution as 2/3 n^3 + 2 n^2 operations."""
 
     elimination = 2 * 18**3 // 3 + 2 * 18**2
+
+    def exp(self, x: Any) -> Any:
+        """Exponentials of floats, too, which bounds put in the place of a Count."""
+        return np.exp(COUNTED(x))
 
     def solve(self, A: Any, b: Any) -> Any:
         """Solve the 18 equations with floats, so that their operations are not counted here."""

@@ -5,6 +5,7 @@ Also the front under valgrind and AddressSanitizer. Part of `make torture`: core
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
@@ -20,7 +21,10 @@ from foreign_python import libpython, unpacked_python
 from rlv_landing import Landing
 from rlv_landing.quantities import OUTPUT_NAMES
 
-pytestmark = pytest.mark.torture
+pytestmark = [
+    pytest.mark.torture,
+    pytest.mark.skipif("RLV_TORTURE" not in os.environ, reason="minutes of builds: make torture"),
+]
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PYTHON_DLL = "python3.dll"
