@@ -5,7 +5,7 @@ The line names the quantity, the value, the unit, the limit and the remedy.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 LONGEST_LINE = 300
 _LONGEST_WORDS = (60, 40, 30)
@@ -20,6 +20,11 @@ class LandingError(ValueError):
 
     def __init__(self, message: str) -> None:
         super().__init__(one_line(message, LONGEST_LINE - len(_PREFIX)))
+
+
+def first_of(names: Sequence[str], count: int = 3) -> str:
+    """The first names of a list, and dots for the others."""
+    return f"{', '.join(names[:count])}{', ...' if len(names) > count else ''}"
 
 
 def one_line(text: str, longest: int = LONGEST_LINE) -> str:

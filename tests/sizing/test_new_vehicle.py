@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from xml.etree import ElementTree
 
 import pytest
@@ -107,6 +108,19 @@ def test_the_origin_of_each_value_is_named(tmp_path, command):
     assert found["ground.friction"] == "--set"
     table = command("parameters", "--preset", "yue2022-figures", "--origin")
     assert "preset yue2022-figures, mode 2-2" in table.out
+
+
+def test_the_origin_of_values_from_a_pipe_is_named(command):
+    end, start = os.pipe()
+    try:
+        os.write(start, b'[vehicle]\nmass = "200 kg"\n')
+        os.close(start)
+        done = command("parameters", "--parameters", f"/dev/fd/{end}", "--origin", "--json")
+    finally:
+        os.close(end)
+    assert done.code == 0, done.err
+    found = {record["name"]: record["origin"] for record in json.loads(done.out)}
+    assert found["vehicle.mass"] == f"/dev/fd/{end}"
 
 
 @pytest.mark.parametrize("ending", ["svg", "png", "pdf"])

@@ -9,7 +9,7 @@ import click
 
 from ..errors import LandingError, one_line
 from ..text.durable import whole_file, writing
-from .options import HELP_NAMES, check_writable, chosen_parameters
+from .options import HELP_NAMES, check_writable, chosen_parameters, force_option
 
 PICTURES = (".svg", ".png", ".pdf")
 
@@ -88,7 +88,7 @@ def _write(folder: Path, files: dict[str, str]) -> None:
 @click.command(context_settings=HELP_NAMES)
 @click.argument("vehicle", metavar="VEHICLE.toml|PRESET")
 @click.argument("picture", metavar="PICTURE.svg|png|pdf", type=click.Path(path_type=Path))
-@click.option("--force", is_flag=True, help="Overwrite the picture if it exists.")
+@force_option("Overwrite the picture if it exists.")
 def draw(vehicle: str, picture: Path, *, force: bool) -> None:
     """Draw a vehicle to scale, with all its dimensions named.
 

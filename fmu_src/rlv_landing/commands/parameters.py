@@ -27,16 +27,19 @@ def parameters(*, origin: bool, toml: bool, as_json: bool, what: str | None, **c
     rlv-landing parameters --toml > mine.toml
     rlv-landing parameters --parameters mine.toml --origin
     """
+    from ..choices import split_pair
     from ..presets import origins, to_toml
     from ..tables.landing import origin_table, parameter_records, parameter_table
+    from ..text.files import pipes_kept
 
     if what is not None:
         _print_quantities(what, as_json=as_json)
         return
-    chosen = chosen_parameters(**choice)
+    with pipes_kept():
+        chosen = chosen_parameters(**choice)
+        found = origins(choice["file"], choice["preset"], chosen.drop.mode) if origin else {}
     if origin:
-        found = origins(choice["file"], choice["preset"], chosen.drop.mode)
-        found.update({pair.partition("=")[0].strip(): "--set" for pair in choice["pairs"]})
+        found.update({split_pair(pair, "parameter")[0]: "--set" for pair in choice["pairs"]})
         found["drop.mode"] = "--mode" if choice["mode"] else found["drop.mode"]
         if as_json:
             print_json([r | {"origin": found[r["name"]]} for r in parameter_records(chosen)])

@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from ..errors import first_of
 from ..text.durable import writing
 from .number_types import NumberRange, WholeNumber
 from .options import HELP_NAMES, check_writable
@@ -105,6 +106,7 @@ def sensitivity(
     else:
         click.echo(indices_table(found, level), nl=False)
         if left := left_out(read, wanted):
-            names = f"{', '.join(left[:3])}{', ...' if len(left) > 3 else ''}"
-            click.echo(f"without indices of {len(left)} more ({names}): name them, and --resume")
+            click.echo(
+                f"without indices of {len(left)} more ({first_of(left)}): name them, and --resume"
+            )
         click.echo(f"results: {path}\nbars: {picture}")

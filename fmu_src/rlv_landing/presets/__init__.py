@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ..errors import LandingError, unknown
+from ..errors import LandingError, first_of, unknown
 from ..parameters import GROUPS, PARAMETER_QUANTITIES, Parameters
 from ..quantities import MODES
 from ..text.files import parse_document, read_text, toml_table, toml_text
@@ -92,10 +92,9 @@ def _check_complete(document: Mapping[str, Any], values: Mapping[str, Any]) -> N
         name for name in PARAMETER_QUANTITIES if name not in values and name not in NOT_OF_A_VEHICLE
     ]
     if complete and missing:
-        names = f"{', '.join(missing[:3])}{', ...' if len(missing) > 3 else ''}"
         raise LandingError(
-            f"complete = true, but {len(missing)} missing: {names}; give a value, or delete "
-            "complete = true to take the rest from preset = ..."
+            f"complete = true, but {len(missing)} missing: {first_of(missing)}; give a value, or "
+            "delete complete = true to take the rest from preset = ..."
         )
 
 
@@ -138,7 +137,6 @@ def origins(path: str | Path | None, preset: str | None, mode: str) -> dict[str,
     found = dict.fromkeys(PARAMETER_QUANTITIES, f"default, as of {DEFAULT_PRESET}")
     layers: list[tuple[dict[str, Any], str]] = []
     if path is not None:
-        read_toml(path)
         document = parse_document(read_text(Path(path), "parameter file", ""), str(path))
         preset = document.get("preset")
         layers.append((document, str(path)))

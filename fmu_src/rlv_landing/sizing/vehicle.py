@@ -21,7 +21,7 @@ def size_vehicle(needs: Needs) -> Parameters:
     leg = leg_geometry(needs)
     damper = size_damper(needs, leg)
     rules = {
-        **_vehicle(needs, leg),
+        **_vehicle(needs),
         **_main_strut(needs, leg, damper),
         **_auxiliary_strut(needs, leg),
         **_ground(needs),
@@ -35,7 +35,7 @@ def size_vehicle(needs: Needs) -> Parameters:
 Rules = dict[str, tuple[float | str, str]]
 
 
-def _vehicle(needs: Needs, leg: LegGeometry) -> Rules:
+def _vehicle(needs: Needs) -> Rules:
     r, length = needs.body_radius, needs.body_length
     return {
         "vehicle.mass": (needs.mass, USER),
