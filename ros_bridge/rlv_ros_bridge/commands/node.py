@@ -90,6 +90,12 @@ EXIT_RECORDING_FAILED = 1
     help="Longest wait for them. Default: 30.",
 )
 @click.option(
+    "--start-delay",
+    type=Number("s"),
+    metavar="SECONDS",
+    help="Wait for so long after that; /clock stands meanwhile. Default: 0.",
+)
+@click.option(
     "--managed",
     is_flag=True,
     help="Wait for lifecycle transitions by others, and stay, instead of landing at once.",

@@ -21,8 +21,8 @@ from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES
 
 from ..messages import topics
-from ..messages.qos import PROFILES, TELEMETRY
-from ..messages.rclpy_qos import qos_profile
+from ..messages.qos import INPUT, PROFILES
+from ..messages.rclpy_qos import create_subscription
 from ..ros.rclpy_internals import lifecycle_state
 from ..ros.setup import wait_for_acknowledgement
 from .input_queue import InputQueue
@@ -80,7 +80,7 @@ class LandingNode(LifecycleNode):
             (WrenchStamped, "external_wrench", self._inputs.receive_wrench),
             (JointState, "ground", self._inputs.receive_ground),
         ):
-            self.create_subscription(kind, name, callback, qos_profile(TELEMETRY))
+            create_subscription(self, kind, name, callback, INPUT)
         create_landing_services(self, self.reset, self.step)
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:

@@ -6,7 +6,7 @@ a text with a unit, such as "-2 deg".
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -168,7 +168,8 @@ class NodeParameters:
         try:
             if self._refusal:
                 raise LandingError(self._refusal)
-            self._merged(parameters)
+            if _own(parameters):
+                self._merged(parameters)
         except LandingError as e:
             return SetParametersResult(successful=False, reason=str(e))
         return SetParametersResult(successful=True)
@@ -187,8 +188,15 @@ class NodeParameters:
         return values, physical
 
     def _post_set(self, parameters: list[Parameter[Any]]) -> None:
-        self._values, self.parameters = self._merged(parameters)
-        self._on_change({p.name: p.value for p in parameters})
+        own = _own(parameters)
+        if own:
+            self._values, self.parameters = self._merged(own)
+            self._on_change({p.name: p.value for p in own})
+
+
+def _own(parameters: Sequence[Parameter[Any]]) -> list[Parameter[Any]]:
+    """The settings and quantities among `parameters`; others are rclpy's."""
+    return [p for p in parameters if p.name in SETTINGS or p.name in PARAMETER_QUANTITIES]
 
 
 def _vehicle(values: Mapping[str, Any], changes: Mapping[str, Any]) -> tuple[Parameters, str]:

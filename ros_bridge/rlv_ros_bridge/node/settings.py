@@ -109,6 +109,13 @@ SETTINGS: dict[str, Setting] = {
         0, "subscriptions on `struts` to wait for before the landing starts", 0.0, 1000.0
     ),
     "wait_timeout": Setting(30.0, "longest wait for them [s]", 0.0, 86400.0, unit="s"),
+    "start_delay": Setting(
+        0.0,
+        "wall time [s] for which the landing waits after that, while /clock stands",
+        0.0,
+        86400.0,
+        unit="s",
+    ),
     **{
         downsampling_setting(t): Setting(
             0,
@@ -141,6 +148,7 @@ class Settings:
     log_root: str
     wait_for_subscribers: int
     wait_timeout: float
+    start_delay: float
     every: Mapping[Topic, int] = field(default_factory=dict)
 
     @property
@@ -210,6 +218,7 @@ def make_settings(values: Mapping[str, Any], parameters: Parameters, origin: str
         log_root=values["log_root"],
         wait_for_subscribers=values["wait_for_subscribers"],
         wait_timeout=values["wait_timeout"],
+        start_delay=values["start_delay"],
         every={t: values[downsampling_setting(t)] or own[t] for t in PUBLISHED},
     )
 

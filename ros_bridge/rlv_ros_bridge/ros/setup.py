@@ -16,7 +16,6 @@ from rlv_landing.signals.handlers import Handlers
 from rlv_landing.text.files import read_text
 
 if TYPE_CHECKING:
-    from rclpy.executors import Executor
     from rclpy.publisher import Publisher
 
 # Longest wait for acknowledgements [s]. Fast DDS asks its readers for them every 3 s.
@@ -129,29 +128,6 @@ def _ensure_log_folder() -> None:
         os.environ["ROS_LOG_DIR"] = str(
             Path(tempfile.gettempdir()) / f"rlv-landing-ros-log-{os.getuid()}"
         )
-
-
-def wait_for_subscribers(
-    publisher: Publisher[Any], count: int, timeout: float, executor: Executor, stop: StopFlag
-) -> None:
-    """Spins `executor` until `count` subscriptions are matched, or a signal came.
-
-    Args:
-        publisher: the publisher of the topic.
-        count: subscriptions to wait for.
-        timeout: longest wait [s].
-        executor: spun while waiting.
-        stop: ends the wait.
-
-    Raises:
-        LandingError: there are fewer after `timeout`.
-    """
-
-    def interrupted() -> bool:
-        executor.spin_once(timeout_sec=0.02)
-        return bool(stop)
-
-    wait_until_matched(publisher, count, timeout, interrupted)
 
 
 def wait_until_matched(
