@@ -20,6 +20,7 @@ from rlv_landing.presets import DEFAULT_PRESET
 from rlv_landing.quantities import Quantity
 from rlv_landing.text.values import to_si
 
+from ..fmu.installed import fmu_path
 from ..messages.qos import PROFILES
 from ..messages.topics import CLOCK, OCCASIONAL, SAMPLED, Topic
 
@@ -51,7 +52,7 @@ def downsampling_setting(topic: Topic) -> str:
 
 PUBLISHED: tuple[Topic, ...] = (*SAMPLED, *OCCASIONAL, CLOCK)
 SETTINGS: dict[str, Setting] = {
-    "fmu": Setting("build/RlvLanding.fmu", "the FMU to step"),
+    "fmu": Setting("", "the FMU to step; empty: that of this installation"),
     "preset": Setting(
         "",
         f"preset of parameters; empty: the FMU's own vehicle, else {DEFAULT_PRESET}",
@@ -207,7 +208,7 @@ def make_settings(values: Mapping[str, Any], parameters: Parameters, origin: str
         )
     own = {t: max(1, round(t.period / values["step_size"])) for t in PUBLISHED}
     return Settings(
-        fmu=Path(values["fmu"]),
+        fmu=fmu_path(values["fmu"]),
         parameters=parameters,
         preset=origin or values["parameters_file"] or values["preset"] or DEFAULT_PRESET,
         realtime_factor=values["realtime_factor"],

@@ -78,8 +78,10 @@ def require_ros() -> None:
 
 
 @contextmanager
-def ros_context(args: Sequence[str] = ()) -> Iterator[Any]:
+def ros_context(args: Sequence[str] = ()) -> Iterator[list[str]]:
     """Starts rclpy with `args` (`--ros-args ...`), and shuts it down at the end.
+
+    It gives `args` with parameter files that are regular.
 
     Raises:
         LandingError: ROS 2 is missing, or it does not accept `args`.
@@ -93,10 +95,10 @@ def ros_context(args: Sequence[str] = ()) -> Iterator[Any]:
             rclpy.init(args=["rlv-landing", *own], signal_handler_options=SignalHandlerOptions.NO)
         except Exception as e:
             raise LandingError(f"ROS 2 does not start: {reason_of(e)}") from None
-    try:
-        yield rclpy
-    finally:
-        rclpy.try_shutdown()
+        try:
+            yield own
+        finally:
+            rclpy.try_shutdown()
 
 
 @contextmanager

@@ -166,8 +166,8 @@ def watch(
     Raises:
         LandingError: ROS 2 is missing, or markers that are no landing's.
     """
-    with ros_context() as rclpy:
-        node = rclpy.create_node("landing_view")
+    with ros_context():
+        node = Node("landing_view")
         scenes = LiveScenes(node, namespace, on_scene)
         try:
             with Spinner(node) as spinner:
