@@ -11,7 +11,6 @@ from rclpy.lifecycle import TransitionCallbackReturn
 from rlv_landing.errors import LandingError
 from rlv_landing.signals.interrupts import answer
 
-from ..ros.parameter_files import shared_names
 from ..ros.setup import StopFlag, ros_context
 from ..ros.spinner import Spinner
 from .landing_node import NAMESPACE, LandingNode
@@ -42,8 +41,8 @@ def land(
     Raises:
         LandingError: bad parameters, or the landing failed.
     """
-    with ros_context(ros_args) as own_args:
-        node = LandingNode(changes, namespace, shared_names(own_args))
+    with ros_context(ros_args) as shared:
+        node = LandingNode(changes, namespace, shared)
         try:
             with Spinner(node) as spinner:
                 if node.values["autostart"]:

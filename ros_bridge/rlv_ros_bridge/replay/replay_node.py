@@ -32,7 +32,6 @@ from ..messages.rclpy_qos import create_publisher
 from ..messages.samples import set_stamp
 from ..node.pacer import lateness_percentiles
 from ..node.parameters import unused_overrides
-from ..ros.parameter_files import shared_names
 from ..ros.setup import StopFlag, ros_context, wait_for_acknowledgement, wait_until_matched
 from .clock import ReplayClock
 from .keyboard import Keyboard
@@ -296,10 +295,10 @@ def replay(options: ReplayOptions, ros_args: Sequence[str], stop: StopFlag) -> R
     for topic, kind in selection.left_out.items():
         warning = f"warning: {topic} is left out: its type {kind} is not installed here"
         print(one_line(warning), file=sys.stderr)
-    with ros_context(ros_args) as own_args, Keyboard() as keyboard:
+    with ros_context(ros_args) as shared, Keyboard() as keyboard:
         node = ReplayNode(selection, options, keyboard, stop)
         try:
-            unused_overrides(node, shared_names(own_args))
+            unused_overrides(node, shared)
             return node.play()
         finally:
             node.destroy_node()

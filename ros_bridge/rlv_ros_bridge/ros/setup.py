@@ -15,6 +15,8 @@ from rlv_landing.errors import LandingError, reason_of
 from rlv_landing.signals.handlers import Handlers
 from rlv_landing.text.files import read_text
 
+from .parameter_files import shared_names
+
 if TYPE_CHECKING:
     from rclpy.publisher import Publisher
 
@@ -78,10 +80,10 @@ def require_ros() -> None:
 
 
 @contextmanager
-def ros_context(args: Sequence[str] = ()) -> Iterator[list[str]]:
+def ros_context(args: Sequence[str] = ()) -> Iterator[frozenset[str]]:
     """Starts rclpy with `args` (`--ros-args ...`), and shuts it down at the end.
 
-    It gives `args` with parameter files that are regular.
+    It gives the names of parameters that files give to every node, see `shared_names`.
 
     Raises:
         LandingError: ROS 2 is missing, or it does not accept `args`.
@@ -95,10 +97,11 @@ def ros_context(args: Sequence[str] = ()) -> Iterator[list[str]]:
             rclpy.init(args=["rlv-landing", *own], signal_handler_options=SignalHandlerOptions.NO)
         except Exception as e:
             raise LandingError(f"ROS 2 does not start: {reason_of(e)}") from None
-        try:
-            yield own
-        finally:
-            rclpy.try_shutdown()
+        shared = shared_names(own)
+    try:
+        yield shared
+    finally:
+        rclpy.try_shutdown()
 
 
 @contextmanager
