@@ -30,8 +30,10 @@ from rich.console import Console
 from rich.table import Table
 from rows import FMU, append_rows, start
 
+from rlv_landing import load_preset
 from rlv_ros_bridge.fmu.runner import FmuRunner
 from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.messages.fields import Vehicle
 from rlv_ros_bridge.messages.qos import TELEMETRY
 from rlv_ros_bridge.messages.samples import SampleBytes
 from rlv_ros_bridge.messages.topics import SAMPLED
@@ -182,14 +184,15 @@ def parts(folder: Path) -> dict[str, float]:
         both = cost(
             lambda: [(fmu.step(k, STEP), samples.append(fmu.values())) for k in range(count)]
         )
-    plain = SampleBytes()
+    vehicle = Vehicle.of(load_preset("yue2022-figures"))
+    plain = SampleBytes(vehicle)
     recorder = Recorder(folder, [RecordedTopic(t.name, t.type_name, TELEMETRY) for t in SAMPLED])
     sizes = {
         t.name: part.stop - part.start
         for t, part in zip(plain.topics, plain.slices)
         if t in SAMPLED
     }
-    packer = SampleBytes(dict(zip(plain.topics[1:], recorder.begin_samples(sizes))))
+    packer = SampleBytes(vehicle, dict(zip(plain.topics[1:], recorder.begin_samples(sizes))))
     records = slice(packer.slices[0].stop, None)
     packed: list[bytes] = []
     pack = cost(

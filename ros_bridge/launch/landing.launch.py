@@ -30,6 +30,7 @@ ARGUMENTS = (
     ("parameters", PathJoinSubstitution([SHARE, "config", "landing.yaml"]), "ROS parameter file"),
     ("record", "true", "whether the landing is recorded"),
     ("log_root", "logs", "folder below which it is recorded"),
+    ("clock", "true", "whether /clock is published; of several nodes in one domain one should"),
     ("autostart", "true", "land at once and end; false: wait for transitions by others"),
     (
         "managed",
@@ -42,6 +43,7 @@ ARGUMENTS = (
 GIVEN = (
     ("fmu", "the FMU to step"),
     ("mode", "landing mode: 2-2 or 1-2-1"),
+    ("frame_prefix", "put before the names of all frames but map"),
     ("realtime_factor", "simulated seconds per second of wall time; 0: as fast as possible"),
 )
 
@@ -68,9 +70,9 @@ def generate_launch_description() -> LaunchDescription:
 
 def _nodes(context: LaunchContext) -> list[LaunchDescriptionEntity]:
     value = context.launch_configurations
-    record, autostart, managed = (
+    record, clock, autostart, managed = (
         IfCondition(LaunchConfiguration(name)).evaluate(context)
-        for name in ("record", "autostart", "managed")
+        for name in ("record", "clock", "autostart", "managed")
     )
     # Texts, which the node checks: it says what is wrong with them.
     given = {name: value[name] for name, _ in GIVEN if value[name]}
@@ -85,6 +87,7 @@ def _nodes(context: LaunchContext) -> list[LaunchDescriptionEntity]:
             value["parameters"],
             {
                 **{name: ParameterValue(text, value_type=str) for name, text in given.items()},
+                "clock": clock,
                 "autostart": autostart and not managed,
             },
         ],

@@ -18,6 +18,9 @@ from bridge_tools import ROOT, TIMEOUT, environment, new_domain
 import rlv_landing
 from rlv_ros_bridge.logs.history import history_of
 from rlv_ros_bridge.logs.reader import LogReader
+from rlv_ros_bridge.messages.qos import LATCHED, TELEMETRY
+from rlv_ros_bridge.messages.topics import LATCHED as LATCHED_TOPICS
+from rlv_ros_bridge.messages.topics import OCCASIONAL, SAMPLED, WORLD_FRAME, resolve
 from rlv_ros_bridge.node.settings import SETTINGS
 
 PACKAGE = ROOT / "ros_bridge"
@@ -129,12 +132,34 @@ def test_the_launch_file_and_its_parameter_file_name_parameters_of_the_node() ->
         and node.value.id == "given"
         and isinstance(node.slice, ast.Constant)
     }
-    assert given | set_besides == {"fmu", "mode", "realtime_factor", "log_root"}
-    assert given | set_besides | {"autostart"} <= set(SETTINGS)
+    assert given | set_besides == {"fmu", "mode", "frame_prefix", "realtime_factor", "log_root"}
+    assert given | set_besides | {"clock", "autostart"} <= set(SETTINGS)
     values = yaml.safe_load((PACKAGE / "config" / "landing.yaml").read_text())["/**"][
         "ros__parameters"
     ]
     assert set(values) <= set(SETTINGS)
+
+
+def test_rviz_subscribes_to_topics_of_the_node_with_a_quality_of_service_that_matches() -> None:
+    offered = {resolve("landing", t.name): TELEMETRY for t in SAMPLED} | {
+        resolve("landing", t.name): TELEMETRY for t in OCCASIONAL
+    }
+    offered |= {resolve("landing", t.name): LATCHED for t in LATCHED_TOPICS}
+    config = yaml.safe_load((PACKAGE / "config" / "landing.rviz").read_text())
+    manager = config["Visualization Manager"]
+    assert manager["Global Options"]["Fixed Frame"] == WORLD_FRAME
+    shown = [d["Class"].split("/")[1] for d in manager["Displays"]]
+    assert {"TF", "RobotModel", "MarkerArray", "Wrench"} <= set(shown)
+    topics = [
+        d[key] for d in manager["Displays"] for key in ("Topic", "Description Topic") if key in d
+    ]
+    for wanted in topics:
+        qos = offered[wanted["Value"]]
+        # a subscription may ask for no more than is offered, and what is latched must be asked for
+        if wanted["Reliability Policy"] == "Reliable":
+            assert qos.reliability == "reliable"
+        latched = wanted["Durability Policy"] == "Transient Local"
+        assert latched == (qos.durability == "transient_local")
 
 
 @pytest.mark.skipif(

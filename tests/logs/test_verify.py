@@ -21,6 +21,7 @@ from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
 from rlv_ros_bridge.logs.recover import recover
 from rlv_ros_bridge.logs.verification.verify import TOLERANCE, Verification, verify
+from rlv_ros_bridge.messages.fields import Vehicle
 from rlv_ros_bridge.messages.inputs import HEAVE, TILT, WRENCH
 from rlv_ros_bridge.messages.qos import TELEMETRY
 from rlv_ros_bridge.messages.samples import SampleBytes
@@ -62,7 +63,7 @@ def test_a_log_is_its_run_bit_for_bit_by_the_model_and_by_the_fmu(
         done = run("log", "verify", log, *options)
         assert (done.returncode, done.stderr) == (0, "")
         assert "same      bit for bit" in done.stdout
-        assert "11011 messages at 1001 instants up to 1 s" in done.stdout
+        assert "13013 messages at 1001 instants up to 1 s" in done.stdout
         assert "note" not in done.stdout
 
 
@@ -146,7 +147,7 @@ def test_huge_times_differ_and_end_the_comparison(one_log: Path, tmp_path: Path)
     )
     found = changed(one_log, tmp_path, lambda record: annotate(far(alter(record))))
     assert found.first is not None
-    assert (found.first.topic, found.first.time) == ("/landing/odom", 1.0)
+    assert (found.first.topic, found.first.time) == ("/landing/imu", 1.0)
 
 
 def test_a_log_of_other_parameters_differs(one_log: Path, tmp_path: Path) -> None:
@@ -243,7 +244,7 @@ def log_with_inputs(whole: Path, folder: Path) -> LogReader:
     reader.read_through()
     parameters, random = reader.parameters(), Random(7)
     assert parameters is not None
-    packer, landing = SampleBytes(), Landing(parameters)
+    packer, landing = SampleBytes(Vehicle.of(parameters)), Landing(parameters)
     entries = [
         RecordedTopic(f"/landing/{t.name}", t.type_name, TELEMETRY) for t in (*SAMPLED, *APPLIED)
     ]
@@ -281,7 +282,7 @@ def test_a_run_with_inputs_is_repeated_bit_for_bit(
 ) -> None:
     reader = log_with_inputs(log, tmp_path / "inputs")
     found = verify(reader, fmu if by_fmu else None)
-    assert (found.first, found.other_bits, found.messages) == (None, 0, 11011)
+    assert (found.first, found.other_bits, found.messages) == (None, 0, 13013)
     assert (
         found.inputs
         == sum(1 for _ in reader.messages([f"/landing/{t.name}" for t in APPLIED]))

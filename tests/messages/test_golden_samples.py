@@ -17,7 +17,7 @@ from rlv_landing import load_preset
 from rlv_landing.quantities import OUTPUT_NAMES
 from rlv_ros_bridge.messages.columns import READINGS
 from rlv_ros_bridge.messages.definitions import definition
-from rlv_ros_bridge.messages.fields import expected_fields
+from rlv_ros_bridge.messages.fields import Vehicle, expected_fields
 from rlv_ros_bridge.messages.inputs import READINGS as INPUT_READINGS
 from rlv_ros_bridge.messages.markers import Wireframe
 from rlv_ros_bridge.messages.samples import SampleBytes, SampleMessages
@@ -82,8 +82,12 @@ def assert_golden(message: Any, golden: dict[str, Any]) -> None:
             assert value == close_to(golden[path]), path
 
 
+# Gravity and the top sensor's height of `golden.py`.
+VEHICLE = Vehicle(10.0, 0.5)
+
+
 def packed_message(topic: Topic) -> bytes:
-    packer = SampleBytes()
+    packer = SampleBytes(VEHICLE)
     return packer.pack(NANOSECONDS, VALUES)[packer.slices[packer.topics.index(topic)]]
 
 
@@ -98,7 +102,7 @@ def test_packed_messages_are_golden(topic: Topic) -> None:
 
 @TOPICS
 def test_packed_messages_behind_prefixes_are_golden(topic: Topic) -> None:
-    packer = SampleBytes({topic: b"prefix"})
+    packer = SampleBytes(VEHICLE, {topic: b"prefix"})
     part = packer.slices[packer.topics.index(topic)]
     packed = packer.pack(NANOSECONDS, VALUES, 3)
     head = b"prefix" + (3).to_bytes(4, "little") + 2 * NANOSECONDS.to_bytes(8, "little")
@@ -108,7 +112,7 @@ def test_packed_messages_behind_prefixes_are_golden(topic: Topic) -> None:
 
 @TOPICS
 def test_filled_messages_are_golden(topic: Topic) -> None:
-    messages = SampleMessages()
+    messages = SampleMessages(VEHICLE)
     messages.fill(NANOSECONDS, VALUES)
     data = serialize_message(messages.messages[topic])
     assert_golden(decoded(data, topic), GOLDEN[topic.name])
@@ -116,7 +120,7 @@ def test_filled_messages_are_golden(topic: Topic) -> None:
 
 @pytest.mark.parametrize("topic", SAMPLED, ids=lambda topic: topic.name)
 def test_what_verify_expects_is_golden(topic: Topic) -> None:
-    expected = expected_fields(topic.name, dict(zip(OUTPUT_NAMES, VALUES)), NANOSECONDS)
+    expected = expected_fields(topic.name, dict(zip(OUTPUT_NAMES, VALUES)), NANOSECONDS, VEHICLE)
     golden = GOLDEN[topic.name]
     assert golden.keys() <= expected.keys()
     for path, value in expected.items():
@@ -217,7 +221,16 @@ def test_transforms_are_golden(vehicle: Any) -> None:
     for t in message.transforms:
         assert (t.header.stamp.sec, t.header.stamp.nanosec) == (12, 345_000_006)
     body = flat(found["base_link"].transform)
-    assert found["base_link"].header.frame_id == "map"
+    assert found["odom"].header.frame_id == "map"
+    assert set(flat(found["odom"].transform).values()) == {0.0, 1.0}
+    assert found["base_link"].header.frame_id == "odom"
+    feet = [(1.25, 0.5, 0.125), (2.25, 1.5, 0.225), (3.25, -0.75, 0.325), (2.75, -1.75, 0.425)]
+    for leg, foot in enumerate(feet, 1):
+        footpad = found[f"leg_{leg}_footpad"]
+        at, turn = footpad.transform.translation, footpad.transform.rotation
+        assert footpad.header.frame_id == "odom"
+        assert (at.x, at.y, at.z) == foot
+        assert (turn.x, turn.y, turn.z, turn.w) == (0.0, 0.0, 0.0, 1.0)
     assert body == pytest.approx(
         {
             "translation.x": 2.0,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from math import cos, sin
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from rlv_landing.errors import LandingError
 from rlv_landing.quantities import OUTPUT_NAMES
 from rlv_ros_bridge.messages.axes import from_ros, pitch_quaternion, to_ros, world_to_body
 from rlv_ros_bridge.messages.columns import COLUMN_NAMES, sample_columns
-from rlv_ros_bridge.messages.fields import FIELDS
+from rlv_ros_bridge.messages.fields import FIELDS, Vehicle, expected_numbers
 from rlv_ros_bridge.messages.markers import Wireframe
 from rlv_ros_bridge.messages.samples import SampleMessages
 from rlv_ros_bridge.messages.topics import CLOCK, JOINTS, ODOM, SAMPLED, STRUTS
@@ -27,13 +28,15 @@ FINITE = st.floats(allow_nan=False, allow_infinity=False)
 # The paper's x forward, y up, z right, each in ROS's x forward, y left, z up.
 PAPER_TO_ROS = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
+VEHICLE = Vehicle.of(load_preset("yue2022-figures"))
+
 
 def sample(values: dict[str, float]) -> list[float]:
     return [values.get(name, 0.0) for name in OUTPUT_NAMES]
 
 
 def filled(values: list[float], nanoseconds: int = 0) -> SampleMessages:
-    messages = SampleMessages()
+    messages = SampleMessages(VEHICLE)
     messages.fill(nanoseconds, values)
     return messages
 
@@ -105,9 +108,32 @@ def test_a_message_field_is_written_once_and_an_output_read_back_once() -> None:
     assert len(set(COLUMN_NAMES)) == len(COLUMN_NAMES)
     assert {field.topic for field in FIELDS} == set(SAMPLED)
     for field in FIELDS:
-        written = field.write(*(0.5 for _ in field.outputs))
+        written = field.conversion(VEHICLE)(*(0.5 for _ in field.outputs))
         assert len(written) == len(field.paths)
         assert field.read is None or len(field.read(*written)) == len(field.outputs)
+
+
+def test_inertial_sensors_feel_the_struts_in_flight_and_the_weight_at_rest() -> None:
+    parameters = load_preset("yue2022-figures").with_values({"drop.tilt": -0.05})
+    landing, vehicle = Landing(parameters), Vehicle.of(parameters)
+    pitch, most = 0.0, 0.0
+    for k in range(40):
+        landing.advance_to(k * 0.05)
+        outputs = landing.outputs()
+        cg, top = (expected_numbers(name, outputs, vehicle) for name in ("imu", "top/imu"))
+        pitch = outputs["body.pitch"]
+        axial = outputs["body.top_axial_acceleration"] + vehicle.gravity * cos(pitch)
+        assert top["linear_acceleration.z"] == pytest.approx(axial, abs=1e-9)
+        most = max(most, abs(axial))
+        if k == 0:
+            found = [n for m in (cg, top) for p, n in m.items() if p.startswith("linear")]
+            # only the struts act on the body, which stretch
+            assert found == pytest.approx([0.0] * 4, abs=1.5)
+    assert most > 20.0
+    # at rest both feel the weight up, in the body's axes
+    for felt in (cg, top):
+        assert felt["linear_acceleration.x"] == pytest.approx(-9.81 * sin(pitch), abs=0.05)
+        assert felt["linear_acceleration.z"] == pytest.approx(9.81 * cos(pitch), abs=0.05)
 
 
 @pytest.mark.parametrize(
@@ -130,7 +156,7 @@ def test_message_objects_are_filled_again_without_leftovers() -> None:
         [float(i) for i in range(len(OUTPUT_NAMES))],
         [-float(i) for i in range(len(OUTPUT_NAMES))],
     )
-    reused = SampleMessages()
+    reused = SampleMessages(VEHICLE)
     reused.fill(5, first)
     reused.fill(7, second)
     fresh = filled(second, 7)

@@ -33,12 +33,14 @@ STOP_TIME = 0.2
 BOTH_WAYS = """
 from rclpy.serialization import deserialize_message
 from rlv_landing.quantities import OUTPUT_NAMES
+from rlv_ros_bridge.messages.fields import Vehicle
 from rlv_ros_bridge.messages.message_types import message_class
 from rlv_ros_bridge.messages.samples import SampleBytes, SampleMessages
 from rlv_ros_bridge.messages.topics import {topic}
 
 values = [float(i) for i in range(len(OUTPUT_NAMES))]
-filled, packer = SampleMessages(), SampleBytes()
+vehicle = Vehicle(9.81, 0.5)
+filled, packer = SampleMessages(vehicle), SampleBytes(vehicle)
 filled.fill(0, values)
 data = packer.pack(0, values)[packer.slices[packer.topics.index({topic})]]
 packed = deserialize_message(data, message_class({topic}.type_name))

@@ -64,7 +64,9 @@ def test_the_body_is_where_odom_has_it_a_hundred_times_a_second(log: Path, read:
     odom = dict(messages["/landing/odom"])
     assert [time for time, _ in messages["/tf"]] == [10_000_000 * k for k in range(101)]
     for time, message in messages["/tf"]:
-        body, *others = message.transforms
+        odometry, body, *others = message.transforms
+        assert (odometry.header.frame_id, odometry.child_frame_id) == ("map", "odom")
+        assert matrix(odometry.transform).tolist() == np.eye(4).tolist()
         assert {stamp_of(t.header.stamp) for t in message.transforms} == {time}
         assert (body.header.frame_id, body.child_frame_id) == (
             odom[time].header.frame_id,
@@ -73,7 +75,7 @@ def test_the_body_is_where_odom_has_it_a_hundred_times_a_second(log: Path, read:
         pose = odom[time].pose.pose
         assert numbers(body.transform.translation, "xyz") == numbers(pose.position, "xyz")
         assert numbers(body.transform.rotation, "xyzw") == numbers(pose.orientation, "xyzw")
-        assert len({t.child_frame_id for t in others}) == len(others) == 17
+        assert len({t.child_frame_id for t in others}) == len(others) == 21
 
 
 def matrix(transform: Any) -> Any:
@@ -100,7 +102,8 @@ def test_every_link_is_where_the_urdf_has_it_with_the_strokes_of_that_time(log: 
         frames = {WORLD_FRAME: np.eye(4)}
         for t in message.transforms:
             frames[t.child_frame_id] = frames[t.header.frame_id] @ matrix(t.transform)
-        assert set(frames) == {WORLD_FRAME, *robot.link_map}
+        footpads = {f"leg_{leg}_footpad" for leg in range(1, 5)}
+        assert set(frames) == {WORLD_FRAME, "odom", *robot.link_map, *footpads}
         to_body = np.linalg.inv(frames[BODY_FRAME])
         for link in robot.link_map:
             assert to_body @ frames[link] == pytest.approx(

@@ -15,6 +15,7 @@ from rosbags.typesys import Stores, get_typestore
 from rlv_landing import load_preset
 from rlv_landing.errors import LandingError
 from rlv_landing.quantities import OUTPUT_NAMES
+from rlv_ros_bridge.messages.fields import Vehicle
 from rlv_ros_bridge.messages.markers import Wireframe
 from rlv_ros_bridge.messages.samples import SampleBytes, SampleMessages
 from rlv_ros_bridge.messages.topics import MARKERS
@@ -24,6 +25,8 @@ FINITE = st.floats(allow_nan=False, allow_infinity=False)
 SAMPLES = st.lists(FINITE, min_size=len(OUTPUT_NAMES), max_size=len(OUTPUT_NAMES))
 STAMPS = st.integers(0, 2**31 * 10**9 - 1)
 STORE = get_typestore(Stores.ROS2_KILTED if hasattr(Stores, "ROS2_KILTED") else Stores.ROS2_JAZZY)
+
+VEHICLE = Vehicle.of(load_preset("yue2022-figures"))
 
 
 def assert_same(ours: bytes, theirs: bytes, type_name: str) -> None:
@@ -61,7 +64,7 @@ def message_class(name: str) -> Any:
 @settings(max_examples=50, deadline=None)
 @given(STAMPS, SAMPLES)
 def test_packed_samples_are_rclpys_own_bytes(nanoseconds: int, values: list[float]) -> None:
-    packer, messages = SampleBytes(), SampleMessages()
+    packer, messages = SampleBytes(VEHICLE), SampleMessages(VEHICLE)
     messages.fill(nanoseconds, values)
     expected = messages.messages
     packed = dict(zip(packer.topics, split(packer, packer.pack(nanoseconds, values))))
@@ -104,7 +107,7 @@ def test_other_byte_orders_are_refused_with_what_helps() -> None:
 
 
 def test_a_packer_keeps_nothing_of_the_sample_before() -> None:
-    packer, fresh = SampleBytes(), SampleBytes()
+    packer, fresh = SampleBytes(VEHICLE), SampleBytes(VEHICLE)
     first, second = (
         [float(i) for i in range(len(OUTPUT_NAMES))],
         [-float(i) for i in range(len(OUTPUT_NAMES))],

@@ -42,6 +42,41 @@ def world_to_body(x: float, z: float, pitch: float) -> tuple[float, float]:
     return c * x - s * z, s * x + c * z
 
 
+def specific_force(ax: float, ay: float, pitch: float, gravity: float) -> tuple[float, float]:
+    """What an accelerometer at the CG feels: the acceleration less that of gravity. Derived.
+
+    Args:
+        ax: acceleration of the CG forward in the map [m/s2].
+        ay: acceleration of the CG up [m/s2].
+        pitch: the body's, clockwise positive [rad].
+        gravity: gravitational acceleration [m/s2].
+
+    Returns:
+        Its x and z in the body's frame, ROS axes [m/s2].
+    """
+    return world_to_body(ax, ay + gravity, pitch)
+
+
+def top_specific_force(
+    ax: float, ay: float, pitch: float, *turning_and_place: float
+) -> tuple[float, float]:
+    """What an accelerometer at the top of the rigid body feels. Derived.
+
+    Args:
+        ax: acceleration of the CG forward in the map [m/s2].
+        ay: acceleration of the CG up [m/s2].
+        pitch: the body's, clockwise positive [rad].
+        turning_and_place: rate [rad/s] and acceleration [rad/s2] of the pitch, gravitational
+            acceleration [m/s2], and the sensor's height above the CG along the body's axis [m].
+
+    Returns:
+        Its x and z in the body's frame, ROS axes [m/s2].
+    """
+    rate, acceleration, gravity, height = turning_and_place
+    x, z = specific_force(ax, ay, pitch, gravity)
+    return x + acceleration * height, z - rate * rate * height
+
+
 def xyz(path: str) -> tuple[str, str, str]:
     """The fields of the vector at `path` of a message, in the order of `to_ros`."""
     return f"{path}.x", f"{path}.y", f"{path}.z"

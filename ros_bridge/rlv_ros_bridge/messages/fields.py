@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from rlv_landing.parameters import Parameters
 from rlv_landing.quantities import LEGS, OUTPUT_NAMES
 
 from .axes import (
@@ -19,7 +20,9 @@ from .axes import (
     from_ros,
     in_plane,
     pitch_quaternion,
+    specific_force,
     to_ros,
+    top_specific_force,
     world_to_body,
     xyz,
     xyzw,
@@ -28,17 +31,22 @@ from .topics import (
     ACCEL,
     BODY_FRAME,
     CONTACTS,
+    FOOTPAD_FRAMES,
+    IMU,
     JOINTS,
     ODOM,
+    ODOM_FRAME,
     POSE,
     RPY,
     SAMPLED,
     STRUTS,
     TOP_ACCEL,
     TOP_FRAME,
+    TOP_IMU,
     TWIST,
     WORLD_FRAME,
     Topic,
+    framed,
 )
 from .wire import NANOSECONDS
 
@@ -53,6 +61,26 @@ def copied(*numbers: float) -> tuple[float, ...]:
 
 
 @dataclass(frozen=True)
+class Vehicle:
+    """What messages tell of a vehicle beside its outputs.
+
+    Args:
+        gravity: gravitational acceleration [m/s2].
+        top_height: of the top sensor above the CG [m].
+        frame_prefix: is put before the names of its frames.
+    """
+
+    gravity: float
+    top_height: float
+    frame_prefix: str = ""
+
+    @classmethod
+    def of(cls, parameters: Parameters, frame_prefix: str = "") -> Vehicle:
+        """That of the model's `parameters`."""
+        return cls(parameters.ground.gravity, parameters.vehicle.top_height, frame_prefix)
+
+
+@dataclass(frozen=True)
 class Field:
     """Fields of one message that are made of some outputs.
 
@@ -64,6 +92,7 @@ class Field:
             result must follow from its arguments alone.
         read: the inverse of `write`, digit for digit. None: the outputs are not read back from
             these fields. Each output is read back from one field only.
+        constants: attributes of `Vehicle` that `write` gets after them.
     """
 
     topic: Topic
@@ -71,6 +100,14 @@ class Field:
     outputs: tuple[str, ...]
     write: Conversion = copied
     read: Conversion | None = copied
+    constants: tuple[str, ...] = ()
+
+    def conversion(self, vehicle: Vehicle) -> Conversion:
+        """Gives a number for each of `paths` from the values of `outputs`, for `vehicle`."""
+        if not self.constants:
+            return self.write
+        constants = tuple(getattr(vehicle, name) for name in self.constants)
+        return lambda *values: self.write(*values, *constants)
 
 
 def strut_outputs(quantity: str) -> tuple[str, ...]:
@@ -86,6 +123,18 @@ def _elements(path: str) -> tuple[str, ...]:
 def _contact(leg: int, topic: Topic) -> Field:
     force = tuple(f"leg[{leg}].contact.force_{axis}" for axis in "xyz")
     return Field(topic, xyz("wrench.force"), force, write=to_ros, read=from_ros)
+
+
+def _imu(
+    topic: Topic, write: Conversion, outputs: tuple[str, ...], constants: tuple[str, ...]
+) -> tuple[Field, ...]:
+    """An inertial sensor by REP-145: its attitude in the map, the rest in its own frame."""
+    orientation, force = xyzw("orientation"), in_plane("linear_acceleration")
+    return (
+        Field(topic, orientation, ("body.pitch",), write=pitch_quaternion, read=None),
+        Field(topic, about_pitch("angular_velocity"), ("body.pitch_rate",), read=None),
+        Field(topic, force, outputs, write=write, read=None, constants=constants),
+    )
 
 
 # Columns of logs stand in this order. Odometry repeats what other topics carry, so it is not read
@@ -113,19 +162,36 @@ FIELDS: tuple[Field, ...] = (
         read=None,
     ),
     Field(ODOM, about_pitch("twist.twist.angular"), ("body.pitch_rate",), read=None),
+    *_imu(IMU, specific_force, ("body.ax", "body.ay", "body.pitch"), ("gravity",)),
+    *_imu(
+        TOP_IMU,
+        top_specific_force,
+        ("body.ax", "body.ay", "body.pitch", "body.pitch_rate", "body.pitch_acceleration"),
+        ("gravity", "top_height"),
+    ),
 )
 
 # The fields that hold the same text in every sample.
 TEXTS: dict[Topic, dict[str, str]] = {
     STRUTS: {"header.frame_id": BODY_FRAME, **dict(zip(_elements("name"), JOINTS))},
-    **{t: {"header.frame_id": WORLD_FRAME} for t in (POSE, RPY, TWIST, ACCEL, *CONTACTS)},
-    TOP_ACCEL: {"header.frame_id": TOP_FRAME},
-    ODOM: {"header.frame_id": WORLD_FRAME, "child_frame_id": BODY_FRAME},
+    **{t: {"header.frame_id": WORLD_FRAME} for t in (POSE, RPY, TWIST, ACCEL)},
+    **{t: {"header.frame_id": frame} for t, frame in zip(CONTACTS, FOOTPAD_FRAMES)},
+    IMU: {"header.frame_id": BODY_FRAME},
+    **{t: {"header.frame_id": TOP_FRAME} for t in (TOP_ACCEL, TOP_IMU)},
+    ODOM: {"header.frame_id": ODOM_FRAME, "child_frame_id": BODY_FRAME},
 }
 
-# Relative topic name -> its fields, and its texts.
+# Relative topic name -> its fields, and the topic.
 TOPIC_FIELDS = {t.name: tuple(f for f in FIELDS if f.topic == t) for t in SAMPLED}
-TOPIC_TEXTS = {t.name: TEXTS.get(t, {}) for t in SAMPLED}
+_TOPICS = {t.name: t for t in SAMPLED}
+
+
+def texts(topic: Topic, vehicle: Vehicle) -> dict[str, str]:
+    """The texts in every message of `topic`, by path."""
+    return {
+        path: framed(vehicle.frame_prefix, text) if path.endswith("frame_id") else text
+        for path, text in TEXTS.get(topic, {}).items()
+    }
 
 
 def indices(*outputs: str) -> tuple[int, ...]:
@@ -142,12 +208,13 @@ def split(path: str) -> tuple[str, str | int]:
     return owner, name
 
 
-def expected_numbers(topic: str, values: Mapping[str, float]) -> dict[str, float]:
+def expected_numbers(topic: str, values: Mapping[str, float], vehicle: Vehicle) -> dict[str, float]:
     """The numbers of the message of `topic` (relative), by path, at the sample `values`.
 
     Args:
         topic: one of `TOPIC_FIELDS`.
         values: outputs by name, SI, the paper's axes.
+        vehicle: what messages tell beside them.
 
     Returns:
         Path -> number, SI, ROS axes. A field that is not named is 0.
@@ -155,24 +222,30 @@ def expected_numbers(topic: str, values: Mapping[str, float]) -> dict[str, float
     return {
         path: number
         for field in TOPIC_FIELDS[topic]
-        for path, number in zip(field.paths, field.write(*(values[o] for o in field.outputs)))
+        for path, number in zip(
+            field.paths, field.conversion(vehicle)(*(values[o] for o in field.outputs))
+        )
     }
 
 
-def expected_fields(topic: str, values: Mapping[str, float], nanoseconds: int) -> dict[str, Any]:
+def expected_fields(
+    topic: str, values: Mapping[str, float], nanoseconds: int, vehicle: Vehicle
+) -> dict[str, Any]:
     """All fields of the message of `topic` (relative), by path, at the sample `values`.
 
     Args:
         topic: one of `TOPIC_FIELDS`.
         values: outputs by name, SI, the paper's axes.
         nanoseconds: simulation time of the sample [ns].
+        vehicle: what messages tell beside them.
 
     Returns:
         Path -> number or text. A field that is not named is 0, or empty.
     """
     seconds, rest = divmod(nanoseconds, NANOSECONDS)
     stamp = {"header.stamp.sec": seconds, "header.stamp.nanosec": rest}
-    return {**expected_numbers(topic, values), **TOPIC_TEXTS[topic], **stamp}
+    named = texts(_TOPICS[topic], vehicle)
+    return {**expected_numbers(topic, values, vehicle), **named, **stamp}
 
 
 def leaves(message: Any, at: str = "") -> Iterator[tuple[str, Any]]:

@@ -15,7 +15,7 @@ from rclpy.serialization import serialize_message
 
 from rlv_landing.quantities import OUTPUT_NAMES
 
-from .fields import FIELDS, TEXTS, Conversion, copied, indices, split
+from .fields import FIELDS, Conversion, Vehicle, copied, indices, split, texts
 from .message_types import message_class
 from .topics import CLOCK, SAMPLED, Topic
 from .wire import NANOSECONDS, SENTINEL_STAMP, MessageLayout, sentinel_numbers
@@ -46,9 +46,12 @@ class SampleMessages:
     """The messages that go out at every step, by topic, in the order of publication.
 
     The message objects are made once and filled again for each sample.
+
+    Args:
+        vehicle: what they tell beside the outputs.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, vehicle: Vehicle) -> None:
         self.messages: dict[Topic, Any] = {
             topic: message_class(topic.type_name)() for topic in (CLOCK, *SAMPLED)
         }
@@ -58,13 +61,14 @@ class SampleMessages:
         for topic in SAMPLED:
             message = self.messages[topic]
             message.header.stamp = self._stamp
-            for path, text in TEXTS.get(topic, {}).items():
+            for path, text in texts(topic, vehicle).items():
                 _setter(message, path, "")(text)
         self._setters = [
             _setter(self.messages[field.topic], path, 0.0)
             for field in FIELDS
             for path in field.paths
         ]
+        self._conversions = [(f.conversion(vehicle), indices(*f.outputs)) for f in FIELDS]
 
     def fill(self, nanoseconds: int, values: Sequence[float]) -> None:
         """Puts a sample into the messages.
@@ -77,8 +81,8 @@ class SampleMessages:
             nanoseconds,
             (
                 number
-                for field in FIELDS
-                for number in field.write(*(values[i] for i in indices(*field.outputs)))
+                for write, positions in self._conversions
+                for number in write(*(values[i] for i in positions))
             ),
         )
 
@@ -93,14 +97,16 @@ class SampleBytes:
     """The serialised messages of `SampleMessages`: the same bytes, at a fraction of the cost.
 
     Args:
+        vehicle: what they tell beside the outputs.
         prefixes: by topic, what comes before its message in what `pack` gives; see `MessageLayout`.
 
-    `topics` are in the order of the messages; `slices` tell where each one's message is in what
-    `pack` gives.
+    `vehicle` is as given. `topics` are in the order of the messages; `slices` tell where each one's
+    message is in what `pack` gives.
     """
 
-    def __init__(self, prefixes: Mapping[Topic, bytes] | None = None) -> None:
-        messages = SampleMessages()
+    def __init__(self, vehicle: Vehicle, prefixes: Mapping[Topic, bytes] | None = None) -> None:
+        messages = SampleMessages(vehicle)
+        self.vehicle = vehicle
         self.topics: tuple[Topic, ...] = tuple(messages.messages)
         # What is packed: the sample, and after it what the messages carry that is not in it.
         self._computations: list[tuple[Conversion, Callable[[Sequence[float]], Any]]] = []
@@ -132,7 +138,8 @@ class SampleBytes:
             if key not in computed:
                 computed[key] = range(count, count + len(field.paths))
                 count += len(field.paths)
-                self._computations.append((field.write, _picker(indices(*field.outputs))))
+                pick = _picker(indices(*field.outputs))
+                self._computations.append((field.conversion(self.vehicle), pick))
             positions += computed[key]
         return positions, count
 

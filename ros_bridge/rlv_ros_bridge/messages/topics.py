@@ -12,8 +12,12 @@ from rlv_landing.errors import LandingError
 from rlv_landing.quantities import LEGS
 
 WORLD_FRAME = "map"
+# Of REP-105, in which the vehicle moves without jumps; here it is the map.
+ODOM_FRAME = "odom"
 BODY_FRAME = "base_link"
 TOP_FRAME = "top_sensor"
+# At the footpads, with the axes of the map.
+FOOTPAD_FRAMES: tuple[str, ...] = tuple(f"leg_{leg}_footpad" for leg in LEGS)
 
 JOINTS: tuple[str, ...] = tuple(
     f"leg_{leg}_{strut}" for leg in LEGS for strut in ("main_strut", "auxiliary_strut")
@@ -40,6 +44,8 @@ POSE = Topic("pose", "geometry_msgs/msg/PoseStamped")
 RPY = Topic("rpy", "geometry_msgs/msg/Vector3Stamped")
 TWIST = Topic("twist", "geometry_msgs/msg/TwistStamped")
 ACCEL = Topic("accel", "geometry_msgs/msg/AccelStamped")
+IMU = Topic("imu", "sensor_msgs/msg/Imu")
+TOP_IMU = Topic("top/imu", "sensor_msgs/msg/Imu")
 TOP_ACCEL = Topic("top/accel", "geometry_msgs/msg/AccelStamped")
 CONTACTS = tuple(Topic(f"leg_{leg}/contact", "geometry_msgs/msg/WrenchStamped") for leg in LEGS)
 ODOM = Topic("odom", "nav_msgs/msg/Odometry")
@@ -56,7 +62,10 @@ ROBOT_DESCRIPTION = Topic("robot_description", "std_msgs/msg/String")
 VARIABLES = Topic("variables", "std_msgs/msg/String")
 
 # Published at every step, and published at a period of their own.
-SAMPLED: tuple[Topic, ...] = (STRUTS, POSE, RPY, TWIST, ACCEL, TOP_ACCEL, *CONTACTS, ODOM)
+SAMPLED: tuple[Topic, ...] = (
+    *(STRUTS, POSE, RPY, TWIST, ACCEL, TOP_ACCEL, *CONTACTS, ODOM),
+    *(IMU, TOP_IMU),
+)
 OCCASIONAL: tuple[Topic, ...] = (MARKERS, TF, DIAGNOSTICS)
 APPLIED: tuple[Topic, ...] = (APPLIED_WRENCH, APPLIED_GROUND)
 # Published once, and kept for subscribers that come later.
@@ -70,6 +79,7 @@ RECORDED: tuple[Topic, ...] = (*SAMPLED, *OCCASIONAL, *APPLIED, ROBOT_DESCRIPTIO
 # ROS 2 takes 245 characters, and the name of a topic below them
 LONGEST_NAMESPACE = 200
 _TOKEN = "[A-Za-z_][A-Za-z0-9_]*"
+_FRAME_PREFIX = re.compile(f"(?:[A-Za-z0-9_.-][A-Za-z0-9_./-]{{0,{LONGEST_NAMESPACE - 1}}})?")
 _NAMESPACE = re.compile(f"/?(?:{_TOKEN}(?:/{_TOKEN})*)?")
 
 
@@ -85,6 +95,24 @@ def check_namespace(namespace: str) -> None:
             "letters, digits and underscores, with '/' between parts, each of which starts with a "
             "letter or an underscore"
         )
+
+
+def check_frame_prefix(prefix: str) -> None:
+    """Checks that frames may begin with `prefix`.
+
+    Raises:
+        LandingError: they may not.
+    """
+    if not _FRAME_PREFIX.fullmatch(prefix):
+        raise LandingError(
+            f"frame_prefix = {prefix!r} cannot begin the name of a frame; write at most "
+            f"{LONGEST_NAMESPACE} letters, digits, '_', '-', '.' and '/', the first no '/'"
+        )
+
+
+def framed(prefix: str, frame: str) -> str:
+    """The name of `frame` of a vehicle whose frames have `prefix`; the map is everybody's."""
+    return frame if frame == WORLD_FRAME else prefix + frame
 
 
 def resolve(namespace: str, name: str) -> str:

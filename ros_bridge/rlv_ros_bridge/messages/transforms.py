@@ -7,19 +7,21 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, sin
 from xml.etree import ElementTree
 
 from rlv_landing.parameters import Parameters
+from rlv_landing.quantities import LEGS
 
 from .axes import IN_PLANE, pitch_quaternion, to_ros
 from .fields import indices, strut_outputs
 from .robot_description import robot_description
-from .topics import BODY_FRAME, JOINTS, WORLD_FRAME
+from .topics import BODY_FRAME, FOOTPAD_FRAMES, JOINTS, ODOM_FRAME, WORLD_FRAME, framed
 from .wire import NANOSECONDS, SENTINEL_STAMP, MessageLayout, padded, sentinel_numbers
 
 # Encapsulation of plain CDR, little-endian.
+NOWHERE, NO_TURN = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 LITTLE_ENDIAN_CDR = b"\x00\x01\x00\x00"
 
 
@@ -34,24 +36,42 @@ class Transform:
 
 
 class Transforms:
-    """Makes the messages of `/tf`: `map` to `base_link`, and every joint of the URDF.
+    """Makes the messages of `/tf`: `map` to `odom` to `base_link`, and every joint of the URDF.
 
-    A strut's joint is moved by its stroke.
+    A strut's joint is moved by its stroke. The frames of the footpads, in which the contact forces
+    are given, are in `odom` and have its axes.
+
+    Args:
+        parameters: the vehicle.
+        frame_prefix: is put before the names of its frames.
     """
 
-    def __init__(self, parameters: Parameters) -> None:
+    def __init__(self, parameters: Parameters, frame_prefix: str = "") -> None:
         joints = list(ElementTree.fromstring(robot_description(parameters)).iter("joint"))
         self._body = indices("body.x", "body.y", "body.pitch")
         self._strokes = indices(*strut_outputs("stroke"))
         self._lengths = [
             _vector(j, "xyz")[2] for name in JOINTS for j in joints if j.get("name") == name
         ]
-        sentinels = sentinel_numbers(4 + len(JOINTS))
+        self._footpads = [
+            indices(*(f"leg[{leg}].footpad.{axis}" for axis in "xyz")) for leg in LEGS
+        ]
+        sentinels = sentinel_numbers(4 + len(JOINTS) + 3 * len(LEGS))
         x, z, qy, qw = sentinels[:4]
         moved = dict(zip(JOINTS, sentinels[4:]))
+        feet = sentinels[4 + len(JOINTS) :]
         frames = [
-            Transform(WORLD_FRAME, BODY_FRAME, (x, 0.0, z), (0.0, qy, 0.0, qw)),
+            Transform(WORLD_FRAME, ODOM_FRAME, NOWHERE, NO_TURN),
+            Transform(ODOM_FRAME, BODY_FRAME, (x, 0.0, z), (0.0, qy, 0.0, qw)),
             *(_transform(joint, moved) for joint in joints),
+            *(
+                Transform(ODOM_FRAME, frame, (feet[i], feet[i + 1], feet[i + 2]), NO_TURN)
+                for frame, i in zip(FOOTPAD_FRAMES, range(0, len(feet), 3))
+            ),
+        ]
+        frames = [
+            replace(t, parent=framed(frame_prefix, t.parent), child=framed(frame_prefix, t.child))
+            for t in frames
         ]
         self._layout = MessageLayout([serialised(frames, SENTINEL_STAMP)], sentinels)
 
@@ -66,7 +86,8 @@ class Transforms:
         forward, _, up = to_ros(x, y, IN_PLANE)
         _, qy, _, qw = pitch_quaternion(pitch)
         struts = [length - values[i] for length, i in zip(self._lengths, self._strokes)]
-        return self._layout.pack(nanoseconds, [forward, up, qy, qw, *struts])
+        feet = (n for at in self._footpads for n in to_ros(*(values[i] for i in at)))
+        return self._layout.pack(nanoseconds, [forward, up, qy, qw, *struts, *feet])
 
 
 def serialised(transforms: Sequence[Transform], nanoseconds: int) -> bytes:

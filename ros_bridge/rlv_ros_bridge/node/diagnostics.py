@@ -14,6 +14,8 @@ from ..messages.samples import set_stamp
 from ..messages.wire import NANOSECONDS
 from .pacer import Pacer
 
+# How long a problem is warned of [ns of simulation time].
+WARN_NS = NANOSECONDS
 BALANCE = OUTPUT_NAMES.index("energy.balance")
 
 
@@ -44,6 +46,8 @@ class DiagnosticsMessage:
 
     def __init__(self, name: str, mode: str) -> None:
         self._status = DiagnosticStatus(name=name, hardware_id=f"rlv-landing {mode}")
+        # by problem: its count, and since when that is so [ns]
+        self._risen: dict[str, tuple[int, int]] = {}
         self.message = DiagnosticArray(status=[self._status])
 
     def of_landing(
@@ -93,11 +97,18 @@ class DiagnosticsMessage:
         Args:
             nanoseconds: simulation time [ns].
             values: the status's values by key.
-            problems: counts by name; any that is not 0 makes the level WARN.
+            problems: counts by name; one that rose in the last second makes the level WARN.
             failure: makes the level ERROR unless it is empty.
         """
         set_stamp(self.message.header.stamp, nanoseconds)
-        counts = ", ".join(f"{count} {name}" for name, count in problems.items() if count)
+        for name, count in problems.items():
+            if count > self._risen.get(name, (0, 0))[0]:
+                self._risen[name] = count, nanoseconds
+        counts = ", ".join(
+            f"{count} {name}"
+            for name, (count, since) in self._risen.items()
+            if nanoseconds - since <= WARN_NS
+        )
         status = self._status
         status.level = DiagnosticStatus.OK
         if failure:

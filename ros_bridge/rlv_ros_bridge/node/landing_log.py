@@ -82,7 +82,7 @@ class LandingLog:
             if t in topics.RECORDED
         }
         prefixes = self.recorder.begin_samples({names[t]: size for t, size in sizes.items()})
-        return SampleBytes(dict(zip(sizes, prefixes)))
+        return SampleBytes(packer.vehicle, dict(zip(sizes, prefixes)))
 
     def write_sample(self, k: int, values: Sequence[float], messages: bytes) -> None:
         """Writes the messages of sample `k`, whose outputs are `values`."""
@@ -150,6 +150,7 @@ def _metadata(settings: Settings, namespace: str, fmu: FmuRunner) -> dict[str, s
         "stop_time": repr(settings.stop_time),
         "realtime_factor": repr(settings.realtime_factor),
         "namespace": namespace,
+        "frame_prefix": settings.frame_prefix,
         "recorded": datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
         "fmu_guid": fmu.guid,
         "fmu_version": fmu.version,

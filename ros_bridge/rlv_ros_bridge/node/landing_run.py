@@ -19,6 +19,7 @@ from rlv_landing.quantities import OUTPUT_NAMES
 from ..fmu.runner import FmuRunner
 from ..logs.landing_record import PHASE
 from ..messages import topics
+from ..messages.fields import Vehicle
 from ..messages.markers import Wireframe
 from ..messages.samples import SampleBytes
 from ..messages.topics import Topic
@@ -84,9 +85,10 @@ class LandingRun:
         self.description = b""
         self._publishing, self._inputs = publishing, inputs
         self._queue = publishing.queue
-        self._set_packer(SampleBytes())
+        vehicle = Vehicle.of(settings.parameters, settings.frame_prefix)
+        self._set_packer(SampleBytes(vehicle))
         self._wireframe = Wireframe(settings.parameters)
-        self._transforms = Transforms(settings.parameters)
+        self._transforms = Transforms(settings.parameters, settings.frame_prefix)
         self._diagnostics = DiagnosticsMessage(identity.node, settings.mode)
         self._markers_every, self._tf_every, self._diagnostics_every = (
             settings.every[t] for t in (topics.MARKERS, topics.TF, topics.DIAGNOSTICS)

@@ -22,7 +22,7 @@ from rlv_landing.text.values import to_si
 
 from ..fmu.installed import fmu_path
 from ..messages.qos import PROFILES
-from ..messages.topics import CLOCK, OCCASIONAL, SAMPLED, Topic
+from ..messages.topics import CLOCK, OCCASIONAL, SAMPLED, Topic, check_frame_prefix
 
 # When a setting may be changed: at the start only, while the node is not active, or at any time.
 When = Literal["start", "paused", "always"]
@@ -96,6 +96,12 @@ SETTINGS: dict[str, Setting] = {
         meaning="whether /clock is published; of several nodes in one ROS domain one should",
         when="start",
     ),
+    "frame_prefix": Setting(
+        "",
+        'put before the names of all frames but "map", as in "stage_1/"; of several vehicles each '
+        "has its own",
+        when="start",
+    ),
     "autostart": Setting(
         default=True,
         meaning="land at once and end afterwards; else wait for lifecycle transitions, and stay",
@@ -148,6 +154,7 @@ class Settings:
     record: str
     log_root: str
     wait_for_subscribers: int
+    frame_prefix: str
     wait_timeout: float
     start_delay: float
     every: Mapping[Topic, int] = field(default_factory=dict)
@@ -218,6 +225,7 @@ def make_settings(values: Mapping[str, Any], parameters: Parameters, origin: str
         record=values["record"],
         log_root=values["log_root"],
         wait_for_subscribers=values["wait_for_subscribers"],
+        frame_prefix=values["frame_prefix"],
         wait_timeout=values["wait_timeout"],
         start_delay=values["start_delay"],
         every={t: values[downsampling_setting(t)] or own[t] for t in PUBLISHED},
@@ -242,6 +250,8 @@ def check_setting(name: str, value: Any) -> Any:
             raise LandingError(
                 f"{name} = {value!r} is not one of {', '.join(s.choices)} ({s.meaning})"
             )
+        if name == "frame_prefix":
+            check_frame_prefix(value)
         return value
     if isinstance(value, str):
         quantity = Quantity(s.unit, s.meaning, name=name, default=s.default)

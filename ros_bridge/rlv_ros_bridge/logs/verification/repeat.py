@@ -12,6 +12,7 @@ from rlv_landing.errors import LandingError
 from rlv_landing.quantities import OUTPUT_NAMES
 from rlv_landing.text.units import parse_number
 
+from ...messages.fields import Vehicle
 from ...messages.inputs import READINGS
 from ...messages.topics import APPLIED, resolve
 from ...messages.wire import NANOSECONDS
@@ -25,7 +26,8 @@ Inputs = dict[int, list[dict[str, float]]]
 class RepeatedRun:
     """The data needed to repeat the run of a log.
 
-    `step` and `stop_time` are in s. `input_messages` counts the inputs.
+    `step` and `stop_time` are in s. `vehicle` is what messages tell beside the outputs.
+    `input_messages` counts the inputs.
 
     Args:
         reader: the log, read to its end.
@@ -57,6 +59,7 @@ class RepeatedRun:
                 refusal + f"its metadata say mode {mode}, its parameters.toml "
                 f"{parameters.drop.mode}; one was changed"
             )
+        self.vehicle = Vehicle.of(parameters, reader.metadata.get("frame_prefix", ""))
         self._inputs = _inputs(reader, self.step_ns, refusal)
         self.input_messages = sum(map(len, self._inputs.values()))
         self._fmu = fmu

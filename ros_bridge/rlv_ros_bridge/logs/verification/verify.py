@@ -31,8 +31,8 @@ SAMPLE_BYTES = 64
 def verify(reader: LogReader, fmu: Path | None = None) -> Verification:
     """Repeats the run of the log, and compares all messages that follow from it.
 
-    These are struts, pose, rpy, twist, accel, top/accel, contacts and odom; markers and diagnostics
-    are not compared. Inputs in the log act again at their times.
+    These are those of every step, `topics.SAMPLED`; markers, transforms and diagnostics are not
+    compared. Inputs in the log act again at their times.
 
     Args:
         reader: the log.
@@ -162,7 +162,9 @@ class _Comparison:
             found.largest = max(found.largest, share)
 
     def _compare(self, message: LogMessage, values: Mapping[str, float]) -> None:
-        expected = expected_fields(self._topics[message.topic], values, message.log_time)
+        expected = expected_fields(
+            self._topics[message.topic], values, message.log_time, self._run.vehicle
+        )
         found = self._found
         found.messages += 1
         paths = set()
@@ -219,6 +221,6 @@ def _largest_values(run: RepeatedRun, count: int) -> dict[tuple[str, str], float
     with closing(run.samples()) as samples:
         for values in islice(samples, count):
             for topic in TOPIC_FIELDS:
-                for path, value in expected_numbers(topic, values).items():
+                for path, value in expected_numbers(topic, values, run.vehicle).items():
                     scales[topic, path] = max(scales.get((topic, path), 0.0), abs(value))
     return scales
