@@ -6,10 +6,13 @@ import fcntl
 import os
 import shutil
 import tempfile
+import time
 from contextlib import suppress
 from pathlib import Path
 
 LOCK = "lock"
+# Making a folder and its lock takes no longer [s].
+LEFT_SECONDS = 60.0
 
 
 class ProcessFolder:
@@ -32,21 +35,52 @@ class ProcessFolder:
 
     def remove(self) -> None:
         """Removes the folder and releases its lock."""
-        shutil.rmtree(self.path, ignore_errors=True)
+        remove_locked(self.path)
         os.close(self._lock)
 
 
 def remove_stale(prefix: str) -> None:
-    """Removes the folders whose lock is free: those of dead processes.
+    """Removes the folders whose lock is free, or that have lost it: those of dead processes.
 
     Folders of other users, and those that cannot be removed, stay.
     """
+    for folder in Path(tempfile.gettempdir()).glob(f"{prefix}*"):
+        with suppress(OSError):
+            if not (folder / LOCK).exists() and _is_left(folder, prefix):
+                shutil.rmtree(folder, ignore_errors=True)
     for lock in Path(tempfile.gettempdir()).glob(f"{prefix}*/{LOCK}"):
         with suppress(OSError):
             # in a folder that all may write to, somebody's link is not followed
             file = os.open(lock, os.O_RDWR | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
             try:
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                shutil.rmtree(lock.parent, ignore_errors=True)
+                remove_locked(lock.parent)
             finally:
                 os.close(file)
+
+
+def remove_locked(folder: Path) -> None:
+    """Removes a folder whose lock is held; the lock goes last.
+
+    What a program that is just ending still writes into it would otherwise stay, and nobody would
+    know that it may go. So the folder then keeps its lock, by which it is found later.
+    """
+    with suppress(OSError):
+        for entry in folder.iterdir():
+            if entry.is_dir() and not entry.is_symlink():
+                shutil.rmtree(entry, ignore_errors=True)
+            elif entry.name != LOCK:
+                entry.unlink(missing_ok=True)
+        (folder / LOCK).unlink(missing_ok=True)
+        try:
+            folder.rmdir()
+        except OSError:
+            (folder / LOCK).touch()
+
+
+def _is_left(folder: Path, prefix: str) -> bool:
+    """Whether a folder without a lock is not one that is just being made."""
+    number = folder.name.removeprefix(prefix).partition("-")[0]
+    if folder.is_symlink() or time.time() - folder.stat().st_mtime < LEFT_SECONDS:
+        return False
+    return not (number.isdecimal() and Path(f"/proc/{number}").exists())
