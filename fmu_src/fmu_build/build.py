@@ -23,6 +23,7 @@ from xml.etree import ElementTree
 
 from pythonfmu.builder import FmuBuilder
 
+from rlv_landing import MODEL_NAME
 from rlv_landing.errors import LandingError
 from rlv_landing.text.durable import NO_ROOM, unwritable, write_durably, writing
 
@@ -36,7 +37,7 @@ from .sources import ROOT, compiled_cores, copy_sources, source_date
 from .targets import ALL, OWN, tried
 from .terminals import write_terminals
 from .trial import check, expected
-from .wanted import FMI_VERSIONS, MODEL_NAME, Wanted
+from .wanted import FMI_VERSIONS, Wanted
 
 # endings of files that can be run, or be loaded
 LIBRARIES = (".so", ".dll", ".dylib", ".pyd")

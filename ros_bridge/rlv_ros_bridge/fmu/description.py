@@ -11,6 +11,7 @@ from math import prod
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from rlv_landing import MODEL_NAME
 from rlv_landing.errors import LandingError, reason_of
 from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
 from rlv_landing.quantities import (
@@ -22,7 +23,6 @@ from rlv_landing.quantities import (
     whole_name,
 )
 
-MODEL_NAME = "RlvLanding"
 # how the description of an FMU that our build has made says so
 MADE_BY = "rlv-landing "
 # the start values of a vehicle that is not the default one

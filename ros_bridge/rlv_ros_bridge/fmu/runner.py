@@ -10,6 +10,7 @@ from tempfile import gettempdir
 from types import TracebackType
 from typing import Any, NoReturn, TypeVar
 
+from rlv_landing import MODEL_NAME
 from rlv_landing.errors import LandingError, unknown
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.quantities import (
@@ -22,7 +23,7 @@ from rlv_landing.quantities import (
 )
 from rlv_landing.text.durable import writing
 
-from .description import MODEL_NAME, NAMES, check_size, places, read_description, without
+from .description import NAMES, check_size, places, read_description, without
 from .fmi2 import Fmi2
 from .fmi3 import Fmi3, with_ground_rates
 from .folder import ProcessFolder
