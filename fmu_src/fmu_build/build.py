@@ -73,7 +73,7 @@ def build_with_pythonfmu(folder: Path, wanted: Wanted) -> tuple[Path, Path, str]
     with zipfile.ZipFile(built) as archive:
         archive.extractall(files)
     package = files / "resources" / package.name
-    take_pythonfmu(files / "resources" / "pythonfmu", package)
+    move_pythonfmu(files / "resources" / "pythonfmu", package)
     return files, package, script.stem
 
 
@@ -91,7 +91,7 @@ def _forgotten(folder: Path, *names: str) -> Iterator[None]:
             del sys.modules[module]
 
 
-def take_pythonfmu(own: Path, package: Path) -> None:
+def move_pythonfmu(own: Path, package: Path) -> None:
     """Move the FMU's copy of pythonfmu into its package, without what a slave does not need.
 
     There it has a name that no other pythonfmu in the process has.
