@@ -7,13 +7,20 @@ import os
 import shutil
 import subprocess
 import sys
+from importlib.metadata import EntryPoint
 from pathlib import Path
 from xml.etree import ElementTree
 
 import yaml
 from bridge_tools import ROOT, TIMEOUT, environment, new_domain
 
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
 import rlv_landing
+from rlv_ros_bridge.commands.group import main as group
 from rlv_ros_bridge.logs.history import history_of
 from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.node.settings import SETTINGS
@@ -129,3 +136,12 @@ def test_the_launch_file_and_its_parameter_file_name_parameters_of_the_node() ->
         "ros__parameters"
     ]
     assert set(values) <= set(SETTINGS)
+
+
+def test_the_bridge_alone_has_the_commands_that_the_package_announces() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    announced = {
+        name: EntryPoint(name, target, "").load()
+        for name, target in project["entry-points"]["rlv_landing.commands"].items()
+    }
+    assert announced == group.commands
