@@ -14,8 +14,9 @@ from rlv_landing.errors import LandingError, reason_of
 from rlv_landing.signals.handlers import SignalNote
 from rlv_landing.text.files import read_text
 
+from .parameter_files import shared_names
+
 if TYPE_CHECKING:
-    from rclpy.executors import Executor
     from rclpy.publisher import Publisher
 
 # Longest wait for acknowledgements [s]. Fast DDS asks its readers for them every 3 s.
@@ -53,8 +54,10 @@ def require_ros() -> None:
 
 
 @contextmanager
-def ros_context(args: Sequence[str] = ()) -> Iterator[Any]:
+def ros_context(args: Sequence[str] = ()) -> Iterator[frozenset[str]]:
     """Starts rclpy with `args` (`--ros-args ...`), and shuts it down at the end.
+
+    It gives the names of parameters that files give to every node, see `shared_names`.
 
     Raises:
         LandingError: ROS 2 is missing, or it does not accept `args`.
@@ -68,8 +71,9 @@ def ros_context(args: Sequence[str] = ()) -> Iterator[Any]:
             rclpy.init(args=["rlv-landing", *own], signal_handler_options=SignalHandlerOptions.NO)
         except Exception as e:
             raise LandingError(f"ROS 2 does not start: {reason_of(e)}") from None
+        shared = shared_names(own)
     try:
-        yield rclpy
+        yield shared
     finally:
         rclpy.try_shutdown()
 
@@ -103,29 +107,6 @@ def _ensure_log_folder() -> None:
         os.environ["ROS_LOG_DIR"] = str(
             Path(tempfile.gettempdir()) / f"rlv-landing-ros-log-{os.getuid()}"
         )
-
-
-def wait_for_subscribers(
-    publisher: Publisher[Any], count: int, timeout: float, executor: Executor, stop: StopFlag
-) -> None:
-    """Spins `executor` until `count` subscriptions are matched, or a signal came.
-
-    Args:
-        publisher: the publisher of the topic.
-        count: subscriptions to wait for.
-        timeout: longest wait [s].
-        executor: spun while waiting.
-        stop: ends the wait.
-
-    Raises:
-        LandingError: there are fewer after `timeout`.
-    """
-
-    def interrupted() -> bool:
-        executor.spin_once(timeout_sec=0.02)
-        return bool(stop)
-
-    wait_until_matched(publisher, count, timeout, interrupted)
 
 
 def wait_until_matched(
