@@ -36,7 +36,8 @@ for start, step in (
     (math.nan, 1e-3), (0.0, math.nan), (0.0, math.inf), (1e308, 1e308), (0.0, -1.0), (0.0, 1e-3)
 ):
     times = map(ctypes.c_double, (start, step))
-    status = slave.dll.fmi3DoStep(slave.component, *times, True, *told, ctypes.byref(time))
+    instance = ctypes.c_void_p(slave.component)
+    status = slave.dll.fmi3DoStep(instance, *times, True, *told, ctypes.byref(time))
     print(status, flush=True)
 """
 
