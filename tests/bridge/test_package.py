@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import sys
+from importlib.metadata import EntryPoint
 from importlib.util import find_spec
 from pathlib import Path
 from xml.etree import ElementTree
@@ -15,7 +16,13 @@ import pytest
 import yaml
 from bridge_tools import ROOT, TIMEOUT, environment, new_domain
 
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
 import rlv_landing
+from rlv_ros_bridge.commands.group import main as group
 from rlv_ros_bridge.logs.history import history_of
 from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.messages.qos import LATCHED, TELEMETRY
@@ -160,6 +167,15 @@ def test_rviz_subscribes_to_topics_of_the_node_with_a_quality_of_service_that_ma
             assert qos.reliability == "reliable"
         latched = wanted["Durability Policy"] == "Transient Local"
         assert latched == (qos.durability == "transient_local")
+
+
+def test_the_bridge_alone_has_the_commands_that_the_package_announces() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    announced = {
+        name: EntryPoint(name, target, "").load()
+        for name, target in project["entry-points"]["rlv_landing.commands"].items()
+    }
+    assert announced == group.commands
 
 
 @pytest.mark.skipif(

@@ -85,12 +85,12 @@ def view(log: Path | None, *, save: Path | None, force: bool, **options: Any) ->
     Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged, 130, 143 or
     129 ended by SIGINT, SIGTERM or SIGHUP.
     """
-    vehicle = VehicleOptions.take(options)
+    vehicle = VehicleOptions.pop_from(options)
     server = ServerOptions(options["port"], options["no_browser"])
     namespace = options["namespace"]
     check_namespace(namespace)
     check_writable(save, ".rrd", force=force)
-    if log is None and vehicle.given:
+    if log is None and vehicle.is_given:
         raise LandingError(
             "live topics need no vehicle named; leave --preset, --parameters, --mode and --set out"
         )

@@ -8,11 +8,10 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any
 
 from rlv_landing.errors import LandingError, reason_of
-from rlv_landing.signals.handlers import Handlers
+from rlv_landing.signals.handlers import SignalNote
 from rlv_landing.text.files import read_text
 
 from .parameter_files import shared_names
@@ -28,39 +27,14 @@ SIGNAL_POLL_SECONDS = 0.05
 MATCH_POLL_SECONDS = 0.01
 
 
-class StopFlag:
-    """Notes SIGINT, SIGTERM and SIGHUP while it is entered: the loop ends after a whole step.
-
-    `number` is the number of the first signal, or 0.
-    """
-
-    def __init__(self) -> None:
-        self.number = 0
-        self._handlers = Handlers(self._note)
-
-    def __bool__(self) -> bool:
-        return self.number != 0
+class StopFlag(SignalNote):
+    """Notes the signals that end a command: the loop that looks at it ends after a whole step."""
 
     def wait(self, seconds: float) -> None:
         """Waits for a signal, at most `seconds` [s]."""
         end = time.monotonic() + seconds
         while not self.number and time.monotonic() < end:
             time.sleep(min(seconds, SIGNAL_POLL_SECONDS))
-
-    def _note(self, number: int, _frame: FrameType | None) -> None:
-        self.number = self.number or number
-
-    def __enter__(self) -> StopFlag:
-        self._handlers.set()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._handlers.restore()
 
 
 def require_ros() -> None:
