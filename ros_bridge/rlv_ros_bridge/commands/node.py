@@ -71,6 +71,11 @@ EXIT_RECORDING_FAILED = 1
 )
 @click.option("--no-record", is_flag=True, help="Do not record.")
 @click.option(
+    "--log-must-be-complete",
+    is_flag=True,
+    help="Wait for a disk that is too slow for the landing, instead of leaving messages out.",
+)
+@click.option(
     "--namespace",
     metavar="NAME",
     default="landing",
@@ -118,8 +123,8 @@ def node(
       rlv-landing node --no-record --ros-args --log-level warn
       rlv-landing node --managed --ros-args --params-file landing.yaml
 
-    Exit codes: 0 landed, 1 recording failed on the way, 2 bad input, 130, 143 or 129 after SIGINT,
-    SIGTERM or SIGHUP (the log is complete all the same).
+    Exit codes: 0 landed, 1 recording failed on the way or left messages out, 2 bad input, 130, 143
+    or 129 after SIGINT, SIGTERM or SIGHUP (the log is complete all the same).
     """
     from ..ros.setup import StopFlag, require_ros
 
@@ -130,6 +135,9 @@ def node(
         settings = {name: value for name, value in options.items() if value is not None}
         _refuse_other_encodings({**settings, **recording, "namespace": namespace})
         check_namespace(namespace)
+        if not settings["log_must_be_complete"]:
+            # It may be set among the ROS arguments.
+            del settings["log_must_be_complete"]
         if managed:
             settings["autostart"] = False
         require_ros()
@@ -149,7 +157,7 @@ def node(
             click.echo(one_line(f"error: {e}"), err=True)
     if summary.signal:
         sys.exit(128 + summary.signal)
-    if summary.recording_error:
+    if summary.recording_error or summary.unrecorded:
         sys.exit(EXIT_RECORDING_FAILED)
 
 
@@ -199,6 +207,13 @@ def _print_summary(summary: RunSummary) -> None:
         warnings.append(
             f"{summary.dropped} messages were not published in time, and dropped; the log has them"
         )
+    if summary.unrecorded:
+        warnings.append(
+            f"{summary.unrecorded} messages are missing from the log, whose disk was slower than "
+            "the landing; with --log-must-be-complete the landing waits"
+        )
+    if summary.disk_wait:
+        warnings.append(f"the landing waited {summary.disk_wait:.2f} s for the disk of its log")
     if not summary.acknowledged:
         warnings.append("not every reliable subscriber has acknowledged all samples")
     for text in warnings:

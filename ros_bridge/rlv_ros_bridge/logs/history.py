@@ -21,6 +21,7 @@ from ..messages.columns import READINGS
 from ..messages.topics import RECORDED, resolve
 from .bag_reader import open_log
 from .instants import OrderError, RowChoice, instants
+from .lost import lost_text
 from .peaks import read_peaks
 from .reader import Decoder, LogReader
 
@@ -220,6 +221,8 @@ def _notes(reader: LogReader, chosen: Mapping[str, str], incomplete: int) -> lis
     own = f"/{reader.namespace.strip('/')}/"
     ignored = [name.removeprefix(own) for name in reader.channels if name not in chosen]
     notes = [f"left aside: {', '.join(ignored)}"] if ignored else []
+    if lost := lost_text(reader.gaps):
+        notes.append(f"missing: {lost}, for which the disk was too slow")
     if incomplete:
         notes.append(f"left out: {incomplete} instants that lack one of the topics")
     return notes

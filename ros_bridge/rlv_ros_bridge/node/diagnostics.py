@@ -29,6 +29,7 @@ class LandingCount:
     samples: int
     unpublished: int
     recorded: int
+    unrecorded: int
     received: int
     refused: int
     of_fmu: Mapping[str, int]
@@ -66,6 +67,7 @@ class DiagnosticsMessage:
         problems = {
             "steps late": pacer.late_steps,
             "messages not published": count.unpublished,
+            "messages not recorded": count.unrecorded,
             "inputs refused": count.refused,
         }
         status = {
@@ -76,6 +78,7 @@ class DiagnosticsMessage:
             **pacing_values(pacer, nanoseconds / NANOSECONDS),
             "messages not published": str(count.unpublished),
             "messages recorded": str(count.recorded),
+            "messages not recorded": str(count.unrecorded),
             "inputs received": str(count.received),
             "inputs refused": str(count.refused),
         }

@@ -12,11 +12,15 @@ class RunSummary:
 
     `end` is "finished", "toppled" or "interrupted" (by the signal number `signal`). `simulated`,
     `wall`, `lost` and the lateness are in s. `dropped` messages were recorded but not published,
-    because a subscriber did not take them or the node had no time.
+    because a subscriber did not take them or the node had no time. `unrecorded` messages are
+    missing from the log, whose disk took too long; the landing has waited for it for `disk_wait`
+    [s].
     """
 
     samples: int
     recorded: int
+    unrecorded: int
+    disk_wait: float
     simulated: float
     wall: float
     late_steps: int
