@@ -180,27 +180,37 @@ def test_an_item_larger_than_the_limit_may_wait_alone() -> None:
     assert written == [0, 1, 2]
 
 
+# The disk takes nothing until there is no room for what comes next.
 SLOW_NODE = """
-import sys, time
-from rlv_ros_bridge.logs.recording.log_file import LogFile
+import sys, threading
 from rlv_ros_bridge.logs.recording import chunk_queue
+from rlv_ros_bridge.logs.recording.log_file import LogFile
+from rlv_ros_bridge.logs.recording.writing_thread import WritingThread
 
-write = LogFile._write
+full, write, has_room = threading.Event(), LogFile._write, WritingThread._has_room
+
 def slow(self, data):
-    time.sleep(float(sys.argv[1]))
+    if threading.current_thread().name == "log":
+        assert full.wait(60.0)
     return write(self, data)
-LogFile._write = slow
-chunk_queue.WAITING_BYTES = int(sys.argv[2])
+
+def looked_for(self, size):
+    found = has_room(self, size)
+    if not found:
+        full.set()
+    return found
+
+LogFile._write, WritingThread._has_room = slow, looked_for
+chunk_queue.WAITING_BYTES = 300_000
 from rlv_ros_bridge.commands.group import main
-main(sys.argv[3:])
+main(sys.argv[1:])
 """
 
 
-def slow_node(seconds: float, waiting: int, *arguments: object) -> subprocess.CompletedProcess[str]:
-    """A node whose log's disk takes so long for each write."""
-    line = [sys.executable, "-c", SLOW_NODE, str(seconds), str(waiting), "node"]
+def slow_node(*arguments: object) -> subprocess.CompletedProcess[str]:
+    """A node whose log's disk is too slow for a while."""
     return subprocess.run(
-        [*line, *map(str, arguments)],
+        [sys.executable, "-c", SLOW_NODE, "node", *map(str, arguments)],
         env=environment(FASTDDS_BUILTIN_TRANSPORTS="UDPv4"),
         capture_output=True,
         text=True,
@@ -213,12 +223,11 @@ def test_a_node_tells_what_its_log_lacks_and_verify_compares_the_rest(
     fmu: Path, tmp_path: Path
 ) -> None:
     folder = tmp_path / "log"
-    done = slow_node(0.3, 300_000, "--fmu", fmu, "--record", folder, "--stop-time", 1)
+    done = slow_node("--fmu", fmu, "--record", folder, "--stop-time", 1)
     assert done.returncode == 1, done.stderr
     assert "finished: 1001 samples" in done.stdout
-    (warning,) = [line for line in done.stderr.splitlines() if line.startswith("warning: ")]
-    found = re.match(r"warning: (\d+) messages are missing from the log", warning)
-    assert found is not None, warning
+    found = re.search(r"^warning: (\d+) messages are missing from the log", done.stderr, re.M)
+    assert found is not None, done.stderr
     assert sum("is slower than the landing" in line for line in done.stderr.splitlines()) == 1
     reader = LogReader(folder)
     reader.read_through()
@@ -237,7 +246,7 @@ def test_a_node_that_must_or_can_wait_has_a_whole_log(
 ) -> None:
     folder = tmp_path / "log"
     arguments = ("--fmu", fmu, "--record", folder, "--stop-time", 0.8, *pace)
-    done = slow_node(0.15, 300_000, *arguments)
+    done = slow_node(*arguments)
     assert done.returncode == 0, done.stderr
     assert re.search(r"warning: the landing waited \d+\.\d\d s for the disk", done.stderr)
     reader = LogReader(folder)
