@@ -40,7 +40,7 @@ def small_log(folder: Path, chunks: int = 4, messages: int = 12) -> Path:
     for k in range(chunks * messages):
         recorder.write("/b" if k % 3 else "/a", 1000 * k, CDR + k.to_bytes(8, "little"))
         if k % messages == messages - 1:
-            recorder._chunk.write()
+            recorder.sync()
     recorder.close()
     assert not recorder.error
     return recorder.path

@@ -10,6 +10,7 @@ from log_tools import CDR, CLOCK_TYPE, messages_of
 from mcap.reader import make_reader
 
 from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.logs.recording.bag_writer import CHUNK_BYTES
 from rlv_ros_bridge.messages.qos import TELEMETRY
 from rlv_ros_bridge.messages.wire import TIMES
 
@@ -30,7 +31,7 @@ def record(folder: Path, chunk_messages: int, *, by_the_library: bool) -> tuple[
         {"key": "value"},
     )
     if by_the_library:
-        recorder._chunk._builder = None
+        recorder._queue._writer._builder = None
     expected: MESSAGES = {name: [] for name in (*SIZES, SINGLE)}
     prefixes = recorder.begin_samples(SIZES)
     for k in range(1500):
@@ -47,7 +48,7 @@ def record(folder: Path, chunk_messages: int, *, by_the_library: bool) -> tuple[
             expected[SINGLE].append((max(0, time - 1000), CDR + random.randbytes(8)))
             recorder.write(SINGLE, *expected[SINGLE][-1])
         if k % chunk_messages == chunk_messages - 1:
-            recorder._chunk.write()
+            recorder.sync()
     assert recorder.count == sum(map(len, expected.values()))
     recorder.close()
     assert not recorder.error
@@ -67,7 +68,7 @@ def test_a_log_is_byte_for_byte_what_mcaps_own_writer_makes_of_its_messages(
 
 
 @pytest.mark.parametrize("by_the_library", [False, True])
-def test_every_message_is_in_a_chunk_of_at_most_64_kib_and_found_by_its_index(
+def test_every_message_is_in_a_chunk_of_bounded_size_and_found_by_its_index(
     tmp_path: Path, *, by_the_library: bool
 ) -> None:
     path, expected = record(tmp_path / "log", 10**9, by_the_library=by_the_library)
@@ -81,7 +82,7 @@ def test_every_message_is_in_a_chunk_of_at_most_64_kib_and_found_by_its_index(
         summary = reader.get_summary()
         assert summary is not None
         assert len(summary.chunk_indexes) > 1
-        assert max(c.uncompressed_size for c in summary.chunk_indexes) <= 64 * 1024
+        assert max(c.uncompressed_size for c in summary.chunk_indexes) <= CHUNK_BYTES
         # By the indexes: a span of one topic.
         part = [
             m.data
@@ -92,7 +93,7 @@ def test_every_message_is_in_a_chunk_of_at_most_64_kib_and_found_by_its_index(
 
 def test_a_message_larger_than_a_chunk_has_one_of_its_own(tmp_path: Path) -> None:
     recorder = Recorder(tmp_path / "log", [RecordedTopic("/a", CLOCK_TYPE, TELEMETRY)])
-    sent = [CDR + bytes(size) for size in (8, 200_000, 8)]
+    sent = [CDR + bytes(size) for size in (8, 2 * CHUNK_BYTES, 8)]
     for k, data in enumerate(sent):
         recorder.write("/a", k, data)
     recorder.close()

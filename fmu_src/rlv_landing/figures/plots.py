@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..history import History
-from ..quantities import touchdown_groups
+from ..quantities import LEGS, touchdown_groups
 from ..text.durable import whole_file
 
 if TYPE_CHECKING:
@@ -26,6 +26,15 @@ MAIN_STROKE = ("main_strut.stroke", 1e3, "main strut stroke [mm]")
 AUXILIARY_FORCE = ("auxiliary_strut.force", 1e-3, "auxiliary strut force [kN]")
 DRAWN_OF_A_LEG = (MAIN_FORCE, MAIN_STROKE, AUXILIARY_FORCE)
 TOP_ACCELERATION = ("body.top_axial_acceleration", 1.0, "axial acceleration\nat the top [m/s²]")
+
+# the columns that `save_overview` needs
+COLUMNS = frozenset(
+    (
+        *(f"leg[{leg}].{column}" for leg in LEGS for column, _, _ in DRAWN_OF_A_LEG),
+        *(f"leg[{leg}].contact.force_y" for leg in LEGS),
+        TOP_ACCELERATION[0],
+    )
+)
 
 
 def draw_peaks(ax: Axes, history: History, column: str, factor: float, colour: str) -> None:

@@ -94,7 +94,8 @@ def animate(files: tuple[Path, ...], *, force: bool, **options: Any) -> None:
     film = Film(**options)
     cut = False
     if len(files) == 2:
-        history, parameters, cut = read_landing(files[0], vehicle)
+        shown = (film.start or 0.0, film.end) if film.end is not None else None
+        history, parameters, cut = read_landing(files[0], vehicle, shown)
         title = shown_name(files[0])
     else:
         history, parameters = compute_landing(vehicle, film.end)

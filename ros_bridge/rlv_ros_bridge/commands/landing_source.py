@@ -69,7 +69,9 @@ def compute_landing(vehicle: VehicleOptions, end: float | None) -> tuple[History
     return Landing(parameters).run(until, SAMPLE_STEP), parameters
 
 
-def read_landing(path: Path, vehicle: VehicleOptions) -> tuple[History, Parameters, bool]:
+def read_landing(
+    path: Path, vehicle: VehicleOptions, shown: tuple[float, float] | None = None
+) -> tuple[History, Parameters, bool]:
     """Reads the landing in a log, its vehicle's parameters, and whether the log is incomplete.
 
     Warns where the ground was moved, for it is drawn at rest.
@@ -77,17 +79,18 @@ def read_landing(path: Path, vehicle: VehicleOptions) -> tuple[History, Paramete
     Args:
         path: the log.
         vehicle: for a log that does not carry its parameters.
+        shown: the first and the last time that is shown [s]; None: those of the log.
 
     Raises:
         LandingError: no such log, no landing in it, or the vehicle is given by both or by neither.
     """
     require_log_readers()
     from ..logs.bag_reader import open_log
-    from ..logs.history import read_history
+    from ..logs.history import drawn_history
     from ..messages.topics import APPLIED_GROUND, resolve
 
     reader = open_log(path)
-    history, _ = read_history(reader)
+    history, _ = drawn_history(reader, shown=shown)
     ground = resolve(reader.namespace, APPLIED_GROUND.name)
     if ground in reader.channels and next(iter(reader.messages([ground])), None) is not None:
         click.echo("warning: the ground was moved in this landing; it is drawn at rest", err=True)

@@ -178,12 +178,10 @@ def export(
     Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged.
     """
     require_log_readers()
-    from rlv_landing.history import History
-
     from ..fmu.peaks import known_extremes
     from ..logs.bag_reader import open_log
     from ..logs.export import ENDINGS, Written, write_parts
-    from ..logs.history import HistoryParts, with_parts
+    from ..logs.history import HistoryParts, drawn_history, with_parts
     from ..logs.instants import RowChoice
 
     if output is None and plot is None:
@@ -213,12 +211,9 @@ def export(
             f"{done.columns} columns"
         )
     if plot is not None:
-        from rlv_landing.figures.plots import save_overview
+        from rlv_landing.figures.plots import COLUMNS, save_overview
 
-        def read(parts: HistoryParts) -> tuple[History, list[str]]:
-            return parts.joined(), parts.notes()
-
-        history, notes = with_parts(reader, (), choice, read)
+        history, notes = drawn_history(reader, choice, COLUMNS)
         with writing(plot):
             save_overview(history, plot, shown_name(log))
         click.echo(f"picture: {plot}")

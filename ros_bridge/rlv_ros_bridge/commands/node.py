@@ -69,6 +69,11 @@ from ..ros.arguments import ROS_COMMAND_SETTINGS, split_ros_args
 )
 @click.option("--no-record", is_flag=True, help="Do not record.")
 @click.option(
+    "--log-must-be-complete",
+    is_flag=True,
+    help="Wait for a disk that is too slow for the landing, instead of leaving messages out.",
+)
+@click.option(
     "--namespace",
     metavar="NAME",
     default="landing",
@@ -122,8 +127,8 @@ def node(
       rlv-landing node --no-record --ros-args --log-level warn
       rlv-landing node --managed --ros-args --params-file landing.yaml
 
-    Exit codes: 0 landed, 1 recording failed on the way, 2 bad input, 130, 143 or 129 after SIGINT,
-    SIGTERM or SIGHUP (the log is complete all the same).
+    Exit codes: 0 landed, 1 recording failed on the way or left messages out, 2 bad input, 130, 143
+    or 129 after SIGINT, SIGTERM or SIGHUP (the log is complete all the same).
     """
     from ..ros.setup import StopFlag, require_ros
 
@@ -134,6 +139,9 @@ def node(
         settings = {name: value for name, value in options.items() if value is not None}
         _refuse_other_encodings({**settings, **recording, "namespace": namespace})
         check_namespace(namespace)
+        if not settings["log_must_be_complete"]:
+            # It may be set among the ROS arguments.
+            del settings["log_must_be_complete"]
         if managed:
             settings["autostart"] = False
         require_ros()
@@ -153,7 +161,7 @@ def node(
             click.echo(one_line(f"error: {e}"), err=True)
     if summary.signal:
         sys.exit(128 + summary.signal)
-    if summary.recording_error:
+    if summary.recording_error or summary.unrecorded:
         sys.exit(EXIT_RECORDING_FAILED)
 
 

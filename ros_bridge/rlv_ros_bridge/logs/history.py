@@ -6,13 +6,14 @@ Values are SI, in the paper's axes.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
 from rlv_landing.errors import LandingError
+from rlv_landing.figures.thinning import thinned
 from rlv_landing.history import History
 from rlv_landing.text.units import parse_number
 
@@ -21,6 +22,7 @@ from ..messages.columns import READINGS
 from ..messages.topics import RECORDED, resolve
 from .bag_reader import open_log
 from .instants import OrderError, RowChoice, instants
+from .lost import lost_text
 from .peaks import read_peaks
 from .reader import Decoder, LogReader
 
@@ -60,6 +62,32 @@ def read_history(reader: LogReader, topics: Sequence[str] = ()) -> tuple[History
         return parts.joined(), parts.notes()
 
     return with_parts(reader, topics, RowChoice(), read)
+
+
+def drawn_history(
+    reader: LogReader,
+    choice: RowChoice | None = None,
+    columns: Set[str] | None = None,
+    shown: tuple[float, float] | None = None,
+) -> tuple[History, list[str]]:
+    """As `read_history`, for a picture: of a long landing some rows, with every curve's peaks.
+
+    Args:
+        reader: the log.
+        choice: the rows to take; None: all.
+        shown: as in `figures.thinning.thinned`.
+        columns: the columns that are needed; None: all. Others may be there.
+    """
+
+    def read(parts: HistoryParts) -> tuple[History, list[str]]:
+        return parts.complete(thinned(parts, shown)), parts.notes()
+
+    needed = [
+        relative
+        for relative, (names, _) in READINGS.items()
+        if columns is None or not columns.isdisjoint(names)
+    ]
+    return with_parts(reader, needed if columns is not None else (), choice or RowChoice(), read)
 
 
 def with_parts(
@@ -167,12 +195,12 @@ class HistoryParts:
     def joined(self) -> History:
         """All rows as one history, with the extremes of the log's record."""
         parts = list(self)
-        history = History(
-            np.concatenate([p.time for p in parts]),
-            self.names,
-            np.concatenate([p.data for p in parts]),
-            self.parameters,
-        )
+        time = np.concatenate([p.time for p in parts])
+        data = np.concatenate([p.data for p in parts])
+        return self.complete(History(time, self.names, data, self.parameters))
+
+    def complete(self, history: History) -> History:
+        """A history of the log with the extremes of its record, where it has them."""
         if found := self.peaks():
             history.extremes = known_extremes(found, history)
         return history
@@ -220,6 +248,8 @@ def _notes(reader: LogReader, chosen: Mapping[str, str], incomplete: int) -> lis
     own = f"/{reader.namespace.strip('/')}/"
     ignored = [name.removeprefix(own) for name in reader.channels if name not in chosen]
     notes = [f"left aside: {', '.join(ignored)}"] if ignored else []
+    if lost := lost_text(reader.gaps):
+        notes.append(f"missing: {lost}, for which the disk was too slow")
     if incomplete:
         notes.append(f"left out: {incomplete} instants that lack one of the topics")
     return notes

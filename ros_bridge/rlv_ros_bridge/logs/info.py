@@ -17,6 +17,7 @@ from rlv_landing.text.terminal import legible_lines
 from ..messages.topics import DIAGNOSTICS
 from .history import choose_topics, read_history
 from .landing_record import PHASES, landing_summary, read_landing
+from .lost import lost_text
 from .reader import Decoder, LogReader
 
 # A log that starts later has the time of the day: that of 1973 [s].
@@ -52,6 +53,8 @@ class LogInfo:
     are of the log's record of peaks (`peaks_of` is `landing`), without it of the messages
     (`samples`). `landing` is empty where the log holds no landing; `no_landing` is the reason.
 
+    `lost` tells the messages that the recorder left out since its disk took too long.
+
     `read` says what was read: the `summary`, or all messages (`checked` where that was asked for,
     else `whole`, as the summary did not do).
     """
@@ -68,6 +71,7 @@ class LogInfo:
     attachments: dict[str, int]
     landing: dict[str, Any] = field(default_factory=dict)
     no_landing: str = ""
+    lost: str = ""
     read: str = "whole"
 
     def as_dict(self) -> dict[str, Any]:
@@ -112,6 +116,7 @@ class LogInfo:
             for i, (n, size) in enumerate(self.attachments.items())
         ]
         lines += [f"landing    {self.no_landing}"] if self.no_landing else []
+        lines += [f"missing    {self.lost}: the disk was too slow for them"] if self.lost else []
         lines += [f"{'damage' if i == 0 else '':<10} {text}" for i, text in enumerate(self.damage)]
         if self.topics:
             names = [one_line(t.name, LONGEST_NAME) for t in self.topics]
@@ -264,6 +269,7 @@ def _info(
         messages=sum(counts.values()),
         topics=topics,
         metadata=dict(reader.metadata),
+        lost=lost_text(reader.gaps),
         attachments={name: len(data) for name, data in reader.attachments.items()},
         **rest,
     )

@@ -14,6 +14,8 @@ from rlv_landing.parameters import Parameters
 from ..messages.topics import STRUTS
 from .landing_record import RECORD as LANDING_RECORD
 from .log_files import check_file, find_files
+from .lost import RECORD as LOST_RECORD
+from .lost import Gap, read_gap
 from .mcap_files.stream import RecordStream
 from .mcap_files.summary import Summary, read_summary
 from .peaks import RECORD as PEAKS_RECORD
@@ -52,6 +54,7 @@ class LogReader:
     `damage` what is wrong besides a missing end. `channels`, `metadata` and `attachments` are
     filled while reading; in our logs all stand at the start. So are `peaks` and `landing`, the
     texts of the records of peaks and of the landing, which stand at the end; a cut log lacks them.
+    `gaps` are the spans whose messages the recorder left out since its disk took too long.
 
     Args:
         path: the log.
@@ -68,6 +71,7 @@ class LogReader:
         self.peaks: dict[str, str] = {}
         self.landing: dict[str, str] = {}
         self.attachments: dict[str, bytes] = {}
+        self.gaps: list[Gap] = []
         self.cut = False
         self.damage: list[str] = []
         self._schemas: dict[str, Any] = {}
@@ -117,6 +121,10 @@ class LogReader:
                 self.peaks.update(record.metadata)
             elif record.name == LANDING_RECORD:
                 self.landing.update(record.metadata)
+            elif record.name == LOST_RECORD:
+                gap = read_gap(record.metadata, str(self.path))
+                if gap not in self.gaps:
+                    self.gaps.append(gap)
         elif definitions.add(record):
             self._add_channel(*definitions.find(record.id))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import time
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,23 +12,25 @@ from rlv_landing.text.durable import unwritable
 
 from ..messages.definitions import Definition, definition
 from ..messages.qos import Qos
-from .bag_writer import CHUNK_BYTES, BagTopic, BagWriter, media_type
 from .landing_record import RECORD as LANDING_RECORD
-from .mcap_files.chunk_buffer import RECORD_SIZE, ChunkBuffer, message_prefix
+from .lost import RECORD as LOST_RECORD
+from .mcap_files.chunk_buffer import RECORD_SIZE, message_prefix
 from .peaks import RECORD as PEAKS_RECORD
-
-__all__ = ["CHUNK_BYTES", "FLUSH_SECONDS", "RecordedTopic", "Recorder"]
-
-FLUSH_SECONDS = 0.25
+from .recording.bag_writer import BagTopic, BagWriter, media_type
+from .recording.chunk_queue import ChunkQueue
 
 
 @dataclass(frozen=True)
 class RecordedTopic:
-    """A topic of a log: its full name, its type `pkg/msg/Type`, and its publisher's QoS."""
+    """A topic of a log: its full name, its type `pkg/msg/Type`, and its publisher's QoS.
+
+    Messages of a topic that is `kept` are not left out where the disk takes too long.
+    """
 
     name: str
     type_name: str
     qos: Qos
+    kept: bool = False
 
 
 class Recorder:
@@ -36,8 +38,12 @@ class Recorder:
 
     `close` removes the ending `.part` and writes `metadata.yaml`.
 
+    A thread compresses and writes. Where too much waits for the disk, what comes next is left out,
+    and the log has a record of the gap; with `must_wait`, who records waits instead.
+
     A disk that fills up later, or a folder that is removed or moved, does not raise: `error` is
-    set, recording stops, and what was written stays readable. It is not thread-safe.
+    set, recording stops, and what was written stays readable. One thread at a time may use it; in
+    a forked process it does nothing.
 
     Args:
         folder: made here with its parents; it must not exist.
@@ -59,8 +65,8 @@ class Recorder:
     ) -> None:
         self.folder = Path(folder)
         self.topics = tuple(topics)
-        self.error: str = ""
-        self._flushed = time.monotonic()
+        self._error = ""
+        self._process = os.getpid()
         definitions = {t.type_name: definition(t.type_name) for t in self.topics}
         try:
             self._bag = BagWriter(self.folder)
@@ -74,10 +80,8 @@ class Recorder:
             for t in self.topics
         }
         self._bag.bag.topics = list(self._entries.values())
-        self._span = self._bag.bag.span
-        # The topics of a sample's messages, and the number of samples.
+        # The topics of a sample's messages.
         self._sampled: tuple[str, ...] = ()
-        self._samples = 0
         try:
             for name, data in (attachments or {}).items():
                 self._bag.mcap.add_attachment(
@@ -87,9 +91,10 @@ class Recorder:
                 self._bag.mcap.add_metadata("rlv_landing", dict(metadata))
             self._channels = self._register(definitions)
             self._bag.mcap.flush()
-            self._chunk = ChunkBuffer(self._bag.mcap, CHUNK_BYTES)
+            kept = [self._channels[t.name] for t in self.topics if t.kept]
+            self._queue = ChunkQueue(self._bag, kept)
         except BaseException as e:
-            self.discard()
+            self._bag.discard()
             if isinstance(e, OSError):
                 raise self._unwritable(e) from None
             raise
@@ -117,8 +122,35 @@ class Recorder:
 
     @property
     def count(self) -> int:
-        """Messages recorded so far."""
-        return sum(t.count for t in self._entries.values()) + self._samples * len(self._sampled)
+        """Messages recorded so far, some of which may still wait for the disk."""
+        queue = self._queue
+        return queue.samples * len(self._sampled) + queue.singles.total()
+
+    @property
+    def must_wait(self) -> bool:
+        """Whether who records waits for the disk where it takes too long."""
+        return self._queue.must_wait
+
+    @must_wait.setter
+    def must_wait(self, must_wait: bool) -> None:
+        self._queue.must_wait = must_wait
+
+    @property
+    def lost(self) -> int:
+        """Messages that were left out."""
+        return self._queue.lost
+
+    @property
+    def waited(self) -> float:
+        """The time for which who records has waited for the disk [s]."""
+        return self._queue.waited
+
+    @property
+    def error(self) -> str:
+        """Why recording has stopped; empty where it has not."""
+        if not self._error and (reason := self._queue.error):
+            self._fail(reason)
+        return self._error
 
     def begin_samples(self, sizes: Mapping[str, int]) -> list[bytes]:
         """Prepares for `write_sample`: from now on the messages of a sample are recorded together.
@@ -133,7 +165,7 @@ class Recorder:
         self._sampled = tuple(sizes)
         offset = 0
         for topic, size in sizes.items():
-            self._chunk.sample_offsets[self._channels[topic]] = offset
+            self._queue.sample_offsets[self._channels[topic]] = offset
             offset += RECORD_SIZE + size
         return [message_prefix(self._channels[topic], size) for topic, size in sizes.items()]
 
@@ -146,15 +178,7 @@ class Recorder:
             log_time_ns: simulation time [ns].
             records: the records of its messages, in the order of `begin_samples`.
         """
-        if self.error:
-            return
-        try:
-            self._chunk.add_sample(log_time_ns, records)
-        except OSError as e:
-            self._fail(reason_of(e))
-            return
-        self._samples += 1
-        self._span.add(log_time_ns)
+        self._queue.add_sample(log_time_ns, records)
 
     def write(self, topic: str, log_time_ns: int, data: bytes) -> None:
         """Records one message.
@@ -166,37 +190,26 @@ class Recorder:
             log_time_ns: simulation time [ns].
             data: the serialised message.
         """
-        if self.error:
-            return
-        entry = self._entries[topic]
-        try:
-            self._chunk.add(self._channels[topic], entry.count & 0xFFFFFFFF, log_time_ns, data)
-        except OSError as e:
-            self._fail(reason_of(e))
-            return
-        entry.count += 1
-        self._span.add(log_time_ns)
+        self._queue.add(self._channels[topic], log_time_ns, data)
 
-    def flush(self) -> None:
-        """Hands what was recorded to the operating system, at most every `FLUSH_SECONDS`.
+    def flush(self, *, now: bool = False) -> None:
+        """Hands what was recorded to the thread that writes, at most every quarter of a second.
 
-        To be called after each sample.
+        To be called after all messages of an instant.
+
+        Args:
+            now: at once.
         """
-        now = time.monotonic()
-        if self.error or now - self._flushed < FLUSH_SECONDS:
-            return
-        self._flushed = now
-        try:
-            self._chunk.write()
-            if not self._bag.file_exists():
-                self._fail("the file was removed or moved away")
-        except OSError as e:
-            self._fail(reason_of(e))
+        self._queue.flush(now=now)
+
+    def sync(self) -> None:
+        """Waits until the operating system has what was recorded, or recording has failed."""
+        self._queue.sync()
 
     def close(
         self, peaks: Mapping[str, str] | None = None, landing: Mapping[str, str] | None = None
     ) -> None:
-        """Finishes the file and writes `metadata.yaml`.
+        """Waits for the disk, finishes the file and writes `metadata.yaml`.
 
         After an error it only closes the file, which `rlv-landing log` can read.
 
@@ -204,26 +217,40 @@ class Recorder:
             peaks: the texts of the landing's peaks, see `peaks.peak_texts`; none: no such record.
             landing: the texts of the landing's summary, see `landing_record`; none: no such record.
         """
-        if not self._bag.is_open:
+        if not self._bag.is_open or os.getpid() != self._process:
             return
         try:
+            self._queue.end()
             if not self.error:
-                self._chunk.write()
-                for topic in self._sampled:
-                    self._entries[topic].count = self._samples
-                self._sampled = ()
-                for name, texts in ((PEAKS_RECORD, peaks), (LANDING_RECORD, landing)):
+                gap = self._queue.gap
+                for name, texts in (
+                    (LOST_RECORD, gap.texts() if gap is not None else None),
+                    (PEAKS_RECORD, peaks),
+                    (LANDING_RECORD, landing),
+                ):
                     if texts:
                         self._bag.mcap.add_metadata(name, dict(texts))
+                self._count_topics()
                 self._bag.finish()
         except OSError as e:
             self._fail(reason_of(e))
         finally:
+            self._queue.end(discard=True)
             self._bag.abandon()
+
+    def _count_topics(self) -> None:
+        """Tells `metadata.yaml` the numbers of messages."""
+        for topic, entry in self._entries.items():
+            sampled = self._queue.samples if topic in self._sampled else 0
+            entry.count = sampled + self._queue.singles[self._channels[topic]]
 
     def discard(self) -> None:
         """Closes and removes everything that this recorder has made."""
-        self._bag.discard()
+        if os.getpid() == self._process:
+            self._queue.end(discard=True)
+            self._bag.discard()
 
     def _fail(self, reason: str) -> None:
-        self.error = f"recording to {self._bag.part} stopped after {self.count} messages: {reason}"
+        self._error = (
+            f"recording to {self._bag.part} stopped after {self._queue.written} messages: {reason}"
+        )

@@ -14,10 +14,10 @@ from rlv_landing.text.terminal import legible_lines
 from rlv_landing.text.units import UnitError, parse_number
 
 from ..messages.qos import profiles
-from .bag_writer import BagTopic, BagWriter
 from .log_files import FINISHED, UNFINISHED, check_file, find_files, log_name
 from .mcap_files.stream import RecordStream
 from .reader import Definitions
+from .recording.bag_writer import BagTopic, BagWriter
 
 # Metadata that the new log's writer makes itself.
 WRITERS_METADATA = "rosbag2"

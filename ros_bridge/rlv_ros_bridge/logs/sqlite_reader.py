@@ -17,6 +17,7 @@ from urllib.parse import quote
 
 from rlv_landing.errors import LandingError
 
+from .lost import Gap
 from .mcap_files.chunks import CHUNK_BYTES, CHUNK_RATIO
 from .reader import Channel, LogMessage, LogReader
 
@@ -46,6 +47,7 @@ class SqliteReader(LogReader):
         self.peaks: dict[str, str] = {}
         self.landing: dict[str, str] = {}
         self.attachments: dict[str, bytes] = {}
+        self.gaps: list[Gap] = []
         self.cut = False
         self.damage: list[str] = []
         self.channels: dict[str, Channel] = {}

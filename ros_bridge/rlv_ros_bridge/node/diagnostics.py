@@ -31,6 +31,7 @@ class LandingCount:
     samples: int
     unpublished: int
     recorded: int
+    unrecorded: int
     received: int
     refused: int
     of_fmu: Mapping[str, int]
@@ -70,6 +71,7 @@ class DiagnosticsMessage:
         problems = {
             "steps late": pacer.late_steps,
             "messages not published": count.unpublished,
+            "messages not recorded": count.unrecorded,
             "inputs refused": count.refused,
         }
         status = {
@@ -80,6 +82,7 @@ class DiagnosticsMessage:
             **pacing_values(pacer, nanoseconds / NANOSECONDS),
             "messages not published": str(count.unpublished),
             "messages recorded": str(count.recorded),
+            "messages not recorded": str(count.unrecorded),
             "inputs received": str(count.received),
             "inputs refused": str(count.refused),
         }

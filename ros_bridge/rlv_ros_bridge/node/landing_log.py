@@ -34,7 +34,8 @@ class LandingLog:
         folder: the log's folder, which must not exist; None: no recording.
         publishing: the node's publishers: names and quality of service of the topics.
         namespace: the node's namespace.
-        on_error: called once with a text when recording fails.
+        on_error: called once with a text when recording fails, and when the first messages are
+            left out since the disk takes too long.
     """
 
     def __init__(
@@ -48,7 +49,7 @@ class LandingLog:
         self.recorder: Recorder | None = None
         self._settings, self._folder, self._publishing = settings, folder, publishing
         self._namespace, self._on_error = namespace, on_error
-        self._error_reported = False
+        self._error_reported = self._loss_reported = False
         self._rows = LandingRows(settings.parameters)
 
     def open(self, fmu: FmuRunner, description: bytes, packer: SampleBytes) -> SampleBytes | None:
@@ -68,7 +69,16 @@ class LandingLog:
         if self._folder is None or self.recorder is not None:
             return None
         names, qos = self._publishing.names, self._publishing.qos
-        recorded = [RecordedTopic(names[t], t.type_name, qos[t]) for t in topics.RECORDED]
+        recorded = [
+            RecordedTopic(
+                names[t],
+                t.type_name,
+                qos[t],
+                # Without its inputs a landing cannot be repeated.
+                kept=t in (topics.ROBOT_DESCRIPTION, *topics.APPLIED),
+            )
+            for t in topics.RECORDED
+        ]
         self.recorder = Recorder(
             self._folder,
             recorded,
@@ -91,10 +101,26 @@ class LandingLog:
             return
         recorder.write_sample(k * self._settings.step_ns, messages)
         self._rows.add(k * self._settings.step_size, values)
-        recorder.flush()
         if recorder.error and not self._error_reported:
             self._error_reported = True
             self._on_error(f"{recorder.error}; the landing continues without recording")
+        if recorder.lost and not self._loss_reported:
+            self._loss_reported = True
+            self._on_error(
+                f"the disk of {recorder.folder} is slower than the landing: messages are missing "
+                "from the log; set log_must_be_complete, and the landing waits"
+            )
+
+    def flush(self, *, now: bool = False, wait: bool = False) -> None:
+        """Hands what was written to the disk now and then; after all messages of a sample.
+
+        Args:
+            now: at once.
+            wait: wait where the disk takes too long, whatever the settings say.
+        """
+        if self.recorder is not None:
+            self.recorder.must_wait = wait or self._settings.log_must_be_complete
+            self.recorder.flush(now=now)
 
     def write(self, topic: Topic, stamp: int, data: bytes) -> None:
         """Writes a message with the time `stamp` [ns]."""
@@ -105,6 +131,16 @@ class LandingLog:
     def count(self) -> int:
         """The number of messages written."""
         return self.recorder.count if self.recorder else 0
+
+    @property
+    def lost(self) -> int:
+        """The number of messages that were left out since the disk took too long."""
+        return self.recorder.lost if self.recorder else 0
+
+    @property
+    def waited(self) -> float:
+        """The time for which the landing has waited for the disk [s]."""
+        return self.recorder.waited if self.recorder else 0.0
 
     @property
     def error(self) -> str:

@@ -166,7 +166,10 @@ class LandingRun:
                 queue.publish(latest)
                 if self._enqueue_occasional(k, values):
                     queue.publish(latest)
+                # Without a pace, nothing is late that waits for the disk.
+                self.log.flush(wait=not pacer.period)
         finally:
+            self.log.flush(now=True, wait=True)
             pacer.stop()
             sys.setswitchinterval(switch_before)
             gc.unfreeze()
@@ -187,6 +190,8 @@ class LandingRun:
             self._enqueue_occasional(k, values)
             self.samples = k + 1
             self._queue.publish(0.0)
+            self.log.flush(wait=True)
+        self.log.flush(now=True, wait=True)
         self._queue.drain(DRAIN_SECONDS)
 
     @property
@@ -246,6 +251,7 @@ class LandingRun:
             samples=k + 1,
             unpublished=self.dropped,
             recorded=self.log.count,
+            unrecorded=self.log.lost,
             received=self._inputs.received,
             refused=self._inputs.refused,
             of_fmu=self.fmu.statistics(),
@@ -271,6 +277,8 @@ class LandingRun:
         return RunSummary(
             samples=self.samples,
             recorded=self.log.count,
+            unrecorded=self.log.lost,
+            disk_wait=self.log.waited,
             simulated=self.time,
             wall=pacer.elapsed,
             late_steps=pacer.late_steps,

@@ -18,11 +18,15 @@ class RunSummary:
 
     `end` is "finished", "toppled" or "interrupted" (by the signal number `signal`). `simulated`,
     `wall`, `lost` and the lateness are in s. `dropped` messages were recorded but not published,
-    because a subscriber did not take them or the node had no time.
+    because a subscriber did not take them or the node had no time. `unrecorded` messages are
+    missing from the log, whose disk took too long; the landing has waited for it for `disk_wait`
+    [s].
     """
 
     samples: int
     recorded: int
+    unrecorded: int
+    disk_wait: float
     simulated: float
     wall: float
     late_steps: int
@@ -60,6 +64,13 @@ def print_summary(summary: RunSummary) -> None:
         warnings.append(
             f"{summary.dropped} messages were not published in time, and dropped; the log has them"
         )
+    if summary.unrecorded:
+        warnings.append(
+            f"{summary.unrecorded} messages are missing from the log, whose disk was slower than "
+            "the landing; with --log-must-be-complete the landing waits"
+        )
+    if summary.disk_wait:
+        warnings.append(f"the landing waited {summary.disk_wait:.2f} s for the disk of its log")
     if not summary.acknowledged:
         warnings.append("not every reliable subscriber has acknowledged all samples")
     for text in warnings:

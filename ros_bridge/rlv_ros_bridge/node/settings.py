@@ -112,6 +112,10 @@ SETTINGS: dict[str, Setting] = {
         "",
         "record to a new folder below this one, named by UTC time and mode, if `record` is empty",
     ),
+    "log_must_be_complete": Setting(
+        default=False,
+        meaning="wait for a disk that is slower than the landing, instead of leaving messages out",
+    ),
     "wait_for_subscribers": Setting(
         0, "subscriptions on `struts` to wait for before the landing starts", 0.0, 1000.0
     ),
@@ -153,6 +157,7 @@ class Settings:
     stop_time: float
     record: str
     log_root: str
+    log_must_be_complete: bool
     wait_for_subscribers: int
     frame_prefix: str
     wait_timeout: float
@@ -224,6 +229,7 @@ def make_settings(values: Mapping[str, Any], parameters: Parameters, origin: str
         stop_time=values["stop_time"],
         record=values["record"],
         log_root=values["log_root"],
+        log_must_be_complete=values["log_must_be_complete"],
         wait_for_subscribers=values["wait_for_subscribers"],
         frame_prefix=values["frame_prefix"],
         wait_timeout=values["wait_timeout"],

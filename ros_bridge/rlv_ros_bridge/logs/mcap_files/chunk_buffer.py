@@ -1,29 +1,20 @@
-"""The messages of a log's open chunk, gathered as the bytes of their records.
-
-They are handed to MCAP's own writer a chunk at a time: see `internals` for the reason.
-"""
+"""The messages of a log's next chunk, gathered as the bytes of their records."""
 
 from __future__ import annotations
 
 import struct
-from typing import Any
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
-import numpy as np
-from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
-from mcap.records import MessageIndex
-from numpy.typing import NDArray
 
 from ...messages.wire import TIMES
-from .internals import chunk_builder, statistics
-from .records import MESSAGE_HEAD_BYTES, RECORD_HEAD, decode_record, split_records
+from .records import MESSAGE_HEAD_BYTES, RECORD_HEAD
 
 # Before a message's data: opcode, length, channel (MESSAGE_PREFIX), then sequence number, log time
 # and publish time (TIMES).
 MESSAGE_PREFIX = struct.Struct("<BQH")
 RECORD_SIZE = MESSAGE_PREFIX.size + TIMES.size
-# The start of a message index: opcode, length, channel, bytes of the entries.
-INDEX_HEAD = struct.Struct("<BQHI")
 
 
 def message_prefix(channel: int, size: int) -> bytes:
@@ -31,119 +22,98 @@ def message_prefix(channel: int, size: int) -> bytes:
     return MESSAGE_PREFIX.pack(Opcode.MESSAGE, MESSAGE_HEAD_BYTES + size, channel)
 
 
-class PackedIndex(MessageIndex):
-    """MCAP's message index, written in one piece.
+@dataclass
+class Gathered:
+    """Messages that make a chunk.
 
-    Args:
-        channel: number of the channel.
-        entries: (messages, 2), log time [ns] and offset in the chunk [bytes].
+    `parts` are the bytes of their records, `size` in all. `samples` are time [ns] and offset
+    [bytes] of each sample's records, in which that of each channel is at `sample_offsets`.
+    `singles` are time and offset of other messages by channel. `last` is the largest time.
     """
 
-    def __init__(self, channel: int, entries: NDArray[np.uint64]) -> None:
-        super().__init__(channel, [])
-        self.entries = entries
+    sample_offsets: Mapping[int, int]
+    parts: list[bytes] = field(default_factory=list)
+    size: int = 0
+    samples: list[tuple[int, int]] = field(default_factory=list)
+    singles: dict[int, list[tuple[int, int]]] = field(default_factory=dict)
+    last: int = -1
 
-    def write(self, stream: RecordBuilder) -> None:
-        """Writes the record to `stream`."""
-        size = self.entries.nbytes
-        length = INDEX_HEAD.size - RECORD_HEAD.size + size
-        head = INDEX_HEAD.pack(Opcode.MESSAGE_INDEX, length, self.channel_id, size)
-        stream.write(head + self.entries.tobytes())
+    @property
+    def first(self) -> int:
+        """The smallest time [ns]."""
+        groups = (self.samples, *self.singles.values())
+        return min(time for messages in groups for time, _ in messages)
+
+    @property
+    def count(self) -> int:
+        """The number of messages."""
+        singles = sum(map(len, self.singles.values()))
+        return len(self.samples) * len(self.sample_offsets) + singles
+
+    def records(self, channel: int) -> list[tuple[int, bytes]]:
+        """Time [ns] and record of each single message of `channel`."""
+        data = b"".join(self.parts)
+        found = []
+        for time, offset in self.singles.get(channel, ()):
+            _, length = RECORD_HEAD.unpack_from(data, offset)
+            found.append((time, data[offset : offset + RECORD_HEAD.size + length]))
+        return found
 
 
 class ChunkBuffer:
-    """Gathers messages, and has them written as a chunk when it is full.
+    """Gathers messages, and hands them over when they make a chunk.
+
+    A chunk is full when the next message would make it larger than `limit`. It is handed over
+    before the first message that is later than all in it, so that no chunk has times of another.
 
     `sample_offsets` gives, by channel, the offset of its record among the records of a sample
-    [bytes]. `add`, `add_sample` and `write` raise OSError where writing fails.
+    [bytes].
 
     Args:
-        mcap: MCAP's writer.
-        limit: size of a full chunk [bytes], with what `mcap` has gathered before.
+        hand_over: takes a chunk's messages.
+        limit: size of a full chunk [bytes].
+        begun: size of what the first chunk holds besides [bytes].
     """
 
-    def __init__(self, mcap: Any, limit: int) -> None:
+    def __init__(self, hand_over: Callable[[Gathered], None], limit: int, begun: int = 0) -> None:
         self.sample_offsets: dict[int, int] = {}
-        self._mcap = mcap
-        self._limit = limit
-        self._builder = chunk_builder(mcap)
-        self._statistics = statistics(mcap)
-        self._clear()
-
-    def _clear(self) -> None:
-        # MCAP's writer may have gathered schemas and channels before.
-        self._size = self._builder.count if self._builder is not None else 0
-        self._parts: list[bytes] = []
-        # Time and offset of samples, and of single messages by channel.
-        self._samples: list[tuple[int, int]] = []
-        self._singles: dict[int, list[tuple[int, int]]] = {}
+        self._hand_over, self._limit, self._begun = hand_over, limit, begun
+        self._open = Gathered(self.sample_offsets)
 
     def add(self, channel: int, sequence: int, time: int, data: bytes) -> None:
         """Adds a message of `channel`, logged and published at `time` [ns]."""
         head = message_prefix(channel, len(data)) + TIMES.pack(sequence, time, time)
-        offset = self._append(head + data)
-        self._singles.setdefault(channel, []).append((time, offset))
+        self.add_record(channel, time, head + data)
+
+    def add_record(self, channel: int, time: int, record: bytes) -> None:
+        """Adds the record of a message of `channel`, logged at `time` [ns]."""
+        offset = self._append(time, record)
+        self._open.singles.setdefault(channel, []).append((time, offset))
 
     def add_sample(self, time: int, records: bytes) -> None:
         """Adds the records of a sample's messages, logged and published at `time` [ns].
 
         There is one record for each channel of `sample_offsets`.
         """
-        offset = self._append(records)
-        self._samples.append((time, offset))
+        offset = self._append(time, records)
+        self._open.samples.append((time, offset))
 
-    def _append(self, records: bytes) -> int:
-        if self._parts and self._size + len(records) > self._limit:
-            self.write()
-        offset = self._size
-        self._parts.append(records)
-        self._size += len(records)
+    def _append(self, time: int, records: bytes) -> int:
+        gathered = self._open
+        if self._begun + gathered.size + len(records) > self._limit and time > gathered.last:
+            self.hand_over()
+            gathered = self._open
+        offset = gathered.size
+        gathered.parts.append(records)
+        gathered.size += len(records)
+        if time > gathered.last:
+            gathered.last = time
         return offset
 
-    def write(self) -> None:
-        """Writes what was gathered as a chunk, and hands it to the operating system."""
-        data = b"".join(self._parts)
-        if self._builder is not None and self._statistics is not None:
-            self._add_messages(data)
-        else:
-            for record in split_records(data):
-                m = decode_record(record[0], record[RECORD_HEAD.size :])
-                self._mcap.add_message(m.channel_id, m.log_time, m.data, m.publish_time, m.sequence)
-        self._mcap.flush()
-        self._clear()
-
-    def _add_messages(self, data: bytes) -> None:
-        """Does for all messages at once what `add_message` does for each."""
-        if not data:
-            return
-        indexes = self._indexes()
-        groups = (self._samples, *self._singles.values())
-        times = [time for messages in groups for time, _ in messages]
-        first, last = min(times), max(times)
-        count = sum(map(len, indexes.values()))
-        builder, statistics = self._builder, self._statistics
-        builder.record_writer.write(data)
-        builder.message_indices = {
-            channel: PackedIndex(channel, entries) for channel, entries in indexes.items()
-        }
-        builder.num_messages = count
-        builder.message_start_time, builder.message_end_time = first, last
-        statistics.message_start_time = (
-            min(first, statistics.message_start_time) if statistics.message_count else first
-        )
-        statistics.message_end_time = max(last, statistics.message_end_time)
-        statistics.message_count += count
-        for channel, index in indexes.items():
-            statistics.channel_message_counts[channel] += len(index)
-
-    def _indexes(self) -> dict[int, NDArray[np.uint64]]:
-        """By channel, time and offset of its messages: (messages, 2)."""
-        indexes: dict[int, NDArray[np.uint64]] = {}
-        if self._samples:
-            # All channels at once: the samples' times and offsets, plus the offset in a sample.
-            within = np.array([[(0, offset)] for offset in self.sample_offsets.values()], "<u8")
-            indexes = dict(zip(self.sample_offsets, np.array(self._samples, "<u8") + within))
-        indexes.update(
-            (channel, np.array(entries, "<u8")) for channel, entries in self._singles.items()
-        )
-        return indexes
+    def hand_over(self) -> None:
+        """Hands over what was gathered, if anything was."""
+        gathered = self._open
+        if gathered.parts:
+            self._begun = 0
+            self._open = Gathered(self.sample_offsets)
+            self._hand_over(gathered)

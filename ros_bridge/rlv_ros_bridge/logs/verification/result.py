@@ -37,10 +37,10 @@ class Verification:
     """The result of a comparison.
 
     `values` of `messages` at `instants` were compared, with `inputs` repeated, and the `peaks` that
-    the log's record of them has. `other_bits` values
-    are not the same bits. `largest` is the largest difference as a share of its field's largest
-    value. `not_exact` says why the bits need not be the same, or is empty. `first` is the first
-    difference beyond `tolerance`. `end` and `stop_time` are in s.
+    the log's record of them has. `lost` of the instants are in gaps that the log tells of.
+    `other_bits` values are not the same bits. `largest` is the largest difference as a share of
+    its field's largest value. `not_exact` says why the bits need not be the same, or is empty.
+    `first` is the first difference beyond `tolerance`. `end` and `stop_time` are in s.
     """
 
     path: str
@@ -51,6 +51,7 @@ class Verification:
     values: int = 0
     inputs: int = 0
     peaks: int = 0
+    lost: int = 0
     other_bits: int = 0
     largest: float = 0.0
     first: Difference | None = None
@@ -77,6 +78,8 @@ class Verification:
             lines.append(f"inputs    {self.inputs}, repeated at their times")
         if self.peaks:
             lines.append(f"peaks     {self.peaks}, with their times")
+        if self.lost:
+            lines.append(f"missing   {self.lost} of these instants, in gaps that the log tells of")
         if self.first is not None:
             lines.append(f"differs   first in {self.first.text()}")
         elif self.other_bits:

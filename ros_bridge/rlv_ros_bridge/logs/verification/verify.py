@@ -97,7 +97,9 @@ class _Comparison:
                     message.topic, "", message.log_time / 1e9, "a message more", None
                 )
             while at > k:
-                if k >= 0 and missing:
+                if k >= 0 and missing and self._is_lost(k):
+                    found.lost += 1
+                elif k >= 0 and missing:
                     self._raise_difference(min(missing), "", k * run.step, None, "a message")
                 if k * run.step > run.stop_time + run.step:
                     self._raise_difference(
@@ -118,11 +120,18 @@ class _Comparison:
                 f"{self._reader.path} cannot be compared: "
                 f"it holds no message of {', '.join(self._topics)}"
             )
-        if missing and not (self._reader.cut or self._recovered):
+        if missing and self._is_lost(k):
+            found.lost += 1
+        elif missing and not (self._reader.cut or self._recovered):
             self._raise_difference(min(missing), "", k * run.step, None, "a message")
         found.end = k * run.step
         if self._reader.peaks:
             self._compare_peaks(samples, k)
+
+    def _is_lost(self, k: int) -> bool:
+        """Whether sample k is in a gap that the log tells of."""
+        now = k * self._run.step_ns
+        return any(gap.first <= now <= gap.last for gap in self._reader.gaps)
 
     def _compare_peaks(self, samples: Iterator[dict[str, float]], k: int) -> None:
         """Compares the log's record of peaks with the repetition's, which is at sample `k`.

@@ -7,18 +7,20 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from rlv_landing import __version__
 from rlv_landing.errors import LandingError, reason_of
 from rlv_landing.text.durable import write_durably
 from rlv_landing.text.files import is_utf8
 
-from .log_files import FINISHED, UNFINISHED
-from .mcap_files.stream import LIBRARY
+from ..log_files import FINISHED, UNFINISHED
+from ..mcap_files.stream import LIBRARY
+from .log_file import LogFile
 
-# A killed writer loses at most the open chunk and what was not yet flushed.
-CHUNK_BYTES = 60 * 1024
+# Larger chunks compress better, and have fewer indexes; of a smaller one less is read for an
+# instant.
+CHUNK_BYTES = 256 * 1024
 
 
 @dataclass
@@ -114,12 +116,13 @@ class BagWriter:
         self.part = folder / (name + UNFINISHED)
         self.bag = Bag(self.path.name)
         self._made = make_folder(folder)
-        self._file: IO[bytes] | None = None
+        self._file: LogFile | None = None
         try:
-            self._file = self.part.open("xb")
+            self._file = LogFile(self.part)
             # With the data section's checksum, a later change of any byte is noticed.
+            output: Any = self._file
             self.mcap: Any = Writer(
-                self._file,
+                output,
                 chunk_size=CHUNK_BYTES,
                 compression=CompressionType.ZSTD,
                 enable_data_crcs=True,

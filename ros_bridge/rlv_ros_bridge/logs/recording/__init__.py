@@ -1,0 +1,1 @@
+"""Writes a log: a thread compresses and writes what a landing records."""
