@@ -18,6 +18,7 @@ from .records import (
     BodyOutputs,
     BodyState,
     EnergyOutputs,
+    FootLoads,
     Inputs,
     LegForces,
     LegModel,
@@ -36,6 +37,7 @@ BODY = len(BodyState._fields)
 LEG = len(LegState._fields)
 ACCOUNTS = len(Accounts._fields)
 INPUTS = len(Inputs._fields)
+FOOT_LOADS = len(FootLoads._fields)
 LEG_FORCES = len(LegForces._fields)
 LEG_STATUS = len(LegStatus._fields)
 PLANAR_LOADS = len(PlanarLoads._fields)
@@ -112,6 +114,11 @@ def leg_forces_of(kept: Records[LegForces], i: int) -> LegForces:
 
 
 def leg_status_of(kept: Records[LegStatus], i: int) -> LegStatus:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def foot_loads_of(kept: Records[FootLoads], i: int) -> FootLoads:
     """The `i`-th record of those kept."""
     return kept[i]
 

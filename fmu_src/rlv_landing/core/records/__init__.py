@@ -26,10 +26,10 @@ from .laws import (
     StrutMotion,
     StrutStatus,
 )
-from .legs import LegForces, LegStatus
+from .legs import FootLoads, LegForces, LegStatus
 from .models import BodyModel, LegModel, LegPlace
 from .outputs import BodyOutputs, EnergyOutputs, LegOutputs, StatusOutputs
-from .planar import Attitude, BodyAcceleration, FootPoint, HeldEnergy, PlanarLoads, Turn
+from .planar import Attitude, BodyAcceleration, FootPoint, PlanarLoads, Turn
 from .state import Accounts, BodyState, Fault, Inputs, LegState, Phase
 from .steps import Bend, Crest, PhiWeights, StiffPair
 
@@ -48,13 +48,13 @@ __all__ = [
     "EnergyOutputs",
     "Fault",
     "FluidState",
+    "FootLoads",
     "FootMotion",
     "FootPoint",
     "Friction",
     "FrictionBound",
     "FrictionForce",
     "GroundForce",
-    "HeldEnergy",
     "Inputs",
     "LegForces",
     "LegModel",
