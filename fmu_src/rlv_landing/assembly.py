@@ -67,7 +67,7 @@ def leg_models(parameters: Parameters) -> list[LegModel]:
     play = strut.play_tension + strut.play_compression > 0.0
     mu = parameters.ground.friction
     own = {
-        "main_kind": _place(MAIN_STRUTS, "liquid-spring"),
+        "main_kind": _place(MAIN_STRUTS, parameters.main_strut.kind),
         "auxiliary_kind": _place(AUXILIARY_STRUTS, "elastic-with-play" if play else "elastic"),
         "friction_kind": _place(FRICTION_LAWS, parameters.ground.friction_law),
         "mu": mu if mu >= LEAST_FRICTION else 0.0,

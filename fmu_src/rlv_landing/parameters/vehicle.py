@@ -38,7 +38,14 @@ class Vehicle:
 
 @dataclass(frozen=True)
 class MainStrut:
-    """The main strut with its liquid-spring damper. Eq. (12)."""
+    """The main strut: a liquid-spring damper, Eq. (12), or a linear spring and damper."""
+
+    kind: Annotated[
+        str,
+        "liquid-spring: the damper of Eq. (12); spring-damper: stiffness and damping along the "
+        "strut, in tension too, and the compression stop",
+        text("liquid-spring", "spring-damper"),
+    ] = "liquid-spring"
 
     joint_radius: Annotated[
         float, "CG to body joint, radially", real("m", 0.0, 50.0, "La", "paper")
@@ -153,6 +160,12 @@ class MainStrut:
         "damping of both end stops: force is K e (1 + c e')",
         real("s/m", 0.0, 100.0, "c_stop", "identified"),
     ] = 0.01048
+    stiffness: Annotated[
+        float, "axial stiffness, kind = spring-damper", real("N/m", 0.0, 1e11, "Km", "closure")
+    ] = 230000.0
+    damping: Annotated[
+        float, "axial damping, kind = spring-damper", real("N.s/m", 0.0, 1e9, "Cm", "closure")
+    ] = 3000.0
 
 
 @dataclass(frozen=True)

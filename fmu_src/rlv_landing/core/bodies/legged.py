@@ -15,9 +15,7 @@ from ..access import (
     KINETIC,
     LEG,
     LEG_FORCES,
-    LEG_OUTPUTS,
     LEG_STATUS,
-    STATUS_OUTPUTS,
     Z1,
     Z2,
     accounts,
@@ -69,7 +67,8 @@ class Legged(System):
 
     The state is the body's, a `LegState` for each group, and the `Accounts`, which no other state
     depends on. What is dissipated never falls, unless a friction law may give. A subclass moves the
-    body, and keeps each group's forces, footpad and status.
+    body, adds its mass, says where the outputs have the energies, and keeps each group's forces and
+    footpad.
 
     Attributes:
         groups: How many leg groups there are.
@@ -95,24 +94,22 @@ class Legged(System):
 
     def __init__(
         self,
-        mass: float,
         legs: Sequence[LegModel],
         places: Sequence[LegPlace],
         scale: Buffer,
         relative: Buffer,
         inputs: int,
-        body_outputs: int,
+        row: int,
     ) -> None:
         groups = len(legs)
-        row = body_outputs + ENERGY_OUTPUTS + STATUS_OUTPUTS + LEG_OUTPUTS * groups
         super().__init__(scale, relative, ACCOUNTS, inputs, row, groups)
         self.groups = groups
         self.energy_start = 0.0
         self.most_balance = 0.0
         self.rounding = 0.0
-        self.mass = mass
+        self.mass = 0.0
         self._first_leg = self.controlled - LEG * groups
-        self._energies = body_outputs
+        self._energies = 0
         self._places = stored(places)
         self._legs = stored(legs)
         self._forces = room(groups, LEG_FORCES)
@@ -134,6 +131,9 @@ class Legged(System):
 
     def project(self, y: Doubles) -> None:
         """Bring what the friction laws keep to where they let it be."""
+        self._project_friction(y)
+
+    def _project_friction(self, y: Doubles) -> None:
         for i in range(self.groups):
             at = self._first_leg + LEG * i
             leg = leg_state(y, at)

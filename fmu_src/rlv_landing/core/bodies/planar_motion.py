@@ -8,9 +8,12 @@ from ..access import (
     ATTITUDE,
     BODY,
     BODY_OUTPUTS,
+    ENERGY_OUTPUTS,
     INPUTS,
     LEG,
+    LEG_OUTPUTS,
     PLANAR_LOADS,
+    STATUS_OUTPUTS,
     body_model,
     body_state,
     foot_loads_of,
@@ -64,7 +67,10 @@ class PlanarMotion(Legged):
         scale: Buffer,
         relative: Buffer,
     ) -> None:
-        super().__init__(body.m_u, legs, places, scale, relative, INPUTS, BODY_OUTPUTS)
+        row = BODY_OUTPUTS + ENERGY_OUTPUTS + STATUS_OUTPUTS + LEG_OUTPUTS * len(legs)
+        super().__init__(legs, places, scale, relative, INPUTS, row)
+        self.mass += body.m_u
+        self._energies = BODY_OUTPUTS
         self._body = stored([body])
         self._loads = room(len(legs), PLANAR_LOADS)
         self._attitude = room(1, ATTITUDE)

@@ -13,8 +13,8 @@ from array import array
 from math import fabs, inf
 
 from ..bodies.system import System
+from ..linear import solve
 from ..memory import Buffer, Doubles, copy, data
-from .linear import solve
 from .watch import Watch
 
 # [s]: to where a probe looks
