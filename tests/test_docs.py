@@ -1,6 +1,7 @@
 """The pages in docs, the README and the examples' pages: links, index, and the map of the code."""
 
 import re
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -72,9 +73,9 @@ def test_every_path_in_a_page_exists():
     assert [p for p in sorted(found) if not (ROOT / p[1]).exists()] == []
 
 
-def test_no_folder_of_the_packages_has_more_than_16_python_files():
-    folders = {path.parent for package in PACKAGES for path in package.rglob("*.py")}
-    assert len(folders) > 20
+def test_no_folder_has_more_than_16_python_files():
+    folders = {ROOT} | {path.parent for top in TOPS for path in (ROOT / top).rglob("*.py")}
+    assert {name_of(f).split("/")[0] for f in folders} == {".", *TOPS}
     crowded = {name_of(f): n for f in folders if (n := len(list(f.glob("*.py")))) > 16}
     assert crowded == {}
 
@@ -89,13 +90,22 @@ def test_the_map_names_every_folder_of_the_packages():
 def test_each_test_folder_imports_its_own_modules_and_shared_ones():
     """A test can be run alone then, and one pytest takes any folders together.
 
-    `conftest` is one of many, whichever pytest has loaded last.
+    Own are those beside a file, and those of a folder above it that has a `conftest.py`: pytest
+    puts both on the path. `conftest` itself is one of many, whichever pytest has loaded last.
     """
     tests = ROOT / "tests"
+    files = [file for file in tests.rglob("*.py") if file.parent != tests]
     shared = {p.stem for folder in ("shared", "bridge") for p in (tests / folder).glob("*.py")}
-    own = {p.stem for p in tests.glob("*/*.py")} - shared | {"conftest"}
+    own = {p.stem for p in files} - shared | {"conftest"}
     imports = re.compile(r"^\s*(?:from|import) (\w+)(?: import .*)?$", re.M)
-    for file in tests.glob("*/*.py"):
+    for file in files:
         wanted = own.intersection(imports.findall(file.read_text(encoding="utf-8")))
-        beside = {p.stem for p in file.parent.glob("*.py")} - {"conftest"}
-        assert wanted <= beside, name_of(file)
+        above = [f for f in file.parents if tests in f.parents and (f / "conftest.py").exists()]
+        near = {p.stem for folder in (file.parent, *above) for p in folder.glob("*.py")}
+        assert wanted <= near - {"conftest"}, name_of(file)
+
+
+def test_no_two_files_of_the_tests_have_one_name():
+    """Pytest imports them by their bare names."""
+    names = Counter(p.name for p in (ROOT / "tests").rglob("*.py") if p.name != "conftest.py")
+    assert {name: n for name, n in names.items() if n > 1} == {}

@@ -2,10 +2,10 @@
 
 An output depends on an input if the input changes it at the same instant. Its initial value depends
 on the parameters that change it, and on the inputs that do: these place the vehicle at the start.
-The sets are derived from the equations. `tests/fmu/test_dependencies.py` finds the same ones by
-changing every input and parameter. Outputs that are not named here are states, or follow from
-states alone: no input changes them at once. Heave and tilt of the ground change no output at once
-either: the ground moves to a new position from the next step on.
+The sets are derived from the equations. `tests/fmu/contents/test_dependencies.py` finds the same
+ones by changing every input and parameter. Outputs that are not named here are states, or follow
+from states alone: no input changes them at once. Heave and tilt of the ground change no output at
+once either: the ground moves to a new position from the next step on.
 """
 
 from __future__ import annotations

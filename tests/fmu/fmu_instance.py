@@ -11,6 +11,8 @@ from fmpy import fmi2
 from rlv_landing import Landing
 
 OK, WARNING, DISCARD, ERROR = range(4)
+# of this module: another process that imports it has it on its path
+FOLDER = Path(__file__).parent
 
 
 class Instance:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +9,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from pytest import approx
+from scaled import scaled
 
 from rlv_landing import Landing, LandingError, load_preset
 from rlv_landing.history import History
@@ -20,9 +20,6 @@ from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
 from rlv_landing.presets import read_toml, to_toml
 from rlv_landing.studies.sweep.responses import Measure
 from rlv_landing.studies.whole_landing import whole_landing
-
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "validation"))
-from scaled import scaled
 
 HOPPER, STAGE = 60.0, 25_000.0
 ORIFICE, FRICTION = "main_strut.orifice_area_compression", "ground.friction"

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import fmpy
 import pytest
+from fmu_instance import FOLDER
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-HERE = Path(__file__).parent
+ROOT = Path(__file__).resolve().parents[3]
 NAMES = ("body.x", "body.y", "leg[1].contact.force_y", "leg[1].main_strut.force")
 LINE = "force = elastic + p.Cgmax * damping_ramp(d, p) * v"
 
@@ -97,7 +97,7 @@ def test_each_build_computes_its_own_numbers_and_refuses_the_others_states(
     assert alone[0] != alone[1]
     order = -1 if turned else 1
     folders = [unpacked, other][::order]
-    assert run(BOTH, HERE, *folders, *NAMES)[::order] == alone
+    assert run(BOTH, FOLDER, *folders, *NAMES)[::order] == alone
 
 
 def test_guid_and_names_of_modules_differ(unpacked, other):
@@ -129,6 +129,5 @@ def test_another_pythonfmu_in_the_host_and_the_fmus_own_do_not_meet(unpacked, tm
     )
     parts = [load, land] if first == "host" else [land, load]
     script = "\n".join(["import sys; sys.path.insert(0, sys.argv[1])", *parts, "print('well')"])
-    assert run(script, HERE, unpacked, PYTHONPATH=f"{tmp_path}{os.pathsep}{ROOT / 'fmu_src'}") == [
-        ["well"]
-    ]
+    path = os.pathsep.join(map(str, (tmp_path, ROOT / "fmu_src")))
+    assert run(script, FOLDER, unpacked, PYTHONPATH=path) == [["well"]]

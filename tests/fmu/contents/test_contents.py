@@ -20,7 +20,7 @@ from lxml import etree
 from rlv_landing import __version__
 from rlv_landing.quantities import INPUT_QUANTITIES
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+ROOT = Path(__file__).resolve().parents[3]
 PAGE = "documentation/index.html"
 
 

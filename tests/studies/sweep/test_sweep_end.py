@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import json
-import sys
-from pathlib import Path
 
 import pytest
+from scaled import scaled
 from study_tools import rows
 
 from rlv_landing import Landing, load_preset
@@ -15,9 +14,6 @@ from rlv_landing.presets import to_toml
 from rlv_landing.studies.outcome import outcome
 from rlv_landing.studies.whole_landing import most_samples, whole_landing
 from rlv_landing.validation.measures import leg_work
-
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "validation"))
-from scaled import scaled
 
 
 def stage() -> Parameters:

@@ -10,7 +10,7 @@ import numpy as np
 
 from rlv_landing.quantities import OUTPUT_NAMES
 
-FMU_SRC = Path(__file__).resolve().parent.parent.parent / "fmu_src"
+FMU_SRC = Path(__file__).resolve().parents[3] / "fmu_src"
 
 LAND = """
 import sys, fmpy, numpy

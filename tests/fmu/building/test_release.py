@@ -26,7 +26,7 @@ pytestmark = [
     pytest.mark.skipif("RLV_TORTURE" not in os.environ, reason="minutes of builds: make torture"),
 ]
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+ROOT = Path(__file__).resolve().parents[3]
 PYTHON_DLL = "python3.dll"
 STEPS, EVERY, COUNT = 400, 100, 10
 

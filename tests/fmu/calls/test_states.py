@@ -11,11 +11,10 @@ import struct
 import subprocess
 import sys
 from ctypes import byref, c_size_t, c_void_p
-from pathlib import Path
 
 import pytest
 from fmpy import fmi2
-from fmu_instance import DISCARD, ERROR, OK
+from fmu_instance import DISCARD, ERROR, FOLDER, OK
 
 from rlv_landing import Landing
 
@@ -76,7 +75,7 @@ def test_another_process_goes_on_with_the_very_same_digits(instance, data, unpac
         sys.executable,
         "-c",
         OTHER_PROCESS,
-        str(Path(__file__).parent),
+        str(FOLDER),
         str(unpacked),
         str(file),
         *SEEN,

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+ROOT = Path(__file__).resolve().parents[3]
 FOLDER = ROOT / "build" / "foreign"
 # what libpython needs, besides the packages of Python itself
 LIBRARIES = ("libc6", "zlib1g", "libexpat1")

@@ -8,10 +8,10 @@ import signal
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import fmpy
 import pytest
+from fmu_instance import FOLDER
 from interrupting import is_felt
 from python_libraries import BARE, python_libraries
 
@@ -154,7 +154,7 @@ print("landed again", flush=True)
 @pytest.mark.parametrize("how", ["many short steps", "one long step"])
 def test_ctrl_c_reaches_the_hosts_python_and_the_instance_can_be_reset(unpacked, how):
     for _ in range(5):
-        tools = str(Path(__file__).parent)
+        tools = str(FOLDER)
         command = [sys.executable, "-c", STEPPING, tools, str(unpacked), how]
         with subprocess.Popen(
             command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True

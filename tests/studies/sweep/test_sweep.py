@@ -19,7 +19,7 @@ from rlv_landing.studies.sweep.study import read_study
 from rlv_landing.validation.measures import leg_work
 
 FIGURES = "yue2022-figures"
-ROOT = Path(__file__).resolve().parent.parent.parent
+ROOT = Path(__file__).resolve().parents[3]
 EXAMPLES = ROOT / "examples" / "touchdown_study"
 DOCUMENTATION = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
 STATES = {

@@ -24,7 +24,7 @@ from rlv_ros_bridge.fmu.description import own_vehicle
 from rlv_ros_bridge.logs.bag_reader import open_log
 from rlv_ros_bridge.logs.history import read_history
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+ROOT = Path(__file__).resolve().parents[3]
 # a stage of 25 t, the prototype's lengths times 5.2; stiffness and damping to match
 STAGE = """
 [vehicle]

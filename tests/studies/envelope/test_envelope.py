@@ -24,7 +24,7 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+ROOT = Path(__file__).resolve().parents[3]
 V, TILT = "drop.horizontal_velocity", "drop.tilt"
 GRIPPING = load_preset("yue2022-figures").with_values(
     {"ground.friction": 0.7, "drop.pitch_rate": 0.0, "drop.contact_time": 0.0}

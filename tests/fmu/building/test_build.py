@@ -11,7 +11,7 @@ from pathlib import Path
 import fmpy
 import pytest
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+ROOT = Path(__file__).resolve().parents[3]
 
 
 def test_build_script_writes_the_named_file_and_prints_what_it_checked(tmp_path):
