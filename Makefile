@@ -10,8 +10,8 @@ CHROMIUM := build/chromium/.packages
 CORE := $(shell find fmu_src/rlv_landing/core -name '*.py')
 SLAVE := fmu_src/landing_fmu.py \
   $(wildcard $(addprefix fmu_src/,fmu_build/*.py fmu_build/*/*.py fmu_build/*/*.j2 fmu_front/*)) \
-  $(wildcard $(addprefix fmu_src/rlv_landing/,quantities/*.py parameters/*.py inputs/*.py events/*.py)) \
-  $(addprefix fmu_src/rlv_landing/,__init__.py errors.py touchdown.py assembly.py outputs.py) \
+  $(wildcard $(addprefix fmu_src/rlv_landing/,$(addsuffix /*.py,quantities parameters assembly inputs events))) \
+  $(addprefix fmu_src/rlv_landing/,__init__.py errors.py touchdown.py outputs.py) \
   $(addprefix fmu_src/rlv_landing/,state.py interruptible.py landing.py hosted.py figures/plots.py) \
   CHANGELOG.md LICENSE
 

@@ -34,6 +34,43 @@ class Vehicle:
         "joint (the paper's assumption C; creates energy)",
         text("footpad", "joint", source="derived"),
     ] = "footpad"
+    legs: Annotated[
+        float, "number of legs, evenly round the body; 4 but in mode = space", real("", 3.0, 8.0)
+    ] = 4.0
+    leg_azimuth: Annotated[
+        float,
+        "azimuth of leg 1 from the body's x towards z; the others follow evenly; mode = space",
+        real("rad", -3.2, 3.2, display_unit="deg"),
+    ] = 3.141592653589793
+    inertia_roll: Annotated[
+        float,
+        "rotational inertia of the upper mass about body x through its CG; 0: that about z; "
+        "mode = space",
+        real("kg.m2", 0.0, 1e9),
+    ] = 0.0
+    inertia_yaw: Annotated[
+        float,
+        "rotational inertia of the upper mass about body y through its CG; 0: the upper mass times "
+        "the square of the main struts' joint radius, a thin shell; mode = space",
+        real("kg.m2", 0.0, 1e9),
+    ] = 0.0
+    inertia_xy: Annotated[
+        float,
+        "element xy of the inertia tensor about the CG, minus the integral of x y dm; mode = space",
+        real("kg.m2", -1e9, 1e9),
+    ] = 0.0
+    inertia_xz: Annotated[
+        float, "element xz of the inertia tensor; mode = space", real("kg.m2", -1e9, 1e9)
+    ] = 0.0
+    inertia_yz: Annotated[
+        float, "element yz of the inertia tensor; mode = space", real("kg.m2", -1e9, 1e9)
+    ] = 0.0
+    cg_offset_x: Annotated[
+        float, "CG off the legs' axis along body x; mode = space", real("m", -10.0, 10.0)
+    ] = 0.0
+    cg_offset_z: Annotated[
+        float, "CG off the legs' axis along body z; mode = space", real("m", -10.0, 10.0)
+    ] = 0.0
 
 
 @dataclass(frozen=True)

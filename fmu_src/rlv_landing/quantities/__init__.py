@@ -6,7 +6,17 @@ reference pages.
 """
 
 from .inputs import INPUT_NAMES, INPUT_QUANTITIES, INPUTS_BY_NAME
-from .legs import LEGS, MIRRORED, MODES, LegGroup, azimuth, touchdown_groups
+from .interface import Interface, interface_of
+from .legs import (
+    LEGS,
+    MIRRORED,
+    MODES,
+    SPACE,
+    LegGroup,
+    azimuth,
+    groups_of,
+    touchdown_groups,
+)
 from .outputs import (
     BODY_QUANTITIES,
     ENERGY_QUANTITIES,
@@ -40,13 +50,17 @@ __all__ = [
     "PEAKS",
     "PEAK_QUANTITIES",
     "SHARED_QUANTITIES",
+    "SPACE",
     "STATISTIC_QUANTITIES",
     "STATUS_QUANTITIES",
+    "Interface",
     "LegGroup",
     "Peak",
     "Quantity",
     "azimuth",
     "flat_name",
+    "groups_of",
+    "interface_of",
     "shown",
     "touchdown_groups",
     "whole_name",
