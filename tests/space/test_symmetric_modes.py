@@ -46,7 +46,7 @@ def test_a_symmetric_landing_is_one_in_space(
         assert len(common) > 90
         for name in common:
             least = max(1e-6, 1e-7 * OUTPUTS_BY_NAME[name].nominal)
-            assert found[name] == pytest.approx(expected[name], rel=1e-6, abs=least), name
+            assert found[name] == pytest.approx(expected[name], rel=1e-5, abs=least), name
         for name in ("x", "y", "pitch"):
             assert abs(found[f"body.{name}"] - expected[f"body.{name}"]) < 1e-8
         assert abs(found["body.z"]) + abs(found["body.roll"]) < 1e-9
