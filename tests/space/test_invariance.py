@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
-from vehicles import TURNING, vehicle
+from space_vehicles import TURNING, vehicle
 
 from rlv_landing import Landing, Parameters
 

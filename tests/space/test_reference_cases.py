@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from vehicles import THREE_LEGS, vehicle
+from space_vehicles import THREE_LEGS, vehicle
 
 from rlv_landing import Landing
 

@@ -6,7 +6,7 @@ from math import pi, radians
 from typing import Any
 
 import pytest
-from vehicles import SPACE, vehicle
+from space_vehicles import SPACE, vehicle
 
 from rlv_landing import Landing
 from rlv_landing.quantities import OUTPUTS_BY_NAME

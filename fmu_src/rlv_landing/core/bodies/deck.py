@@ -43,12 +43,12 @@ def deck_spin(u: SpatialInputs) -> Vector:
 def deck_of(u: SpatialInputs, p: SpatialModel) -> Deck:
     """The ground at the inputs `u`."""
     return Deck(
-        Vector(u.surge, u.heave, u.sway),
-        Vector(u.surge_rate, u.heave_rate, u.sway_rate),
-        deck_spin(u),
-        on_deck(Vector(p.down_x, p.down_y, p.down_z), u),
-        on_deck(Vector(p.along_x, 0.0, p.along_z), u),
-        on_deck(Vector(p.normal_x, p.normal_y, p.normal_z), u),
+        origin=Vector(u.surge, u.heave, u.sway),
+        velocity=Vector(u.surge_rate, u.heave_rate, u.sway_rate),
+        spin=deck_spin(u),
+        down=on_deck(Vector(p.down_x, p.down_y, p.down_z), u),
+        along=on_deck(Vector(p.along_x, 0.0, p.along_z), u),
+        normal=on_deck(Vector(p.normal_x, p.normal_y, p.normal_z), u),
     )
 
 

@@ -7,7 +7,7 @@ from math import atan
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from vehicles import SPACE, vehicle
+from space_vehicles import SPACE, vehicle
 
 from rlv_landing import Landing
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from vehicles import SPACE, TURNING, vehicle
+from space_vehicles import SPACE, TURNING, vehicle
 
 from rlv_landing import Landing, LandingError
 from rlv_landing.hosted import HostedLanding
