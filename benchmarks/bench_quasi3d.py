@@ -35,7 +35,7 @@ from rows import append_rows, start
 from scipy.integrate import solve_ivp
 
 from rlv_landing import Landing, Parameters, load_preset
-from rlv_landing.assembly import build_system, new_solver
+from rlv_landing.assembly import new_solver, planar_system
 from rlv_landing.core.bodies.planar import Planar
 from rlv_landing.landing import DEFAULT_RTOL
 
@@ -179,7 +179,7 @@ def work_of_core(parameters: Parameters, time: float) -> tuple[int, int]:
                         )(),
                     ),
                 )
-    system, solver = build_system(parameters, Planar), new_solver(parameters, DEFAULT_RTOL)
+    system, solver = planar_system(parameters, Planar), new_solver(parameters, DEFAULT_RTOL)
     state = array("d", bytes(8 * solver.n))
     solver.advance(time)
     solver.interpolate(time, state)

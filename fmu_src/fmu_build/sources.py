@@ -28,14 +28,13 @@ MODULES = (
     "__init__.py",
     "errors.py",
     "touchdown.py",
-    "assembly.py",
     "outputs.py",
     "state.py",
     "interruptible.py",
     "landing.py",
     "hosted.py",
 )
-FOLDERS = ("quantities", "parameters", "inputs", "events", "core")
+FOLDERS = ("quantities", "parameters", "assembly", "inputs", "events", "core")
 # dates that a zip file can hold, 1980 to 2107 [s since 1970]; 1980 also for sources without a date
 OLDEST, NEWEST = 315532800, 4354819199
 

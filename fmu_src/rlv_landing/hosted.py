@@ -11,7 +11,7 @@ from typing import Any
 from .errors import LandingError
 from .landing import DEFAULT_RTOL, Landing
 from .parameters import PARAMETER_QUANTITIES, Parameters, check_value
-from .quantities import PEAKS
+from .quantities import PEAKS, groups_of
 from .state import LATEST
 
 # beyond it a host's time, a double, is rounded to more than 1 us [s]
@@ -257,8 +257,10 @@ def new_landing(
         rates: Rates of inputs at the start by name; the others are 0.
 
     Raises:
-        LandingError: A value is out of bounds, values contradict each other, or the free flight
-            would pass below the ground.
+        LandingError: A value is out of bounds, values contradict each other, the landing is in
+            space, or the free flight would pass below the ground.
     """
     checked = {name: check_value(PARAMETER_QUANTITIES[name], v) for name, v in values.items()}
-    return Landing(vehicle.with_values(checked), rtol=rtol, inputs=inputs, rates=rates)
+    parameters = vehicle.with_values(checked)
+    groups_of(parameters.drop.mode)
+    return Landing(parameters, rtol=rtol, inputs=inputs, rates=rates)

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from .assembly import NO_INPUTS, begin, build_system
+from .assembly import begin, ground_motion, landing_system
 from .core import DormandPrince, Exponential, Inputs, Solver
 from .errors import LandingError, unknown
 from .events.search import EventSearch
-from .inputs.driven import RATE_INPUTS, DrivenInputs, Setting, changed_setting
+from .inputs.driven import DrivenInputs, Setting, changed_setting
 from .interruptible import advance, check_going, record, view
 from .outputs import Extreme, OutputReader, output_order
 from .parameters import Parameters
-from .quantities import INPUT_NAMES, OUTPUT_NAMES
+from .quantities import SPACE, Interface, interface_of
 from .state import LATEST, load_state, state_of
+from .touchdown import AT_REST, GroundMotion
 
 if TYPE_CHECKING:
     from numpy import float64
@@ -39,12 +40,16 @@ class Landing:
 
     Args:
         parameters: the vehicle, ground and drop; default is the preset `yue2022-figures`.
-        mode: landing mode `2-2` or `1-2-1`; default is that of the parameters.
+        mode: landing mode `2-2`, `1-2-1` or `space`; default is that of the parameters.
         rtol: relative tolerance of the integrator, 1e-12 to 1e-2. The default keeps peak forces and
             strokes to 0.05 %.
         method: `exponential`, or `dormand-prince`, the paper's ode45: slower, but not below rtol =
             1e-7.
         inputs, rates: inputs at the start, and their rates, as for `set_inputs`; default is 0.
+
+    Attributes:
+        parameters: The parameters, with the values that belong to the mode.
+        interface: Its inputs and outputs: quantities, names, legs.
 
     A landing is copied and pickled whole. The copy continues by itself, with the same digits.
 
@@ -72,13 +77,16 @@ class Landing:
         if method not in METHODS:
             raise unknown("integration method", method, METHODS)
         self._rtol, self._method = rtol, method
-        self._system = build_system(self.parameters)
+        mode, legs = self.parameters.drop.mode, int(self.parameters.vehicle.legs)
+        self.interface: Interface = interface_of(mode, legs)
+        self._system = landing_system(self.parameters)
         self._solver: Solver = METHODS[method](self._system, rtol)
         self._solver.limit = self.parameters.solver.max_steps_per_second
-        self._reader = OutputReader(self._solver, self.parameters.drop.mode)
-        self._inputs = DrivenInputs(self._solver)
+        self._reader = OutputReader(self._solver, mode, self.interface.output_names)
+        self._inputs = DrivenInputs(self._solver, self.interface)
         self._search: EventSearch | None = None
-        self._first = changed_setting((NO_INPUTS, NO_INPUTS), inputs or {}, rates or {})
+        none = (0.0,) * len(self.interface.inputs)
+        self._first = changed_setting(self.interface, (none, none), inputs or {}, rates or {})
         self.reset()
 
     @classmethod
@@ -120,7 +128,7 @@ class Landing:
         """
         self._begin(*self._first)
 
-    def _begin(self, inputs: Inputs, rates: Inputs) -> None:
+    def _begin(self, inputs: Sequence[float], rates: Sequence[float]) -> None:
         """Place the vehicle above the ground of the inputs, at time 0."""
         begin(self._solver, self.parameters, inputs, rates)
         self._inputs.begin()
@@ -152,7 +160,7 @@ class Landing:
         check_going(self._solver)
         if self._time == 0.0:
             present = self._inputs.setting(0.0)
-            new = changed_setting(present, values, rates or {})
+            new = changed_setting(self.interface, present, values, rates or {})
             if new != present:
                 self._begin(*new)
         elif self._inputs.set(self._time, values, rates or {}):
@@ -165,7 +173,7 @@ class Landing:
         set; their rates are those of its motion.
         """
         self._solver.inputs_at(self._time)
-        return dict(zip(INPUT_NAMES, view(self._solver.u_now)))
+        return dict(zip(self.interface.input_names, view(self._solver.u_now)))
 
     def step(self, dt: float) -> None:
         """Go on by `dt` [s].
@@ -218,8 +226,9 @@ class Landing:
     def _event_search(self) -> EventSearch:
         if self._search is None:
             stroke_max = self.parameters.main_strut.stroke_max
-            order = output_order(self.parameters.drop.mode)
-            self._search = EventSearch(self._solver, order, stroke_max)
+            names = self.interface.output_names
+            order = output_order(self.parameters.drop.mode, len(names))
+            self._search = EventSearch(self._solver, names, order, stroke_max)
         return self._search
 
     def _move_ground(self, time: float, step_end: float, *, to_event: bool) -> bool:
@@ -238,21 +247,19 @@ class Landing:
         return False
 
     def values(self) -> list[float]:
-        """All outputs at the present time, in the order of OUTPUT_NAMES.
-
-        These names are in `rlv_landing.quantities`.
-        """
+        """All outputs at the present time, in the order of `interface.outputs`."""
         return self._reader.values(self._time)
 
     def outputs(self) -> dict[str, float]:
         """All outputs at the present time, by name."""
-        return dict(zip(OUTPUT_NAMES, self.values()))
+        return dict(zip(self.interface.output_names, self.values()))
 
     def get(self, name: str) -> float:
         """One output at the present time. Raises LandingError for an unknown name."""
-        if name not in OUTPUT_NAMES:
-            raise unknown("output", name, OUTPUT_NAMES)
-        return self.values()[OUTPUT_NAMES.index(name)]
+        names = self.interface.output_names
+        if name not in names:
+            raise unknown("output", name, names)
+        return self.values()[names.index(name)]
 
     def extremes(self) -> dict[str, Extreme]:
         """The extremes of all outputs from the start to the present time, by name.
@@ -277,7 +284,7 @@ class Landing:
             LandingError: Its length is not that of this landing's state, a number in it is not
                 finite, or no landing has such numbers; nothing is changed then.
         """
-        header, ways = load_state(self._solver, state)
+        header, ways = load_state(self._solver, self.interface.positions, state)
         self._time = header.time
         self._inputs.restore(ways)
         self._reader.forget()
@@ -312,9 +319,9 @@ class Landing:
 
         start, row = self._time, self._system.row
         # rows, the same turned, and columns are there at once
-        samples = sample_count(start, until, every, 2 * row + len(OUTPUT_NAMES))
+        samples = sample_count(start, until, every, 2 * row + len(self.interface.outputs))
         check_going(self._solver)
-        ground = self._inputs.ground(start)
+        ground = self._ground(start)
         rows = np.empty((samples, row))
         self._solver.open_span(start)
         try:
@@ -324,7 +331,14 @@ class Landing:
             self._solver.close_span()
         time: NDArray[float64] = np.array([start + k * every for k in range(samples)])
         data = self._reader.columns(rows)
-        return History(time, OUTPUT_NAMES, data, self.parameters, ground, extremes)
+        return History(time, self.interface.output_names, data, self.parameters, ground, extremes)
+
+    def _ground(self, t: float) -> GroundMotion:
+        """The motion of the ground from time `t` [s] on, as it was set, in a symmetric landing."""
+        if self.parameters.drop.mode == SPACE:
+            return AT_REST
+        values, rates = self._inputs.setting(t)
+        return ground_motion(Inputs(*values), Inputs(*rates))
 
     def _record(
         self,
@@ -372,8 +386,10 @@ def _revived(
     state: array[float],
 ) -> Landing:
     """The landing that was pickled."""
-    inputs, rates = (dict(zip(INPUT_NAMES, numbers)) for numbers in first)
-    own = {name: rate for name, rate in rates.items() if name not in RATE_INPUTS}
-    landing = kind(parameters, rtol=rtol, method=method, inputs=inputs, rates=own)
+    interface = interface_of(parameters.drop.mode, int(parameters.vehicle.legs))
+    inputs, rates = (dict(zip(interface.input_names, numbers)) for numbers in first)
+    for i in interface.positions:
+        del rates[interface.input_names[i]]
+    landing = kind(parameters, rtol=rtol, method=method, inputs=inputs, rates=rates)
     landing.restore(state)
     return landing

@@ -9,21 +9,23 @@ from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 from .core import Solver
-from .quantities import LEG_QUANTITIES, MIRRORED, MODES, OUTPUT_NAMES, SHARED_QUANTITIES
+from .quantities import LEG_QUANTITIES, MIRRORED, SHARED_QUANTITIES, SPACE, groups_of
 
 if TYPE_CHECKING:
     from numpy import float64
     from numpy.typing import NDArray
 
 
-def output_order(mode: str) -> list[tuple[int, float]]:
-    """For each of OUTPUT_NAMES: where the kernel's outputs hold it, and its factor.
+def output_order(mode: str, outputs: int) -> list[tuple[int, float]]:
+    """For each of so many outputs: where the kernel's outputs hold it, and its factor.
 
     The factor -1 turns Z of a mirror image.
     """
+    if mode == SPACE:
+        return [(i, 1.0) for i in range(outputs)]
     shared = len(SHARED_QUANTITIES)
     order = [(i, 1.0) for i in range(shared)]
-    where = {leg: (group, side) for group, g in enumerate(MODES[mode]) for leg, side in g.legs}
+    where = {leg: (group, side) for group, g in enumerate(groups_of(mode)) for leg, side in g.legs}
     for leg in sorted(where):
         group, side = where[leg]
         for i, q in enumerate(LEG_QUANTITIES):
@@ -49,17 +51,20 @@ class Extreme(NamedTuple):
     maximum_time: float  # [s]
 
 
-def by_name(found: Sequence[float], order: Sequence[tuple[int, float]]) -> dict[str, Extreme]:
+def by_name(
+    found: Sequence[float], names: Sequence[str], order: Sequence[tuple[int, float]]
+) -> dict[str, Extreme]:
     """The extremes by output.
 
     Args:
         found: The four blocks that `Solver.extremes` writes: least values, their times, greatest
             values, their times.
+        names: The outputs' names.
         order: For each output its place in a block and its factor, as `output_order` gives.
     """
     row = len(found) // 4
     extremes = {}
-    for name, (i, factor) in zip(OUTPUT_NAMES, order):
+    for name, (i, factor) in zip(names, order):
         low, low_time, high, high_time = (found[row * block + i] for block in range(4))
         extremes[name] = (
             Extreme(low, low_time, high, high_time)
@@ -70,21 +75,23 @@ def by_name(found: Sequence[float], order: Sequence[tuple[int, float]]) -> dict[
 
 
 class OutputReader:
-    """Reads the outputs and extremes of a solver in the order of OUTPUT_NAMES.
+    """Reads the outputs and extremes of a solver in the order of its interface.
 
     The outputs at a time are computed once; `forget` says that they have changed.
 
     Args:
         solver: The solver of a landing.
         mode: The landing mode.
+        names: The outputs' names.
     """
 
-    def __init__(self, solver: Solver, mode: str) -> None:
+    def __init__(self, solver: Solver, mode: str, names: Sequence[str]) -> None:
         self._solver = solver
+        self._names = names
         self._y = array("d", bytes(8 * solver.system.n))
         self._row = array("d", bytes(8 * solver.system.row))
         self._time = inf
-        self._order = output_order(mode)
+        self._order = output_order(mode, len(names))
         self._pick = itemgetter(*(i for i, _ in self._order))
         self._turned = [k for k, (_, factor) in enumerate(self._order) if factor < 0.0]
 
@@ -107,19 +114,19 @@ class OutputReader:
         """The extremes from the start to `time` [s], inside the last internal step, by name."""
         found = self._blocks()
         self._solver.extremes(time, found)
-        return by_name(found, self._order)
+        return by_name(found, self._names, self._order)
 
     def extremes_of_span(self, time: float) -> dict[str, Extreme]:
         """The extremes from the time of `Solver.open_span` to `time` [s], by name."""
         found = self._blocks()
         self._solver.extremes_of_span(time, found)
-        return by_name(found, self._order)
+        return by_name(found, self._names, self._order)
 
     def _blocks(self) -> array[float]:
         return array("d", bytes(8 * 4 * len(self._row)))
 
     def columns(self, rows: NDArray[float64]) -> NDArray[float64]:
-        """The outputs of a solver's `rows` [samples x row], as an array [samples x OUTPUT_NAMES].
+        """The outputs of a solver's `rows` [samples x row], as an array [samples x outputs].
 
         Its columns are contiguous: what studies make of one takes a fraction of the time.
         """

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from .core import Fault, Solver
 from .core.solvers.step_control import LEAST_PREVIOUS_ERROR, LONGEST_STEP
 from .errors import LandingError
-from .inputs.ground_way import POSITIONS, Way, way_faults
+from .inputs.ground_way import Way, way_faults
 from .interruptible import view
 
 # a count that doubles tell from the next one
@@ -78,8 +78,15 @@ def state_of(solver: Solver, time: float, ways: Sequence[float]) -> array[float]
     return array("d", itertools.chain(header, ways, *_arrays(solver)))
 
 
-def load_state(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequence[float]]:
+def load_state(
+    solver: Solver, positions: Sequence[int], state: array[float]
+) -> tuple[StateHeader, Sequence[float]]:
     """Load a state into the `solver`.
+
+    Args:
+        solver: The landing's solver.
+        positions: Places of the ground's positions among the inputs.
+        state: The state.
 
     Returns:
         The state's header, and the ways for `DrivenInputs.restore`.
@@ -90,7 +97,7 @@ def load_state(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequen
     """
     targets = _arrays(solver)
     head = len(StateHeader._fields)
-    at = head + len(POSITIONS) * len(Way._fields)
+    at = head + len(positions) * len(Way._fields)
     expected = at + sum(map(len, targets))
     if len(state) != expected:
         raise LandingError(
@@ -103,7 +110,7 @@ def load_state(solver: Solver, state: array[float]) -> tuple[StateHeader, Sequen
     rates = state[at + len(solver.u) :]
     for fault in itertools.chain(
         _faults(header, len(solver.dense) // 2),
-        way_faults(ways, rates, header.time),
+        way_faults(ways, positions, rates, header.time),
         _step_faults(solver, header, state[at + 2 * len(solver.u) :]),
     ):
         raise LandingError(f"state holds {fault}; take one that state() gave")

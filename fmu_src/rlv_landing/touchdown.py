@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from .errors import LandingError
 from .parameters import Parameters
-from .quantities import MODES, azimuth
+from .quantities import azimuth, groups_of
 
 # parts of the free flight's duration at which the footpads are checked to be above the ground
 FLIGHT_CHECKS = tuple(i / 64.0 for i in range(65))
@@ -93,7 +93,7 @@ class FreeFlight:
 
     def __init__(self, parameters: Parameters, ground: GroundMotion = AT_REST) -> None:
         drop = parameters.drop
-        groups = MODES[drop.mode]
+        groups = groups_of(drop.mode)
         self.footpad = footpad_at_rest(parameters)
         radius, self._height = self.footpad
         self._along = [radius * azimuth(g.azimuth)[1] for g in groups]

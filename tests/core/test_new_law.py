@@ -17,7 +17,7 @@ from setuptools import Distribution, Extension
 from setuptools.command.build_ext import build_ext
 
 from rlv_landing import load_preset
-from rlv_landing.assembly import body_model, build_system, leg_models, leg_places, start_state
+from rlv_landing.assembly import body_model, leg_models, leg_places, planar_start, planar_system
 from rlv_landing.quantities import LEG_QUANTITIES, SHARED_QUANTITIES
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "fmu_src"))
@@ -102,7 +102,7 @@ def land(planar, exponential) -> np.ndarray:
     parameters = load_preset("yue2022-figures", "2-2").with_values(
         {"vehicle.transverse_load_at": "footpad"}
     )
-    like = build_system(parameters)
+    like = planar_system(parameters)
     first, second = leg_models(parameters)
     linear, liquid = (
         float(sorted(["liquid-spring", "linear-spring"]).index(name))
@@ -117,7 +117,7 @@ def land(planar, exponential) -> np.ndarray:
         array("d", like.relative),
     )
     solver = exponential(system, 1e-6)
-    for i, value in enumerate(start_state(parameters)):
+    for i, value in enumerate(planar_start(parameters)):
         solver.y[i] = value
     solver.restart(0.0)
     rows = np.zeros((301, system.row))

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from rlv_landing.core.bodies.system import System
+from rlv_landing.core.linear import solve
 from rlv_landing.core.solvers.dormand_prince import DormandPrince
 from rlv_landing.core.solvers.exponential import Exponential
-from rlv_landing.core.solvers.linear import solve
 
 METHODS = [Exponential, DormandPrince]
 RTOL = 1e-6

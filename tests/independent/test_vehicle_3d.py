@@ -24,7 +24,7 @@ from vehicle_3d import (
 )
 
 from rlv_landing import Landing, load_preset
-from rlv_landing.assembly import build_system
+from rlv_landing.assembly import planar_system
 from rlv_landing.core import LegState, access
 from rlv_landing.core.bodies.planar import Planar
 
@@ -154,7 +154,7 @@ def test_accelerations_and_rates_are_the_same_at_random_states_to_rounding(
             ],
         )
         ours = array("d", bytes(8 * len(y)))
-        build_system(parameters, Planar).rhs(array("d", y), u, ours)
+        planar_system(parameters, Planar).rhs(array("d", y), u, ours)
         e = model.evaluate(0.0, state)
         touching += int((e["penetration"] > 0.0).sum())
 

@@ -13,11 +13,19 @@ from rlv_landing.quantities import LEGS, MODES
 
 # what gives a vehicle its shape, and a landing its touchdown
 SHAPE = ("joint_radius", "joint_depth", ".length", "drop.contact_time", "drop.tilt")
+# what a liquid spring or a symmetric landing does not have
+OTHERS = (
+    "main_strut.kind",
+    "main_strut.stiffness",
+    "main_strut.damping",
+    "vehicle.legs",
+    "vehicle.leg_azimuth",
+)
 # the damper's numbers that a random one draws from the whole of its bounds
 DAMPER = tuple(
     name
     for name in PARAMETER_QUANTITIES
-    if name.startswith("main_strut.") and not name.endswith(SHAPE)
+    if name.startswith("main_strut.") and name not in OTHERS and not name.endswith(SHAPE)
 )
 CHAMBERS = [
     f"leg[{leg}].main_strut.{what}"
@@ -47,7 +55,7 @@ def near(rng: random.Random) -> Parameters:
     base = load_preset("yue2022-figures", rng.choice(sorted(MODES)))
     values = {}
     for name, q in PARAMETER_QUANTITIES.items():
-        if q.choices or name.endswith(SHAPE) or not float(base[name]) > 0.0:
+        if q.choices or name in OTHERS or name.endswith(SHAPE) or not float(base[name]) > 0.0:
             continue
         values[name] = min(max(float(base[name]) * exp(rng.uniform(-1.2, 1.2)), q.lo), q.hi)
     return base.with_values({**values, **fast(base, rng)})

@@ -6,9 +6,10 @@ import os
 import random
 
 import pytest
-from random_vehicles import some_vehicle, watch
+from random_vehicles import any_damper, some_vehicle, watch
 
 from rlv_landing import Landing, LandingError, Parameters
+from rlv_landing.assembly import touchdown_energy
 from rlv_landing.landing import METHODS
 
 # seeds in the suite; in `make torture` so many times as many as RLV_TORTURE says, at most 2,000
@@ -129,3 +130,13 @@ def test_what_a_loose_tolerance_hides_is_judged(seed):
     parameters = some_vehicle(random.Random(seed))
     method = "dormand-prince" if seed == 694 else "exponential"
     assert_kept(Landing(parameters, rtol=1e-3, method=method), until=0.3, most_steps=2500)
+
+
+@pytest.mark.parametrize("seed", [10, 144])
+def test_a_landing_of_many_seconds_keeps_the_energy_asleep_and_awake(seed):
+    # the first falls asleep far from its rest, the second loses a little in each second
+    landing = Landing(any_damper(random.Random(seed)), rtol=1e-4)
+    landing.advance_to(20.0)
+    kept = landing.extremes()["energy.balance"]
+    turned = max(landing.get("energy.dissipated"), 0.1 * touchdown_energy(landing.parameters))
+    assert max(-kept.minimum, kept.maximum) <= MOST_ENERGY * turned

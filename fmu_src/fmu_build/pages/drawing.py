@@ -6,7 +6,7 @@ from math import cos, pi, radians, sin
 from typing import TYPE_CHECKING, Any
 
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import MODES
+from rlv_landing.quantities import groups_of
 from rlv_landing.touchdown import footpad_at_rest
 
 if TYPE_CHECKING:
@@ -62,7 +62,9 @@ def vehicle_figure(parameters: Parameters, *, named: bool = False) -> Figure:
 def _azimuths(parameters: Parameters) -> dict[int, float]:
     """Azimuth [rad] of each leg, by its number."""
     return {
-        leg: radians(g.azimuth * side) for g in MODES[parameters.drop.mode] for leg, side in g.legs
+        leg: radians(g.azimuth * side)
+        for g in groups_of(parameters.drop.mode)
+        for leg, side in g.legs
     }
 
 

@@ -16,7 +16,7 @@ from scipy.integrate import cumulative_simpson
 from ..history import History
 from ..landing import Landing
 from ..parameters import Parameters
-from ..quantities import LEGS, MODES, OUTPUT_NAMES, azimuth
+from ..quantities import LEGS, OUTPUT_NAMES, azimuth, groups_of
 from .bounds import TIGHT_RTOL, Check
 from .cases import mass
 
@@ -55,7 +55,7 @@ def _mass_points(
     )
     sine, cosine = np.sin(pitch), np.cos(pitch)
     points = [(v.mass, x, y, vx, vy)]
-    turns = {leg: azimuth(g.azimuth) for g in MODES[parameters.drop.mode] for leg, _ in g.legs}
+    turns = {leg: azimuth(g.azimuth) for g in groups_of(parameters.drop.mode) for leg, _ in g.legs}
     for leg in LEGS:
         sin_g, cos_g = turns[leg]
         dx, dy = history[f"leg[{leg}].footpad.x"] - x, history[f"leg[{leg}].footpad.y"] - y

@@ -28,6 +28,9 @@ from .records import (
     LegPlace,
     LegState,
     Phase,
+    SpatialInputs,
+    SpatialModel,
+    SpatialState,
 )
 from .struts.kinds import AUXILIARY_STRUTS, MAIN_STRUTS
 
@@ -63,9 +66,19 @@ if not TYPE_CHECKING and os.environ.get("RLV_LANDING_PURE") != "1":
 
             COMPILED = is_fresh(compiled)
         if COMPILED:
-            from .compiled import DormandPrince, Exponential, Planar, Solver, System
+            from .compiled import (
+                DormandPrince,
+                Exponential,
+                Legged,
+                Planar,
+                Solver,
+                Spatial,
+                System,
+            )
 if not COMPILED:
+    from .bodies.legged import Legged
     from .bodies.planar import Planar
+    from .bodies.spatial import Spatial
     from .bodies.system import System
     from .solvers.dormand_prince import DormandPrince
     from .solvers.exponential import Exponential
@@ -87,8 +100,13 @@ __all__ = [
     "LegModel",
     "LegPlace",
     "LegState",
+    "Legged",
     "Phase",
     "Planar",
     "Solver",
+    "Spatial",
+    "SpatialInputs",
+    "SpatialModel",
+    "SpatialState",
     "System",
 ]

@@ -18,8 +18,10 @@ from .records import (
     BodyOutputs,
     BodyState,
     EnergyOutputs,
+    FootLoads,
     Inputs,
     LegForces,
+    LegLoadOutputs,
     LegModel,
     LegOutputs,
     LegPlace,
@@ -27,6 +29,12 @@ from .records import (
     LegStatus,
     PhiWeights,
     PlanarLoads,
+    SpatialAttitude,
+    SpatialInputs,
+    SpatialLoads,
+    SpatialModel,
+    SpatialOutputs,
+    SpatialState,
     StatusOutputs,
     StiffPair,
 )
@@ -36,13 +44,20 @@ BODY = len(BodyState._fields)
 LEG = len(LegState._fields)
 ACCOUNTS = len(Accounts._fields)
 INPUTS = len(Inputs._fields)
+FOOT_LOADS = len(FootLoads._fields)
 LEG_FORCES = len(LegForces._fields)
 LEG_STATUS = len(LegStatus._fields)
 PLANAR_LOADS = len(PlanarLoads._fields)
 ATTITUDE = len(Attitude._fields)
+SPATIAL_STATE = len(SpatialState._fields)
+SPATIAL_INPUTS = len(SpatialInputs._fields)
+SPATIAL_LOADS = len(SpatialLoads._fields)
+SPATIAL_ATTITUDE = len(SpatialAttitude._fields)
 STIFF_PAIR = len(StiffPair._fields)
 PHI_WEIGHTS = len(PhiWeights._fields)
 BODY_OUTPUTS = len(BodyOutputs._fields)
+SPATIAL_OUTPUTS = len(SpatialOutputs._fields)
+LEG_LOAD_OUTPUTS = len(LegLoadOutputs._fields)
 ENERGY_OUTPUTS = len(EnergyOutputs._fields)
 STATUS_OUTPUTS = len(StatusOutputs._fields)
 LEG_OUTPUTS = len(LegOutputs._fields)
@@ -65,6 +80,11 @@ def body_state(y: Doubles, at: int) -> BodyState:
     return BodyState(*y[at : at + BODY])
 
 
+def spatial_state(y: Doubles, at: int) -> SpatialState:
+    """The spatial body's state that stands at `y[at:]`."""
+    return SpatialState(*y[at : at + SPATIAL_STATE])
+
+
 def leg_state(y: Doubles, at: int) -> LegState:
     """The leg's state that stands at `y[at:]`."""
     return LegState(*y[at : at + LEG])
@@ -78,6 +98,11 @@ def accounts(y: Doubles, at: int) -> Accounts:
 def inputs(u: Doubles, at: int) -> Inputs:
     """The inputs that stand at `u[at:]`."""
     return Inputs(*u[at : at + INPUTS])
+
+
+def spatial_inputs(u: Doubles, at: int) -> SpatialInputs:
+    """The inputs of a landing in space that stand at `u[at:]`."""
+    return SpatialInputs(*u[at : at + SPATIAL_INPUTS])
 
 
 def status_outputs(y: Doubles, at: int) -> StatusOutputs:
@@ -116,12 +141,32 @@ def leg_status_of(kept: Records[LegStatus], i: int) -> LegStatus:
     return kept[i]
 
 
+def foot_loads_of(kept: Records[FootLoads], i: int) -> FootLoads:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
 def planar_loads_of(kept: Records[PlanarLoads], i: int) -> PlanarLoads:
     """The `i`-th record of those kept."""
     return kept[i]
 
 
 def attitude_of(kept: Records[Attitude], i: int) -> Attitude:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def spatial_model(kept: Records[SpatialModel], i: int) -> SpatialModel:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def spatial_loads_of(kept: Records[SpatialLoads], i: int) -> SpatialLoads:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def spatial_attitude_of(kept: Records[SpatialAttitude], i: int) -> SpatialAttitude:
     """The `i`-th record of those kept."""
     return kept[i]
 

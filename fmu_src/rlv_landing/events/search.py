@@ -12,7 +12,6 @@ from collections.abc import Sequence
 
 from ..core import Solver
 from ..interruptible import check_going
-from ..quantities import LEGS, OUTPUT_NAMES
 
 # an event is known to so many seconds: half the promised 1e-9 s
 WIDTH = 5e-10
@@ -27,20 +26,25 @@ class EventSearch:
 
     Args:
         solver: The solver.
+        names: The outputs' names.
         order: For each output its place in the solver's outputs and its factor.
         stroke_max: Stroke at which the main struts meet their compression stops [m].
     """
 
     def __init__(
-        self, solver: Solver, order: Sequence[tuple[int, float]], stroke_max: float
+        self,
+        solver: Solver,
+        names: Sequence[str],
+        order: Sequence[tuple[int, float]],
+        stroke_max: float,
     ) -> None:
         self._solver = solver
         self._y = array("d", bytes(8 * solver.n))
         self._out = array("d", bytes(8 * solver.system.row))
-        places = {name: i for name, (i, _) in zip(OUTPUT_NAMES, order)}
+        places = {name: i for name, (i, _) in zip(names, order)}
         # legs that move alike have one place
-        depths = {places[f"leg[{leg}].contact.penetration"] for leg in LEGS}
-        strokes = {places[f"leg[{leg}].main_strut.stroke"] for leg in LEGS}
+        depths = {i for name, i in places.items() if name.endswith(".contact.penetration")}
+        strokes = {i for name, i in places.items() if name.endswith(".main_strut.stroke")}
         # (place, edge): outputs for which it matters on which side of an edge they are
         self._edges = [(i, 0.0) for i in sorted(depths)] + [
             (i, edge) for i in sorted(strokes) for edge in (ROUNDING, stroke_max)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..history import History
-from ..quantities import LEGS, MODES
+from ..quantities import LEGS, groups_of
 from .plots import COLOURS, MAIN_FORCE, MAIN_STROKE
 from .wireframe import ground_height, wireframe
 
@@ -45,7 +45,7 @@ class MovingFigure:
         self._history, self._rows = history, rows
         self._lines = wireframe(history, parameters, rows)
         self._solid = view == "3d"
-        groups = MODES[parameters.drop.mode]
+        groups = groups_of(parameters.drop.mode)
         self._colours = {leg: colour for g, colour in zip(groups, COLOURS) for leg, _ in g.legs}
         grid = self.figure.add_gridspec(len(CURVES), 2, width_ratios=(1.0, 1.15))
         # Any: matplotlib's types do not tell axes in space from others

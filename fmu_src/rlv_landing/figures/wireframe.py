@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..history import History
 from ..parameters import Parameters
-from ..quantities import LEGS, MODES, azimuth
+from ..quantities import LEGS, azimuth, groups_of
 from ..touchdown import footpad_between
 
 Lines = NDArray[np.float64]
@@ -53,7 +53,7 @@ def wireframe(
     outline = np.stack([corners[:, 0], corners[:, 1], np.zeros(5)], axis=-1)
     azimuths = {
         leg: (*azimuth(g.azimuth), side)
-        for g in MODES[parameters.drop.mode]
+        for g in groups_of(parameters.drop.mode)
         for leg, side in g.legs
     }
     main, auxiliary = np.empty((2, len(rows), len(LEGS), 2, 3))

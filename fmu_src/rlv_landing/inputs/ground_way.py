@@ -5,10 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from ..core import Inputs
-
-# the places of heave and tilt among the inputs
-POSITIONS = (Inputs._fields.index("heave"), Inputs._fields.index("tilt"))
 # longest time that the way to a position takes, unless a step of the caller is longer [s]
 LONGEST_INTERVAL = 1.0
 # A shorter part of the interval before is the interval of another source. Positions of one source
@@ -17,9 +13,9 @@ OTHER_SOURCE = 0.45
 
 
 class Way(NamedTuple):
-    """The way of the ground to the heave [m] or tilt [rad] that was set last. Times are in s."""
+    """The way of the ground to the position [m, rad] that was set last. Times are in s."""
 
-    goal: float  # heave or tilt as it was set, at the solver's t_input
+    goal: float  # position as it was set, at the solver's t_input
     told: float  # the last value that was set
     since: float  # time at which the goal was last set to another place
     interval: float  # time between such settings; 0 before the first
@@ -48,20 +44,23 @@ def reached(end: float, t: float) -> bool:
 
 
 def ways_of(numbers: Sequence[float]) -> list[Way]:
-    """The ways of heave and tilt from the numbers of both, one after the other."""
+    """The ways of the ground's positions from their numbers, one after the other."""
     size = len(Way._fields)
     return [Way(*numbers[at : at + size]) for at in range(0, len(numbers), size)]
 
 
-def way_faults(numbers: Sequence[float], rates: Sequence[float], time: float) -> Iterator[str]:
+def way_faults(
+    numbers: Sequence[float], positions: Sequence[int], rates: Sequence[float], time: float
+) -> Iterator[str]:
     """The faults of the ways in a state.
 
     Args:
-        numbers: Those of both ways, as for `ways_of`.
+        numbers: Those of the ways, as for `ways_of`.
+        positions: Places of the positions among the inputs.
         rates: Rates of the solver's inputs [unit/s].
         time: Time of the state [s].
     """
-    for i, way in zip(POSITIONS, ways_of(numbers)):
+    for i, way in zip(positions, ways_of(numbers)):
         if not 0.0 <= way.since <= time:
             yield f"a ground position set at {way.since:g} s, not a time until {time:g} s"
         if not 0.0 <= way.interval <= LONGEST_INTERVAL:

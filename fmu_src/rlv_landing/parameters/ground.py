@@ -17,6 +17,11 @@ class Ground:
         "slope of the ground at rest, clockwise positive (falling towards +x)",
         real("rad", -0.7, 0.7, "alpha", "paper", "deg"),
     ] = 0.0
+    slope_direction: Annotated[
+        float,
+        "direction in which the slope falls, from +x towards +z; mode = space",
+        real("rad", -3.2, 3.2, display_unit="deg"),
+    ] = 0.0
     gravity: Annotated[
         float, "gravitational acceleration", real("m/s2", 0.0, 50.0, "g", "closure")
     ] = 9.81

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ..errors import LandingError, unknown
-from ..quantities import MODES
+from ..quantities import MODES, SPACE
 from .drop import Drop, Integration
 from .ground import Ground
+from .space import check_space
 from .table import FIELDS, GROUPS, PARAMETER_QUANTITIES, check_value
 from .vehicle import AuxiliaryStrut, MainStrut, Vehicle
 
@@ -115,8 +116,8 @@ class Parameters:
         Raises:
             LandingError: The mode is unknown.
         """
-        if mode not in MODES:
-            raise unknown("landing mode", mode, MODES)
+        if mode not in (*MODES, SPACE):
+            raise unknown("landing mode", mode, (*MODES, SPACE))
         own = self.by_mode.get(mode, {})
         sources: Sources = {name: self.source(name, mode) for name in own}
         return self._replaced({**own, "drop.mode": mode}, sources)
@@ -134,6 +135,7 @@ class Parameters:
         return replace(self, **parts, sources={**self.sources, **sources})
 
     def _check_together(self) -> None:
+        check_space(self.vehicle, self.drop, self.ground)
         m, a = self.main_strut, self.auxiliary_strut
         swept = m.area_lower * m.stroke_max
         if swept >= 0.95 * m.volume_lower:

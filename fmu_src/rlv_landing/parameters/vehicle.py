@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from ..quantities import LEAST_LEGS, MOST_LEGS
 from .declaration import real, text
 
 
@@ -34,11 +35,57 @@ class Vehicle:
         "joint (the paper's assumption C; creates energy)",
         text("footpad", "joint", source="derived"),
     ] = "footpad"
+    legs: Annotated[
+        float,
+        "number of legs, evenly round the body; 4 but in mode = space",
+        real("", float(LEAST_LEGS), float(MOST_LEGS)),
+    ] = 4.0
+    leg_azimuth: Annotated[
+        float,
+        "azimuth of leg 1 from the body's x towards z; the others follow evenly; mode = space",
+        real("rad", -3.2, 3.2, display_unit="deg"),
+    ] = 3.141592653589793
+    inertia_roll: Annotated[
+        float,
+        "rotational inertia of the upper mass about body x through its CG; 0: that about z; "
+        "mode = space",
+        real("kg.m2", 0.0, 1e9),
+    ] = 0.0
+    inertia_yaw: Annotated[
+        float,
+        "rotational inertia of the upper mass about body y through its CG; 0: the upper mass times "
+        "the square of the main struts' joint radius, a thin shell; mode = space",
+        real("kg.m2", 0.0, 1e9),
+    ] = 0.0
+    inertia_xy: Annotated[
+        float,
+        "element xy of the inertia tensor about the CG, minus the integral of x y dm; mode = space",
+        real("kg.m2", -1e9, 1e9),
+    ] = 0.0
+    inertia_xz: Annotated[
+        float, "element xz of the inertia tensor; mode = space", real("kg.m2", -1e9, 1e9)
+    ] = 0.0
+    inertia_yz: Annotated[
+        float, "element yz of the inertia tensor; mode = space", real("kg.m2", -1e9, 1e9)
+    ] = 0.0
+    cg_offset_x: Annotated[
+        float, "CG off the legs' axis along body x; mode = space", real("m", -10.0, 10.0)
+    ] = 0.0
+    cg_offset_z: Annotated[
+        float, "CG off the legs' axis along body z; mode = space", real("m", -10.0, 10.0)
+    ] = 0.0
 
 
 @dataclass(frozen=True)
 class MainStrut:
-    """The main strut with its liquid-spring damper. Eq. (12)."""
+    """The main strut: a liquid-spring damper, Eq. (12), or a linear spring and damper."""
+
+    kind: Annotated[
+        str,
+        "liquid-spring: the damper of Eq. (12); spring-damper: stiffness and damping along the "
+        "strut, in tension too, and the compression stop",
+        text("liquid-spring", "spring-damper"),
+    ] = "liquid-spring"
 
     joint_radius: Annotated[
         float, "CG to body joint, radially", real("m", 0.0, 50.0, "La", "paper")
@@ -153,6 +200,12 @@ class MainStrut:
         "damping of both end stops: force is K e (1 + c e')",
         real("s/m", 0.0, 100.0, "c_stop", "identified"),
     ] = 0.01048
+    stiffness: Annotated[
+        float, "axial stiffness, kind = spring-damper", real("N/m", 0.0, 1e11, "Km", "closure")
+    ] = 230000.0
+    damping: Annotated[
+        float, "axial damping, kind = spring-damper", real("N.s/m", 0.0, 1e9, "Cm", "closure")
+    ] = 3000.0
 
 
 @dataclass(frozen=True)

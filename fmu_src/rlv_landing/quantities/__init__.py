@@ -6,7 +6,19 @@ reference pages.
 """
 
 from .inputs import INPUT_NAMES, INPUT_QUANTITIES, INPUTS_BY_NAME
-from .legs import LEGS, MIRRORED, MODES, LegGroup, azimuth, touchdown_groups
+from .interface import Interface, interface_of
+from .legs import (
+    LEAST_LEGS,
+    LEGS,
+    MIRRORED,
+    MODES,
+    MOST_LEGS,
+    SPACE,
+    LegGroup,
+    azimuth,
+    groups_of,
+    touchdown_groups,
+)
 from .outputs import (
     BODY_QUANTITIES,
     ENERGY_QUANTITIES,
@@ -29,10 +41,12 @@ __all__ = [
     "INPUTS_BY_NAME",
     "INPUT_NAMES",
     "INPUT_QUANTITIES",
+    "LEAST_LEGS",
     "LEGS",
     "LEG_QUANTITIES",
     "MIRRORED",
     "MODES",
+    "MOST_LEGS",
     "NOMINALS",
     "OUTPUTS_BY_NAME",
     "OUTPUT_NAMES",
@@ -40,13 +54,17 @@ __all__ = [
     "PEAKS",
     "PEAK_QUANTITIES",
     "SHARED_QUANTITIES",
+    "SPACE",
     "STATISTIC_QUANTITIES",
     "STATUS_QUANTITIES",
+    "Interface",
     "LegGroup",
     "Peak",
     "Quantity",
     "azimuth",
     "flat_name",
+    "groups_of",
+    "interface_of",
     "shown",
     "touchdown_groups",
     "whole_name",

@@ -6,7 +6,11 @@ from dataclasses import dataclass
 from functools import cache
 from math import cos, radians, sin
 
+from ..errors import LandingError
+
 LEGS = (1, 2, 3, 4)
+# of a landing in space
+LEAST_LEGS, MOST_LEGS = 3, 8
 # quantities of a leg whose sign changes in its mirror image
 MIRRORED = ("footpad.z", "contact.force_z")
 
@@ -33,11 +37,29 @@ MODES: dict[str, tuple[LegGroup, ...]] = {
 
 def touchdown_groups(mode: str) -> list[tuple[int, ...]]:
     """The numbers of the legs that touch down together, in the order of touchdown."""
-    return [tuple(sorted(leg for leg, _ in group.legs)) for group in MODES[mode]]
+    return [tuple(sorted(leg for leg, _ in group.legs)) for group in groups_of(mode)]
+
+
+# the mode of a landing in space; the others are symmetric
+SPACE = "space"
+
+
+def groups_of(mode: str) -> tuple[LegGroup, ...]:
+    """The leg groups of a symmetric landing.
+
+    Raises:
+        LandingError: The landing is in space.
+    """
+    if mode == SPACE:
+        raise LandingError(
+            f"drop.mode = {SPACE} has no leg groups, and this needs a symmetric landing; "
+            f"choose {' or '.join(MODES)}"
+        )
+    return MODES[mode]
 
 
 @cache
-def azimuth(degrees: int) -> tuple[float, float]:
+def azimuth(degrees: float) -> tuple[float, float]:
     """Sine and cosine of an azimuth [deg], exactly 0 at multiples of 90 degrees."""
     s, c = sin(radians(degrees)), cos(radians(degrees))
     return (0.0 if abs(s) < 1e-15 else s), (0.0 if abs(c) < 1e-15 else c)

@@ -156,7 +156,8 @@ LEG_QUANTITIES: tuple[Quantity, ...] = (
 )
 
 
-def _leg_quantity(leg: int, q: Quantity) -> Quantity:
+def leg_quantity(leg: int, q: Quantity) -> Quantity:
+    """The quantity `q` of the leg with the number `leg`."""
     owner, what = q.name.split(".")
     meaning = f"leg {leg}, {owner.replace('_', ' ')}: {q.meaning}"
     return Quantity(
@@ -172,7 +173,7 @@ def _leg_quantity(leg: int, q: Quantity) -> Quantity:
 
 SHARED_QUANTITIES = BODY_QUANTITIES + ENERGY_QUANTITIES + STATUS_QUANTITIES
 OUTPUT_QUANTITIES: tuple[Quantity, ...] = SHARED_QUANTITIES + tuple(
-    _leg_quantity(leg, q) for leg in LEGS for q in LEG_QUANTITIES
+    leg_quantity(leg, q) for leg in LEGS for q in LEG_QUANTITIES
 )
 OUTPUT_NAMES: tuple[str, ...] = tuple(q.name for q in OUTPUT_QUANTITIES)
 OUTPUTS_BY_NAME: dict[str, Quantity] = {q.name: q for q in OUTPUT_QUANTITIES}

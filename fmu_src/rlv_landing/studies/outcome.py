@@ -14,7 +14,7 @@ from ..core import Phase
 from ..errors import LandingError
 from ..history import History
 from ..landing import Landing
-from ..quantities import MODES, Quantity, azimuth
+from ..quantities import Quantity, azimuth, groups_of
 from ..touchdown import AT_REST
 from .limits import PassedLimit, first_limit_passed, time_passed
 from .replay import ReplayedHistory
@@ -167,7 +167,7 @@ def _first_beyond(slip: Array, slide: float, samples: int) -> int:
 @lru_cache
 def _legs(mode: str) -> tuple[tuple[int, ...], tuple[float, ...]]:
     """One leg of each group of mirror images, its lowest number, and the cosine of its azimuth."""
-    groups = sorted((min(leg for leg, _ in g.legs), azimuth(g.azimuth)[1]) for g in MODES[mode])
+    groups = sorted((min(leg for leg, _ in g.legs), azimuth(g.azimuth)[1]) for g in groups_of(mode))
     return tuple(leg for leg, _ in groups), tuple(c for _, c in groups)
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from ..core import Phase
 from ..history import History, joined
 from ..landing import Landing
-from ..quantities import LEGS
 from .measures import leg_work
 from .reading import RUN_AFTER_CONTACT
 from .sensors import SAMPLING
@@ -35,4 +34,4 @@ def _is_stroking(history: History) -> bool:
     if history["status.phase"][-1] in (Phase.SETTLED, Phase.TOPPLED):
         return False
     work = leg_work(history)
-    return len(work) < len(LEGS) or any(w.state != "complete" for w in work.values())
+    return len(work) < len(history.legs) or any(w.state != "complete" for w in work.values())

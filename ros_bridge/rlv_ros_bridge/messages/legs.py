@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rlv_landing.quantities import LEGS, MODES, azimuth
+from rlv_landing.quantities import LEGS, azimuth, groups_of
 
 from .axes import to_ros
 
@@ -28,6 +28,6 @@ def leg_points(mode: str, radius: float, height: float) -> list[tuple[float, flo
 
 
 def _azimuths(mode: str) -> Iterator[tuple[int, tuple[float, float, int]]]:
-    for group in MODES[mode]:
+    for group in groups_of(mode):
         for leg, side in group.legs:
             yield leg, (*azimuth(group.azimuth), side)

@@ -11,6 +11,7 @@ from ..records import (
     BodyAcceleration,
     BodyModel,
     BodyState,
+    FootLoads,
     FootMotion,
     FootPoint,
     Inputs,
@@ -56,32 +57,39 @@ def foot_motion(foot: FootPoint, u: Inputs, turn: Turn) -> FootMotion:
     )
 
 
+def foot_loads(forces: LegForces, foot: FootPoint, depth: float, turn: Turn) -> FootLoads:
+    """The ground's force on the footpad by the leg's `forces`."""
+    x = forces.f1 * turn.cos_a + forces.normal * turn.sin_a
+    y = forces.normal * turn.cos_a - forces.f1 * turn.sin_a
+    return FootLoads(
+        x=foot.x,
+        y=foot.y,
+        z=foot.z,
+        depth=depth,
+        contact_x=x,
+        contact_y=y,
+        contact_z=forces.f2,
+        ground=x * foot.ground_vx + y * foot.ground_vy,
+    )
+
+
 def planar_loads(
-    forces: LegForces, foot: FootPoint, depth: float, place: LegPlace, turn: Turn, weight: float
+    forces: LegForces, foot: FootLoads, place: LegPlace, turn: Turn, weight: float
 ) -> PlanarLoads:
     """Loads by the leg's `forces`: on the footpad in the leg's axes, on the body in its own.
 
     `weight` is that of the footpad [N].
     """
-    x = forces.f1 * turn.cos_a + forces.normal * turn.sin_a
-    y = forces.normal * turn.cos_a - forces.f1 * turn.sin_a
-    body_x = x * turn.cos_p - (y - weight) * turn.sin_p
-    body_y = x * turn.sin_p + (y - weight) * turn.cos_p
+    y = foot.contact_y - weight
+    body_x = foot.contact_x * turn.cos_p - y * turn.sin_p
+    body_y = foot.contact_x * turn.sin_p + y * turn.cos_p
     return PlanarLoads(
-        foot_x=foot.x,
-        foot_y=foot.y,
-        foot_z=foot.z,
-        depth=depth,
-        contact_x=x,
-        contact_y=y,
-        contact_z=forces.f2,
         radial=body_x * place.cos_g + forces.f2 * place.sin_g + forces.main_r + forces.auxiliary_r,
         vertical=body_y + forces.main_h + forces.auxiliary_h,
         tangential=forces.f2 * place.cos_g - body_x * place.sin_g,
         body_x=-(forces.main_r + forces.auxiliary_r) * place.cos_g,
         body_y=-(forces.main_h + forces.auxiliary_h),
         moment=place.cos_g * forces.moment,
-        ground=x * foot.ground_vx + y * foot.ground_vy,
     )
 
 

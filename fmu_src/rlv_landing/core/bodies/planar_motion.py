@@ -3,25 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import fabs
 
 from ..access import (
-    ACCOUNTS,
     ATTITUDE,
     BODY,
     BODY_OUTPUTS,
     ENERGY_OUTPUTS,
-    FRICTION,
     INPUTS,
     LEG,
-    LEG_FORCES,
     LEG_OUTPUTS,
     PLANAR_LOADS,
     STATUS_OUTPUTS,
-    Z1,
-    Z2,
     body_model,
     body_state,
+    foot_loads_of,
     inputs,
     keep,
     leg_forces_of,
@@ -31,25 +26,22 @@ from ..access import (
     planar_loads_of,
     put,
 )
-from ..ground.kinds import friction_bound, friction_only_takes
-from ..leg import leg_forces, liquid_excess, without_excess
+from ..leg import leg_forces
 from ..memory import Buffer, Doubles, Records, room, stored
 from ..records import (
-    Accounts,
     Attitude,
     BodyAcceleration,
     BodyModel,
     BodyState,
     Inputs,
-    LegForces,
     LegModel,
     LegPlace,
-    LegState,
     PlanarLoads,
-    StiffPair,
     Turn,
 )
+from .legged import Legged
 from .planar_legs import (
+    foot_loads,
     foot_motion,
     foot_point,
     frame_acceleration,
@@ -58,27 +50,12 @@ from .planar_legs import (
     transverse_height,
     turned,
 )
-from .system import System
-
-# Of a main strut's liquid, in parts: the excess that is left where it is; what is left of a larger
-# one, next to as much, so that outputs do not jump where it becomes larger; the excess that a step
-# may gather at most, and the change that a step's error in one of the law's states may stand for
-CONSERVED, LEFT_OVER = 8e-7, 7.99e-7
-MOST_GATHERED, MOST_FOR_AN_ERROR = 1e-5, 1e-4
 
 
-class PlanarMotion(System):
-    """One body in its symmetric plane on leg groups, and its ground.
+class PlanarMotion(Legged):
+    """One body in its symmetric plane on leg groups, and its ground: its state is a `BodyState`."""
 
-    The state is a `BodyState`, a `LegState` for each group, and the `Accounts`, which no other
-    state depends on. What is dissipated never falls, unless a friction law may give.
-    """
-
-    groups: int
     _body: Records[BodyModel]
-    _places: Records[LegPlace]
-    _legs: Records[LegModel]
-    _forces: Records[LegForces]
     _loads: Records[PlanarLoads]
     _attitude: Records[Attitude]
 
@@ -90,20 +67,13 @@ class PlanarMotion(System):
         scale: Buffer,
         relative: Buffer,
     ) -> None:
-        groups = len(legs)
-        row = BODY_OUTPUTS + ENERGY_OUTPUTS + STATUS_OUTPUTS + LEG_OUTPUTS * groups
-        super().__init__(scale, relative, ACCOUNTS, INPUTS, row, groups)
-        self.groups = groups
+        row = BODY_OUTPUTS + ENERGY_OUTPUTS + STATUS_OUTPUTS + LEG_OUTPUTS * len(legs)
+        super().__init__(legs, places, scale, relative, INPUTS, row)
+        self.mass += body.m_u
+        self._energies = BODY_OUTPUTS
         self._body = stored([body])
-        self._places = stored(places)
-        self._legs = stored(legs)
-        self._forces = room(groups, LEG_FORCES)
-        self._loads = room(groups, PLANAR_LOADS)
+        self._loads = room(len(legs), PLANAR_LOADS)
         self._attitude = room(1, ATTITUDE)
-        self.rising = FRICTION + 1
-        for i in range(groups):
-            if not friction_only_takes(leg_model(self._legs, i)):
-                self.rising = FRICTION
 
     def inputs_after(self, u: Doubles, rates: Doubles, dt: float, now: Doubles) -> None:
         """Loads go on at their rates, heave and tilt at their own, which change at theirs.
@@ -166,11 +136,11 @@ class PlanarMotion(System):
         point = foot_point(body, leg, place, u, turn)
         foot = foot_motion(point, u, turn)
         keep(leg_forces(leg, foot, model), self._forces, i)
+        forces = leg_forces_of(self._forces, i)
+        keep(foot_loads(forces, point, foot.depth, turn), self._feet, i)
         weight = model.m_d * body_model(self._body, 0).g
         keep(
-            planar_loads(leg_forces_of(self._forces, i), point, foot.depth, place, turn, weight),
-            self._loads,
-            i,
+            planar_loads(forces, foot_loads_of(self._feet, i), place, turn, weight), self._loads, i
         )
 
     def _acceleration(self, y: Doubles, body: BodyState, u: Inputs, turn: Turn) -> BodyAcceleration:
@@ -240,74 +210,3 @@ class PlanarMotion(System):
         force = -model.m_d * place.sin_g * frame.x - loads.tangential
         arm = leg.h - transverse_height(leg.h, body_model(self._body, 0), model)
         return place.legs * (-force * place.sin_g * rate * arm)
-
-    def _put_powers(self, external: float, transverse: float, dy: Doubles) -> None:
-        """Write the powers that the accounts gather to `dy` [W].
-
-        Args:
-            external: Power of the external loads [W].
-            transverse: Power that the transverse forces create [W].
-            dy: The state's rate.
-        """
-        orifice = seal = stop = auxiliary = contact = friction = ground = 0.0
-        for i in range(self.groups):
-            n = leg_place(self._places, i).legs
-            forces = leg_forces_of(self._forces, i)
-            orifice += n * forces.orifice
-            seal += n * forces.seal
-            stop += n * forces.stop
-            auxiliary += n * forces.auxiliary_dissipated
-            contact += n * forces.contact
-            friction += n * forces.friction
-            ground += n * planar_loads_of(self._loads, i).ground
-        put(
-            Accounts(
-                orifice, seal, stop, auxiliary, contact, friction, external, ground, transverse
-            ),
-            dy,
-            BODY + LEG * self.groups,
-        )
-
-    def stiff(self, k: int) -> StiffPair:
-        """The states of leg group `k`'s main strut law."""
-        forces = leg_forces_of(self._forces, k)
-        at = BODY + LEG * k
-        return StiffPair(at + Z1, at + Z2, forces.a1, forces.a2)
-
-    def project(self, y: Doubles) -> None:
-        """Bring what the friction laws keep to where they let it be."""
-        for i in range(self.groups):
-            leg = leg_state(y, BODY + LEG * i)
-            q = friction_bound(leg.q1, leg.q2, leg_model(self._legs, i))
-            put(
-                LegState(leg.r, leg.h, leg.vr, leg.vh, leg.z1, leg.z2, q.q1, q.q2),
-                y,
-                BODY + LEG * i,
-            )
-
-    def weigh(self, ceiling: Doubles) -> None:
-        """Write the ceiling of the error of each main strut law's state to `ceiling`.
-
-        The error counts by what it changes of the liquid's mass, where that is more than by its
-        size.
-        """
-        for i in range(self.groups):
-            forces = leg_forces_of(self._forces, i)
-            at = BODY + LEG * i
-            most = MOST_FOR_AN_ERROR * forces.liquid_mass
-            if most > 0.0:
-                ceiling[at + Z1] = most / forces.mass_1
-                ceiling[at + Z2] = most / forces.mass_2
-
-    def conserve(self, y: Doubles) -> float:
-        """Take off what the main struts have gathered of liquid."""
-        farthest = 0.0
-        for i in range(self.groups):
-            forces = leg_forces_of(self._forces, i)
-            model = leg_model(self._legs, i)
-            excess = fabs(liquid_excess(forces, model))
-            if excess > CONSERVED:
-                leg = leg_state(y, BODY + LEG * i)
-                put(without_excess(leg, forces, model, LEFT_OVER), y, BODY + LEG * i)
-                farthest = max(farthest, excess)
-        return farthest / MOST_GATHERED

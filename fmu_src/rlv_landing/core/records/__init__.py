@@ -7,8 +7,8 @@ axes turned by the pitch, which is clockwise positive; the origin is the body's 
 (CG). Leg: r radially out and h up from the CG in a plane fixed in the body, t across it. Ground: n
 out of the ground, 1 and 2 along it, 1 down the slope and 2 along inertial z.
 
-All fields are numbers. Compiled, a record that stands in an array is handed on by its address, one
-that was just made by value.
+The fields of a record that stands in an array are numbers. Compiled, such a record is handed on by
+its address, one that was just made by value.
 """
 
 from .laws import (
@@ -26,10 +26,28 @@ from .laws import (
     StrutMotion,
     StrutStatus,
 )
-from .legs import LegForces, LegStatus
+from .legs import FootLoads, LegForces, LegStatus
 from .models import BodyModel, LegModel, LegPlace
-from .outputs import BodyOutputs, EnergyOutputs, LegOutputs, StatusOutputs
-from .planar import Attitude, BodyAcceleration, FootPoint, HeldEnergy, PlanarLoads, Turn
+from .outputs import (
+    BodyOutputs,
+    EnergyOutputs,
+    LegLoadOutputs,
+    LegOutputs,
+    SpatialOutputs,
+    StatusOutputs,
+)
+from .planar import Attitude, BodyAcceleration, FootPoint, PlanarLoads, Turn
+from .spatial import (
+    Deck,
+    FootPlace,
+    Rotation,
+    SpatialAttitude,
+    SpatialInputs,
+    SpatialLoads,
+    SpatialModel,
+    SpatialState,
+    Vector,
+)
 from .state import Accounts, BodyState, Fault, Inputs, LegState, Phase
 from .steps import Bend, Crest, PhiWeights, StiffPair
 
@@ -45,18 +63,21 @@ __all__ = [
     "BodyState",
     "Chamber",
     "Crest",
+    "Deck",
     "EnergyOutputs",
     "Fault",
     "FluidState",
+    "FootLoads",
     "FootMotion",
+    "FootPlace",
     "FootPoint",
     "Friction",
     "FrictionBound",
     "FrictionForce",
     "GroundForce",
-    "HeldEnergy",
     "Inputs",
     "LegForces",
+    "LegLoadOutputs",
     "LegModel",
     "LegOutputs",
     "LegPlace",
@@ -66,10 +87,18 @@ __all__ = [
     "Phase",
     "PhiWeights",
     "PlanarLoads",
+    "Rotation",
+    "SpatialAttitude",
+    "SpatialInputs",
+    "SpatialLoads",
+    "SpatialModel",
+    "SpatialOutputs",
+    "SpatialState",
     "StatusOutputs",
     "StiffPair",
     "StrutForce",
     "StrutMotion",
     "StrutStatus",
     "Turn",
+    "Vector",
 ]

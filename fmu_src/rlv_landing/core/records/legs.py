@@ -1,4 +1,4 @@
-"""Forces and outputs of one leg."""
+"""Forces and outputs of one leg, and its footpad's loads."""
 
 from typing import NamedTuple
 
@@ -40,6 +40,19 @@ class LegForces(NamedTuple):
     liquid_mass: float  # [kg]
     mass_1: float  # see StrutForce
     mass_2: float
+
+
+class FootLoads(NamedTuple):
+    """A footpad and the ground's force on it, both inertial."""
+
+    x: float  # [m]
+    y: float  # [m]
+    z: float  # [m]
+    depth: float  # penetration [m]
+    contact_x: float  # [N]
+    contact_y: float  # [N]
+    contact_z: float  # [N]
+    ground: float  # power of the moving ground [W]
 
 
 class LegStatus(NamedTuple):

@@ -54,6 +54,8 @@ class LegModel(NamedTuple):
     s_max: float
     K_stop: float
     c_stop: float
+    Km: float  # of a spring-damper
+    Cm: float
     # auxiliary strut
     Lc: float
     Ld: float

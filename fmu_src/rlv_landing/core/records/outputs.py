@@ -21,6 +21,34 @@ class BodyOutputs(NamedTuple):
     top_axial_acceleration: float
 
 
+class SpatialOutputs(NamedTuple):
+    """The quantities `body.*` of a landing in space."""
+
+    x: float
+    y: float
+    z: float
+    q_w: float
+    q_x: float
+    q_y: float
+    q_z: float
+    pitch: float
+    roll: float
+    heading: float
+    vx: float
+    vy: float
+    vz: float
+    spin_x: float
+    spin_y: float
+    spin_z: float
+    ax: float
+    ay: float
+    az: float
+    spin_acceleration_x: float
+    spin_acceleration_y: float
+    spin_acceleration_z: float
+    top_axial_acceleration: float
+
+
 class EnergyOutputs(NamedTuple):
     """The quantities `energy.*` [J]."""
 
@@ -72,3 +100,9 @@ class LegOutputs(NamedTuple):
     contact_force: float
     contact_penetration: float
     contact_active: float
+
+
+class LegLoadOutputs(NamedTuple):
+    """The quantities that a leg has beside those of `LegOutputs` in a landing in space."""
+
+    transverse_force: float

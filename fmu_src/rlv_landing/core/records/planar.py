@@ -36,20 +36,12 @@ class FootPoint(NamedTuple):
 class PlanarLoads(NamedTuple):
     """Loads of one leg in the planar body's motion."""
 
-    foot_x: float  # footpad, inertial [m]
-    foot_y: float  # [m]
-    foot_z: float  # [m]
-    depth: float  # penetration [m]
-    contact_x: float  # the ground's force on the footpad, inertial [N]
-    contact_y: float  # [N]
-    contact_z: float  # [N]
     radial: float  # all forces on the footpad but the transverse one along r [N]
     vertical: float  # along h [N]
     tangential: float  # along t [N]
     body_x: float  # the struts' force on the body, body axes [N]
     body_y: float  # [N]
     moment: float  # and moment about its CG, clockwise positive [N m]
-    ground: float  # power of the moving ground [W]
 
 
 class BodyAcceleration(NamedTuple):
@@ -58,15 +50,3 @@ class BodyAcceleration(NamedTuple):
     x: float  # [m/s2]
     y: float  # [m/s2]
     pitch: float  # [rad/s2]
-
-
-class HeldEnergy(NamedTuple):
-    """Parts of the vehicle's mechanical energy [J]."""
-
-    kinetic: float
-    potential: float
-    liquid: float
-    auxiliary: float
-    contact: float
-    friction: float
-    stop: float

@@ -13,8 +13,8 @@ from array import array
 from math import fabs, inf
 
 from ..bodies.system import System
+from ..linear import solve
 from ..memory import Buffer, Doubles, copy, data
-from .linear import solve
 from .watch import Watch
 
 # [s]: to where a probe looks
@@ -35,6 +35,8 @@ UNKNOWN = 1e9
 # [m]: and where from there nothing is left that moves further, after so many probes at most
 LEFT = 1e-9
 PROBES = 6
+# [s]: going to the rest may lose as much of what the system conserves as this time may
+JUMP = 1.0
 # part of a state's scale by which derivatives are taken
 NUDGE = 1e-7
 
@@ -92,6 +94,8 @@ class Rest(Watch):
             return False
         look = data(self._look)
         self._outputs_at(self.t, place, look, 0)
+        if self.system.lost(data(self.last), look, JUMP) > 1.0:
+            return False
         return self.system.rests(look)
 
     def _reach_rest(self, y: Doubles) -> bool:

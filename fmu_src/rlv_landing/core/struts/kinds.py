@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from ..memory import chosen
 from ..records import AxialForce, LegModel, StrutForce, StrutStatus
-from . import elastic, liquid_spring, play  # noqa: F401  each adds its law to its table
+from . import elastic, liquid_spring, play, spring_damper  # noqa: F401  each adds its law to its table
 from .laws import AUXILIARY_STRUTS as AUXILIARY_STRUTS
 from .laws import MAIN_STRUTS as MAIN_STRUTS
 

@@ -11,7 +11,7 @@ from math import atan2, cos, hypot, sin, sqrt
 
 from ...parameters import Parameters
 from ...presets import load_preset
-from ...quantities import MODES, azimuth
+from ...quantities import azimuth, groups_of
 from ...touchdown import footpad_at_rest
 
 # the model in that limit: struts locked by their orifices and damped by their seals, feet that
@@ -95,7 +95,7 @@ class RigidBlock:
 
         Its outermost feet are the block's.
         """
-        vehicle, groups = parameters.vehicle, MODES[parameters.drop.mode]
+        vehicle, groups = parameters.vehicle, groups_of(parameters.drop.mode)
         radius, foot = footpad_at_rest(parameters)
         along = [radius * azimuth(g.azimuth)[1] for g in groups for _ in g.legs]
         mass = vehicle.mass + len(along) * vehicle.footpad_mass

@@ -9,7 +9,7 @@ from typing import Any
 from ...errors import LandingError, unknown
 from ...history import History
 from ...outputs import Extreme
-from ...quantities import LEG_QUANTITIES, LEGS, MODES, OUTPUT_QUANTITIES, Quantity
+from ...quantities import LEG_QUANTITIES, LEGS, OUTPUT_QUANTITIES, Quantity, groups_of
 from ...validation.measures import first_push, leg_work
 from ..outcome import TOPPLED, Outcome, judged
 
@@ -251,7 +251,7 @@ def _work_values(history: History) -> dict[str, Any]:
     """
     assert history.parameters is not None
     values: dict[str, Any] = {}
-    groups = MODES[history.parameters.drop.mode]
+    groups = groups_of(history.parameters.drop.mode)
     found = leg_work(history, [group.legs[0][0] for group in groups])
     for group in groups:
         work = found.get(group.legs[0][0])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import fabs
 
-from ..memory import Doubles
+from .memory import Doubles
 
 
 def solve(a: Doubles, b: Doubles, n: int) -> bool:

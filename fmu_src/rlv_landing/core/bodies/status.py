@@ -1,10 +1,10 @@
-"""The status of a planar landing: its phase."""
+"""The status of a landing: its phase."""
 
 from __future__ import annotations
 
 from math import fabs
 
-from ..records import BodyState, Phase
+from ..records import Phase
 
 # [rad]
 TURNED_OVER = 1.5707963267948966
@@ -15,7 +15,7 @@ REST_ACCELERATION = 0.05
 
 
 def phase_of(
-    body: BodyState, rates: BodyState, margin: float, depth: float, kinetic: float, mass: float
+    margin: float, lean: float, depth: float, kinetic: float, mass: float, acceleration: float
 ) -> int:
     """The `Phase` of a landing.
 
@@ -23,20 +23,20 @@ def phase_of(
     acceleration is below 0.05 m/s2.
 
     Args:
-        body: The body's state.
-        rates: Its rates.
         margin: Stability margin [m].
+        lean: Angle of the body's axis from the vertical [rad].
         depth: Penetration of the footpad that is deepest in the ground [m].
         kinetic: Kinetic energy of the vehicle [J].
         mass: Its mass [kg].
+        acceleration: Sum of the body's accelerations [m/s2, rad/s2].
     """
-    if margin < 0.0 or fabs(body.pitch) > TURNED_OVER:
+    if margin < 0.0 or fabs(lean) > TURNED_OVER:
         return Phase.TOPPLED
     if depth <= 0.0:
         return Phase.FALLING
     if not is_slow(kinetic, mass):
         return Phase.CONTACT
-    if fabs(rates.vx) + fabs(rates.vy) + fabs(rates.pitch_rate) > REST_ACCELERATION:
+    if acceleration > REST_ACCELERATION:
         return Phase.CONTACT
     return Phase.SETTLED
 

@@ -1,0 +1,31 @@
+"""The kernels' vehicle, and its state at the start, from the user's parameters."""
+
+from .legs import LEG_SCALE, leg_model, touchdown_energy
+from .planar import (
+    BODY_SCALE,
+    body_model,
+    ground_motion,
+    leg_models,
+    leg_places,
+    planar_start,
+    planar_system,
+)
+from .spatial import spatial_system
+from .start import begin, landing_system, new_solver
+
+__all__ = [
+    "BODY_SCALE",
+    "LEG_SCALE",
+    "begin",
+    "body_model",
+    "ground_motion",
+    "landing_system",
+    "leg_model",
+    "leg_models",
+    "leg_places",
+    "new_solver",
+    "planar_start",
+    "planar_system",
+    "spatial_system",
+    "touchdown_energy",
+]

@@ -1,0 +1,102 @@
+"""The spatial body and its state at the start, from the user's parameters."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Sequence
+from math import cos, radians, sin
+
+from ..core import Accounts, LegPlace, LegState, Spatial, SpatialInputs, SpatialModel, SpatialState
+from ..parameters import Parameters
+from ..quantities import azimuth
+from .legs import LEG_RELATIVE, LEG_SCALE, NO_ENERGY, flat_state, leg_model, touchdown_energy
+from .spatial_flight import DeckMotion, SpatialFlight
+
+# see LEG_SCALE; half a quaternion's change is an angle's
+BODY_SCALE = SpatialState(*([0.1] * 3 + [0.05] * 4 + [1.0] * 6))
+BODY_RELATIVE = SpatialState(*([0.0] * len(SpatialState._fields)))
+
+
+def spatial_model(parameters: Parameters) -> SpatialModel:
+    """The body's numbers, and those of the ground at rest.
+
+    An inertia of 0 about x is that about z; about the axis y, that of a thin shell through the main
+    struts' joints. [closure]
+    """
+    v, ground = parameters.vehicle, parameters.ground
+    shell = v.mass * parameters.main_strut.joint_radius**2
+    s, c = sin(ground.slope), cos(ground.slope)
+    aside, ahead = sin(ground.slope_direction), cos(ground.slope_direction)
+    return SpatialModel(
+        m_u=v.mass,
+        I_x=v.inertia_roll or v.inertia,
+        I_y=v.inertia_yaw or shell,
+        I_z=v.inertia,
+        I_xy=v.inertia_xy,
+        I_xz=v.inertia_xz,
+        I_yz=v.inertia_yz,
+        cg_x=v.cg_offset_x,
+        cg_z=v.cg_offset_z,
+        H=v.top_height,
+        at_joint=1.0 if v.transverse_load_at == "joint" else 0.0,
+        g=ground.gravity,
+        heading=parameters.drop.heading,
+        down_x=c * ahead,
+        down_y=-s,
+        down_z=c * aside,
+        along_x=-aside,
+        along_z=ahead,
+        normal_x=s * ahead,
+        normal_y=c,
+        normal_z=s * aside,
+    )
+
+
+def spatial_places(parameters: Parameters) -> list[LegPlace]:
+    """Place of each leg: evenly round the body, with growing azimuths.
+
+    At heading 0 and with the default azimuth, four legs stand as in the mode 1-2-1.
+    """
+    legs = int(parameters.vehicle.legs)
+    first = parameters.vehicle.leg_azimuth / radians(1.0)
+    return [LegPlace(*azimuth(first + 360.0 * i / legs), 1.0) for i in range(legs)]
+
+
+def spatial_system(parameters: Parameters, kind: type[Spatial] = Spatial) -> Spatial:
+    """The vehicle in space on its ground.
+
+    Args:
+        parameters: The parameters of the landing.
+        kind: The class of the compiled or of the pure core.
+    """
+    places = spatial_places(parameters)
+    energy = touchdown_energy(parameters)
+    scale = flat_state(
+        BODY_SCALE, [LEG_SCALE] * len(places), Accounts(*(energy for _ in Accounts._fields))
+    )
+    relative = flat_state(BODY_RELATIVE, [LEG_RELATIVE] * len(places), NO_ENERGY)
+    legs = [leg_model(parameters)] * len(places)
+    return kind(spatial_model(parameters), legs, places, scale, relative)
+
+
+def spatial_start(
+    parameters: Parameters, inputs: Sequence[float], rates: Sequence[float]
+) -> array[float]:
+    """The state at time 0.
+
+    It is the state at the first contact, taken back along the free flight of the rigid vehicle.
+
+    Args:
+        parameters: The parameters of the landing.
+        inputs: The inputs at time 0.
+        rates: Their rates.
+
+    Raises:
+        LandingError: As `SpatialFlight.start`.
+    """
+    deck = DeckMotion(SpatialInputs(*inputs), SpatialInputs(*rates))
+    flight = SpatialFlight(parameters, spatial_model(parameters), spatial_places(parameters), deck)
+    radius, height = flight.footpad
+    charge = parameters.main_strut.charge_pressure
+    leg = LegState(r=radius, h=height, vr=0.0, vh=0.0, z1=charge, z2=charge, q1=0.0, q2=0.0)
+    return flat_state(flight.start(), [leg] * int(parameters.vehicle.legs), NO_ENERGY)

@@ -1,0 +1,216 @@
+"""The free flight in space before the first contact, above the ground as it moves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import ceil, cos, sin, sqrt
+from typing import NamedTuple
+
+from ..core import LegPlace, SpatialInputs, SpatialModel, SpatialState
+from ..core.bodies.deck import deck_of
+from ..core.bodies.spatial_legs import cg_of, in_leg
+from ..core.records import Rotation, Vector
+from ..core.vectors import added, cross, dot, less, rotation, scaled, to_body, to_inertial
+from ..errors import LandingError
+from ..parameters import Parameters
+from ..touchdown import DEPTH_LIMIT, STEEPEST, footpad_at_rest
+
+# parts of the free flight's duration at which the footpads are checked to be above the ground
+CHECKS = 64
+# longest turn of the body in a step of the tumbling flight [rad]
+TURN = 0.01
+Quaternion = tuple[float, float, float, float]
+# rows of a symmetric 3 x 3 tensor, or of its inverse
+Tensor = tuple[Vector, Vector, Vector]
+
+
+class DeckMotion(NamedTuple):
+    """The motion of the deck from some time on, at constant accelerations."""
+
+    inputs: SpatialInputs
+    rates: SpatialInputs
+
+    def at(self, t: float) -> SpatialInputs:
+        """The deck's place `t` [s] later, by the same expressions as in the kernels."""
+        u, rate = self.inputs, self.rates
+        return u._replace(
+            surge=u.surge + (u.surge_rate + 0.5 * rate.surge_rate * t) * t,
+            heave=u.heave + (u.heave_rate + 0.5 * rate.heave_rate * t) * t,
+            sway=u.sway + (u.sway_rate + 0.5 * rate.sway_rate * t) * t,
+            roll=u.roll + (u.roll_rate + 0.5 * rate.roll_rate * t) * t,
+            yaw=u.yaw + (u.yaw_rate + 0.5 * rate.yaw_rate * t) * t,
+            tilt=u.tilt + (u.tilt_rate + 0.5 * rate.tilt_rate * t) * t,
+        )
+
+
+class Tumbling(NamedTuple):
+    """Attitude of the rigid vehicle, and its angular velocity [rad/s], body axes."""
+
+    q: Quaternion
+    spin: Vector
+
+
+class SpatialFlight:
+    """The free flight with the legs fully extended, up to the first contact.
+
+    The whole vehicle's CG flies a parabola, and the rigid vehicle turns free of moments. The first
+    contact is `drop.contact_time` after time 0: the lowest footpad touches the ground as it is
+    then, and the body's CG is above the inertial origin. [derived]
+
+    Args:
+        parameters: The vehicle, its drop and its ground.
+        body: The body's numbers.
+        places: Places of the legs.
+        deck: Motion of the ground from time 0 on.
+    """
+
+    def __init__(
+        self,
+        parameters: Parameters,
+        body: SpatialModel,
+        places: Sequence[LegPlace],
+        deck: DeckMotion,
+    ) -> None:
+        drop = parameters.drop
+        self.footpad = footpad_at_rest(parameters)
+        self._feet = [less(in_leg(p, *self.footpad), cg_of(body)) for p in places]
+        self._body, self._deck = body, deck
+        self._duration, self._gravity = drop.contact_time, parameters.ground.gravity
+        m_d = parameters.vehicle.footpad_mass
+        mass = body.m_u + m_d * len(places)
+        self._center = scaled(_sum(self._feet), m_d / mass)
+        self._inertia = _whole_inertia(body, self._feet, self._center, m_d)
+        q = attitude(drop.tilt, drop.roll, drop.heading)
+        turn = rotation(*q)
+        spin = to_body(turn, Vector(drop.roll_rate, drop.yaw_rate, -drop.pitch_rate))
+        self._contact = Tumbling(q, spin)
+        velocity = Vector(drop.horizontal_velocity, drop.vertical_velocity, drop.lateral_velocity)
+        center = to_inertial(turn, self._center)
+        self._velocity = added(velocity, to_inertial(turn, cross(spin, self._center)))
+        up = deck_of(deck.at(self._duration), body).normal.y
+        if up < cos(STEEPEST):
+            raise LandingError(
+                f"the ground's normal is {up:.3g} upwards at the first contact, "
+                f"{self._duration:g} s, the limit is {cos(STEEPEST):.3g}; tilt the ground less"
+            )
+        height = -self._clearance(Vector(0.0, 0.0, 0.0), turn, self._duration) / up
+        self._place = added(Vector(0.0, height, 0.0), center)
+
+    def _clearance(self, cg: Vector, turn: Rotation, t: float) -> float:
+        """Height [m] of the lowest footpad above the ground at time `t` [s], along its normal."""
+        deck = deck_of(self._deck.at(t), self._body)
+        above = less(cg, deck.origin)
+        return min(dot(added(above, to_inertial(turn, foot)), deck.normal) for foot in self._feet)
+
+    def start(self) -> SpatialState:
+        """The body's state at time 0.
+
+        Raises:
+            LandingError: Before the contact a footpad would pass below the ground. 65 times are
+                checked.
+        """
+        end, now = self._duration, self._contact
+        state, lowest = self._state(now, 0.0), 0.0
+        speed = sqrt(dot(now.spin, now.spin))
+        steps = max(1, ceil(end * speed / (TURN * CHECKS)))
+        for k in range(CHECKS if end > 0.0 else 0):
+            for _ in range(steps):
+                now = self._back(now, end / (CHECKS * steps))
+            before = end * (k + 1) / CHECKS
+            state = self._state(now, before)
+            turn = rotation(*now.q)
+            height = self._clearance(Vector(state.x, state.y, state.z), turn, end - before)
+            lowest = min(lowest, height)
+        if lowest < -DEPTH_LIMIT:
+            raise LandingError(
+                f"drop.contact_time = {end:g} s of free flight would pass {-lowest:.3g} m "
+                f"below the ground, the limit is {DEPTH_LIMIT:g} m; shorten it, or touch down with "
+                "lower rates or a faster descent onto the ground"
+            )
+        return state
+
+    def _state(self, now: Tumbling, before: float) -> SpatialState:
+        """The body's state `before` [s] the first contact, where it has turned to `now`."""
+        turn = rotation(*now.q)
+        v = Vector(self._velocity.x, self._velocity.y + self._gravity * before, self._velocity.z)
+        fallen = Vector(0.0, 0.5 * self._gravity * before * before, 0.0)
+        center = added(less(self._place, scaled(v, before)), fallen)
+        cg = less(center, to_inertial(turn, self._center))
+        moved = less(v, to_inertial(turn, cross(now.spin, self._center)))
+        return SpatialState(*cg, *now.q, *moved, *now.spin)
+
+    def _back(self, now: Tumbling, dt: float) -> Tumbling:
+        """The tumbling `dt` [s] before, by the classic Runge-Kutta scheme."""
+        k1 = self._rate(now)
+        k2 = self._rate(_moved(now, k1, -0.5 * dt))
+        k3 = self._rate(_moved(now, k2, -0.5 * dt))
+        k4 = self._rate(_moved(now, k3, -dt))
+        for k, part in ((k1, 1.0), (k2, 2.0), (k3, 2.0), (k4, 1.0)):
+            now = _moved(now, k, -dt * part / 6.0)
+        size = sqrt(sum(x * x for x in now.q))
+        w, x, y, z = (x / size for x in now.q)
+        return Tumbling((w, x, y, z), now.spin)
+
+    def _rate(self, now: Tumbling) -> Tumbling:
+        """The rates of attitude and spin: q' = q w/2, I w' = -w x I w."""
+        (w, x, y, z), s = now
+        q = (
+            -0.5 * (x * s.x + y * s.y + z * s.z),
+            0.5 * (w * s.x + y * s.z - z * s.y),
+            0.5 * (w * s.y + z * s.x - x * s.z),
+            0.5 * (w * s.z + x * s.y - y * s.x),
+        )
+        momentum = Vector(*(dot(row, s) for row in self._inertia))
+        return Tumbling(q, _solved(self._inertia, scaled(cross(s, momentum), -1.0)))
+
+
+def attitude(tilt: float, roll: float, heading: float) -> Quaternion:
+    """The quaternion of a body turned by `heading` about y, `roll` about x, clockwise `tilt` [rad].
+
+    In this order, each about the inertial axis.
+    """
+    st, ct = sin(-0.5 * tilt), cos(-0.5 * tilt)
+    sr, cr = sin(0.5 * roll), cos(0.5 * roll)
+    sh, ch = sin(0.5 * heading), cos(0.5 * heading)
+    # qz(-tilt) qx(roll)
+    w, x, y, z = ct * cr, ct * sr, st * sr, st * cr
+    return w * ch - y * sh, x * ch - z * sh, w * sh + y * ch, x * sh + z * ch
+
+
+def _moved(now: Tumbling, rate: Tumbling, dt: float) -> Tumbling:
+    w, x, y, z = (a + dt * b for a, b in zip(now.q, rate.q))
+    return Tumbling((w, x, y, z), added(now.spin, scaled(rate.spin, dt)))
+
+
+def _sum(vectors: Sequence[Vector]) -> Vector:
+    total = Vector(0.0, 0.0, 0.0)
+    for v in vectors:
+        total = added(total, v)
+    return total
+
+
+def _whole_inertia(
+    body: SpatialModel, feet: Sequence[Vector], center: Vector, m_d: float
+) -> Tensor:
+    """Inertia [kg m2] of body and footpads about their common CG, body axes."""
+    rows = [
+        [body.I_x, body.I_xy, body.I_xz],
+        [body.I_xy, body.I_y, body.I_yz],
+        [body.I_xz, body.I_yz, body.I_z],
+    ]
+    for mass, place in [(body.m_u, Vector(0.0, 0.0, 0.0)), *((m_d, foot) for foot in feet)]:
+        d = less(place, center)
+        for i in range(3):
+            for j in range(3):
+                rows[i][j] -= mass * d[i] * d[j]
+            rows[i][i] += mass * dot(d, d)
+    a, b, c = (Vector(*row) for row in rows)
+    return a, b, c
+
+
+def _solved(a: Tensor, b: Vector) -> Vector:
+    """Solve a x = b by Cramer's rule: `a` is symmetric and positive."""
+    c1, c2, c3 = cross(a[1], a[2]), cross(a[2], a[0]), cross(a[0], a[1])
+    determinant = dot(a[0], c1)
+    total = added(added(scaled(c1, b.x), scaled(c2, b.y)), scaled(c3, b.z))
+    return scaled(total, 1.0 / determinant)

@@ -1,0 +1,148 @@
+"""The spatial body's own: its state and inputs, and vectors."""
+
+from typing import NamedTuple
+
+
+class Vector(NamedTuple):
+    """A vector of space."""
+
+    x: float
+    y: float
+    z: float
+
+
+class Rotation(NamedTuple):
+    """A rotation: the body's three axes, in inertial axes."""
+
+    x_x: float  # the body's x axis
+    x_y: float
+    x_z: float
+    y_x: float  # its y axis
+    y_y: float
+    y_z: float
+    z_x: float  # its z axis
+    z_y: float
+    z_z: float
+
+
+class SpatialState(NamedTuple):
+    """The body in space. As rates, the same a second."""
+
+    x: float  # CG, inertial [m]
+    y: float  # [m]
+    z: float  # [m]
+    # attitude: unit quaternion, body to inertial axes
+    q_w: float
+    q_x: float
+    q_y: float
+    q_z: float
+    vx: float  # velocity of the CG, inertial [m/s]
+    vy: float  # [m/s]
+    vz: float  # [m/s]
+    spin_x: float  # angular velocity, body axes [rad/s]
+    spin_y: float  # [rad/s]
+    spin_z: float  # [rad/s]
+
+
+class SpatialModel(NamedTuple):
+    """The body, and the ground at rest that it comes down on.
+
+    The CG is off the legs' axis by `cg_x`, `cg_z`. The inertia is that about the CG, body axes.
+    """
+
+    m_u: float
+    I_x: float  # [kg m2]
+    I_y: float  # [kg m2]
+    I_z: float  # [kg m2]
+    I_xy: float  # products: integral of -x y dm [kg m2]
+    I_xz: float  # [kg m2]
+    I_yz: float  # [kg m2]
+    cg_x: float  # [m]
+    cg_z: float  # [m]
+    H: float  # of the top sensor above the CG, on the legs' axis [m]
+    at_joint: float  # see BodyModel
+    g: float
+    heading: float  # near which outputs have the heading [rad]
+    # the ground's axes 1, 2 and its normal n on a deck that is not turned
+    down_x: float
+    down_y: float
+    down_z: float
+    along_x: float
+    along_z: float
+    normal_x: float
+    normal_y: float
+    normal_z: float
+
+
+class SpatialInputs(NamedTuple):
+    """Loads on the body at its CG, and the motion of the ground, a deck; inertial axes.
+
+    The deck's axes are the inertial ones turned by `ground_yaw` about y, then by `ground_roll`
+    about x, then clockwise by `ground_pitch` about z.
+    """
+
+    force_x: float  # [N]
+    force_y: float  # [N]
+    force_z: float  # [N]
+    moment_x: float  # [N m]
+    moment_y: float  # [N m]
+    moment_z: float  # [N m]
+    surge: float  # of the deck's origin along x [m]
+    surge_rate: float  # [m/s]
+    heave: float  # along y [m]
+    heave_rate: float  # [m/s]
+    sway: float  # along z [m]
+    sway_rate: float  # [m/s]
+    roll: float  # [rad]
+    roll_rate: float  # [rad/s]
+    yaw: float  # [rad]
+    yaw_rate: float  # [rad/s]
+    tilt: float  # clockwise positive [rad]
+    tilt_rate: float  # [rad/s]
+
+
+class Deck(NamedTuple):
+    """The ground as it moves, inertial axes."""
+
+    origin: Vector  # [m]
+    velocity: Vector  # [m/s]
+    spin: Vector  # [rad/s]
+    down: Vector  # axis 1
+    along: Vector  # axis 2
+    normal: Vector
+
+
+class FootPlace(NamedTuple):
+    """A footpad in the body."""
+
+    from_cg: Vector  # body axes [m]
+    rate: Vector  # its rate there [m/s]
+
+
+class SpatialLoads(NamedTuple):
+    """Loads of one leg in the spatial body's motion, body axes."""
+
+    radial: float  # all forces on the footpad but the transverse one along r [N]
+    vertical: float  # along h [N]
+    tangential: float  # along t [N]
+    # acceleration of the footpad at rest in its leg, but for those of the CG and of the spin
+    bias_x: float  # [m/s2]
+    bias_y: float
+    bias_z: float
+    foot_x: float  # footpad from the CG [m]
+    foot_y: float
+    foot_z: float
+    at_x: float  # where its transverse force acts on the body, from the CG [m]
+    at_y: float
+    at_z: float
+
+
+class SpatialAttitude(NamedTuple):
+    """The body's acceleration in its own axes."""
+
+    a_x: float  # of the CG [m/s2]
+    a_y: float
+    a_z: float
+    spin_x: float  # [rad/s2]
+    spin_y: float
+    spin_z: float

@@ -1,0 +1,70 @@
+"""What only a landing in space has, and which inertia a body may have."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+from ..errors import LandingError
+from ..quantities import SPACE
+from .drop import Drop
+from .ground import Ground
+from .vehicle import Vehicle
+
+# a symmetric landing cannot have them otherwise than by default
+ONLY_IN_SPACE = {
+    Vehicle: ("legs", "cg_offset_x", "cg_offset_z", "inertia_xy", "inertia_xz", "inertia_yz"),
+    Drop: ("heading", "roll", "roll_rate", "yaw_rate", "lateral_velocity"),
+    Ground: ("slope_direction",),
+}
+
+
+def check_space(vehicle: Vehicle, drop: Drop, ground: Ground) -> None:
+    """Check what belongs together in a landing in space, and that no other landing has it.
+
+    Raises:
+        LandingError: The number of legs is broken; a symmetric landing has what only a landing in
+            space has; or no body has such an inertia.
+    """
+    if not float(vehicle.legs).is_integer():
+        raise LandingError(f"vehicle.legs = {vehicle.legs:g} is not a whole number from 3 to 8")
+    if drop.mode == SPACE:
+        _check_inertia(vehicle)
+        return
+    for name, group in (("vehicle", vehicle), ("drop", drop), ("ground", ground)):
+        defaults = {f.name: f.default for f in fields(group)}
+        for what in ONLY_IN_SPACE[type(group)]:
+            value = getattr(group, what)
+            if value != defaults[what]:
+                raise LandingError(
+                    f"{name}.{what} = {value:g} needs drop.mode = {SPACE}; drop.mode = {drop.mode} "
+                    f"is a symmetric landing, which has {defaults[what]:g}"
+                )
+
+
+def _check_inertia(v: Vehicle) -> None:
+    """Check that the inertia tensor is that of a body: see `assembly.spatial` for what 0 means."""
+    if v.inertia_yaw == 0.0 or v.inertia_roll == 0.0:
+        products = max(abs(v.inertia_xy), abs(v.inertia_xz), abs(v.inertia_yz))
+        if products > 0.0:
+            raise LandingError(
+                f"an inertia tensor with products, {products:g} kg.m2, needs vehicle.inertia_roll "
+                "and vehicle.inertia_yaw above 0"
+            )
+        return
+    # the second moments of mass: half the trace less each moment on the diagonal
+    half = 0.5 * (v.inertia_roll + v.inertia_yaw + v.inertia)
+    xx, yy, zz = half - v.inertia_roll, half - v.inertia_yaw, half - v.inertia
+    xy, xz, yz = -v.inertia_xy, -v.inertia_xz, -v.inertia_yz
+    minors = (
+        (xx, yy, zz),
+        (xx * yy - xy * xy, xx * zz - xz * xz, yy * zz - yz * yz),
+        (xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz),),
+    )
+    for order, values in enumerate(minors, 1):
+        if min(values) < -1e-12 * half**order:
+            raise LandingError(
+                f"vehicle.inertia_roll, inertia_yaw, inertia = {v.inertia_roll:g}, "
+                f"{v.inertia_yaw:g}, {v.inertia:g} kg.m2 with products {v.inertia_xy:g}, "
+                f"{v.inertia_xz:g}, {v.inertia_yz:g} kg.m2 are those of no body: "
+                "no moment may be above the sum of the other two"
+            )
