@@ -45,11 +45,9 @@ def foot_place(leg: LegState, place: LegPlace, p: SpatialModel) -> FootPlace:
     return FootPlace(less(in_leg(place, leg.r, leg.h), cg_of(p)), in_leg(place, leg.vr, leg.vh))
 
 
-def acts_at(foot: Vector, place: LegPlace, leg: LegModel, p: SpatialModel) -> Vector:
-    """The point from the CG at which the leg's transverse force acts on the body [m]."""
-    if p.at_joint > 0.0:
-        return less(in_leg(place, leg.Lc, leg.Ld), cg_of(p))
-    return foot
+def joint_place(place: LegPlace, leg: LegModel, p: SpatialModel) -> Vector:
+    """The auxiliary strut's joint from the CG [m]."""
+    return less(in_leg(place, leg.Lc, leg.Ld), cg_of(p))
 
 
 def spatial_loads(

@@ -71,11 +71,11 @@ from .deck import (
 from .legged import Legged
 from .spatial_legs import (
     about_across,
-    acts_at,
     cg_of,
     foot_acceleration,
     foot_place,
     force_on_body,
+    joint_place,
     spatial_leg_rates,
     spatial_loads,
     transverse_part,
@@ -218,15 +218,7 @@ class SpatialMotion(Legged):
         transverse = 0.0
         for i in range(self.groups):
             transverse += self._move(i, y, a, spin, spin_rate, dy)
-        turned = to_inertial(turn, spin)
-        external = (
-            now.force_x * s.vx
-            + now.force_y * s.vy
-            + now.force_z * s.vz
-            + now.moment_x * turned.x
-            + now.moment_y * turned.y
-            + now.moment_z * turned.z
-        )
+        external = now.force_x * s.vx + now.force_y * s.vy + now.force_z * s.vz + dot(moment, spin)
         self._put_powers(external, transverse, dy)
 
     def _turn_ground(self, now: SpatialInputs) -> None:
@@ -309,7 +301,9 @@ class SpatialMotion(Legged):
             forces = leg_forces_of(self._forces, i)
             foot = Vector(loads.foot_x, loads.foot_y, loads.foot_z)
             c = about_across(place, foot)
-            d = about_across(place, acts_at(foot, place, model, p))
+            d = c
+            if p.at_joint > 0.0:
+                d = about_across(place, joint_place(place, model, p))
             felt = scaled(d, model.m_d)
             c_x = less(c_x, scaled(c, model.m_d * place.sin_g))
             c_z = added(c_z, scaled(c, model.m_d * place.cos_g))
@@ -361,10 +355,12 @@ class SpatialMotion(Legged):
         frame = foot_acceleration(loads, place, a, spin_rate)
         put(spatial_leg_rates(leg, leg_forces_of(self._forces, i), loads, frame, model.m_d), dy, at)
         force = model.m_d * frame.z - loads.tangential
-        foot = Vector(loads.foot_x, loads.foot_y, loads.foot_z)
-        arm = less(foot, acts_at(foot, place, model, p))
         self._transverse[i] = force
-        return force * transverse_part(place, cross(spin, arm))
+        if p.at_joint > 0.0:
+            foot = Vector(loads.foot_x, loads.foot_y, loads.foot_z)
+            arm = less(foot, joint_place(place, model, p))
+            return force * transverse_part(place, cross(spin, arm))
+        return 0.0
 
     def project(self, y: Doubles) -> None:
         """Bring what the friction laws keep to where they let it be, the quaternion to length 1."""
