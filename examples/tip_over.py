@@ -13,13 +13,13 @@ from rlv_landing.quantities import MODES
 from rlv_landing.studies.envelope.judged_landing import judged_landing
 from rlv_landing.studies.envelope.search import Critical, envelope
 from rlv_landing.studies.envelope.study import Axis, EnvelopeStudy
-from rlv_landing.studies.envelope.tip_over import LOCKED, RigidBlock
+from rlv_landing.studies.envelope.tip_over import START, RigidBlock, locked_vehicle
 from rlv_landing.workers import default_workers
 
 # height of the CG above the preset's [m], slope [deg], velocity of the CG upward at contact [m/s]
 RAISED = (-0.5, 0.0, 0.5)
 SLOPES = (0.0, 5.0, 10.0)
-SINK = -0.5
+SINK = START["drop.vertical_velocity"]
 # slopes and tilts [rad] and horizontal speeds [m/s] with which a vehicle swings from foot to foot
 SWINGS = [*product((-0.1, 0.0, 0.1), (-0.1, 0.0, 0.1), map(float, range(-5, 6)))]
 
@@ -45,13 +45,6 @@ def row(mode: str, block: RigidBlock, slope: float, points: list[Critical]) -> s
     )
 
 
-def locked(mode: str, **values: float) -> Parameters:
-    """The vehicle of the presets with locked legs, and other `values` by name, `__` for the dot."""
-    start = {"drop.pitch_rate": 0.0, "drop.contact_time": 0.0, "drop.vertical_velocity": SINK}
-    given = {name.replace("__", "."): value for name, value in values.items()}
-    return load_preset("yue2022-figures", mode).with_values({**LOCKED, **start, **given})
-
-
 def rows(mode: str, *, inertia: float | None = None) -> list[str]:
     """The rows of a mode: a row for each height of the CG and slope."""
     found = []
@@ -62,7 +55,7 @@ def rows(mode: str, *, inertia: float | None = None) -> list[str]:
             for strut in ("main_strut", "auxiliary_strut")
         }
         other = {} if inertia is None else {"vehicle__inertia": inertia}
-        parameters = locked(mode, **depths, **other)
+        parameters = locked_vehicle(mode, **depths, **other)
         block = RigidBlock.of(parameters)
         found += [row(mode, block, slope, critical_points(parameters, slope)) for slope in SLOPES]
     return found
@@ -70,7 +63,7 @@ def rows(mode: str, *, inertia: float | None = None) -> list[str]:
 
 def swings_as_the_block(mode: str, slope: float, tilt: float, speed: float) -> bool:
     """Whether the vehicle topples to the block's side, or stays up as it does (rad, rad, m/s)."""
-    parameters = locked(mode, ground__slope=slope, drop__tilt=tilt)
+    parameters = locked_vehicle(mode, ground__slope=slope, drop__tilt=tilt)
     axes = (
         Axis("drop.horizontal_velocity", -50.0, 50.0, 1.0),
         Axis("drop.tilt", -1.5, 1.5, 0.1),

@@ -23,6 +23,8 @@ setup(
         (f"share/{NAME}", ["package.xml"]),
         (f"share/{NAME}/launch", sorted(map(str, Path("launch").glob("*.launch.py")))),
         (f"share/{NAME}/config", sorted(map(str, Path("config").iterdir()))),
+        # what the node steps where none is named; a checkout has it after ./build_fmu.sh
+        (f"share/{NAME}/fmu", sorted(map(str, Path("../build").glob("RlvLanding.fmu")))),
     ],
     entry_points={
         "console_scripts": [

@@ -34,7 +34,7 @@ SYSTEMS = {
     "windows.c": ("windows",),
 }
 SYSTEM_ARGS = {
-    "linux": ["-fPIC", "-ldl"],
+    "linux": ["-fPIC", "-ldl", "-lm"],
     "darwin": ["-fPIC", "-install_name", "@rpath/front.dylib"],
     "windows": [],
 }

@@ -23,6 +23,7 @@ from xml.etree import ElementTree
 
 from pythonfmu.builder import FmuBuilder
 
+from rlv_landing import MODEL_NAME
 from rlv_landing.errors import LandingError
 from rlv_landing.text.durable import NO_ROOM, unwritable, write_durably, writing
 
@@ -36,7 +37,7 @@ from .sources import ROOT, compiled_cores, copy_sources, source_date
 from .targets import ALL, OWN, tried
 from .terminals import write_terminals
 from .trial import check, expected
-from .wanted import FMI_VERSIONS, MODEL_NAME, Wanted
+from .wanted import FMI_VERSIONS, Wanted
 
 # endings of files that can be run, or be loaded
 LIBRARIES = (".so", ".dll", ".dylib", ".pyd")
@@ -72,7 +73,7 @@ def build_with_pythonfmu(folder: Path, wanted: Wanted) -> tuple[Path, Path, str]
     with zipfile.ZipFile(built) as archive:
         archive.extractall(files)
     package = files / "resources" / package.name
-    take_pythonfmu(files / "resources" / "pythonfmu", package)
+    move_pythonfmu(files / "resources" / "pythonfmu", package)
     return files, package, script.stem
 
 
@@ -90,7 +91,7 @@ def _forgotten(folder: Path, *names: str) -> Iterator[None]:
             del sys.modules[module]
 
 
-def take_pythonfmu(own: Path, package: Path) -> None:
+def move_pythonfmu(own: Path, package: Path) -> None:
     """Move the FMU's copy of pythonfmu into its package, without what a slave does not need.
 
     There it has a name that no other pythonfmu in the process has.

@@ -53,6 +53,7 @@ COMPILE_ARGS = [
     "-fno-math-errno",
     "-fno-trapping-math",
     "-fno-wrapv",
+    "-Wno-unused-function",
     "-g0",
 ]
 # records go from function to function by value: the compiler puts one function into the other, so

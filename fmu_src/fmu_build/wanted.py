@@ -6,12 +6,12 @@ import re
 from dataclasses import dataclass, field
 from math import ceil
 
+from rlv_landing import MODEL_NAME
 from rlv_landing.errors import LandingError
 from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
 
 from .targets import OWN, TARGETS, Target, own_machine
 
-MODEL_NAME = "RlvLanding"
 LONGEST_NAME = 64
 FMI_VERSIONS = ("2", "3")
 # words of C, which are no identifiers, and names that Windows gives no file

@@ -71,7 +71,8 @@ static struct host host_of(const fmi2CallbackFunctions *callbacks, bool logging)
     struct host host = {.version = '2', .logging = logging};
     fmi2CallbackFunctions *copy = callbacks && callbacks->logger ? malloc(sizeof *copy) : NULL;
     if (copy) {
-        *copy = *callbacks;
+        /* not by assignment: the members are const in headers before FMI 2.0.1 */
+        memcpy(copy, callbacks, sizeof *copy);
         host.callbacks = copy;
         host.send = send_message;
     }

@@ -1,5 +1,6 @@
 /* Steps of FMI 3.0: event mode, early return, intermediate update. */
 #include "fmi3.h"
+#include "python.h"
 
 #include <math.h>
 
@@ -76,7 +77,7 @@ static double update(struct instance *c, const struct fmi3_host *host, double en
         c->phase = STEPPING;
     if (!early || !host->early_return)
         return end;
-    return early_time < end ? early_time : end;
+    return isless(early_time, end) ? early_time : end;
 }
 
 /*
@@ -102,13 +103,26 @@ static enum status leave_amid(const struct instance *c, enum status status, doub
     return STATUS_ERROR;
 }
 
-/* Step to `time + step`, or to where an event or the host ends it; `*event`: there was one. */
-static enum status step_in_parts(struct instance *c, double time, double step, fmi3Boolean *event)
+/* The end of a step, which need not be finite, whatever traps the host has set. */
+static double end_of(double time, double step)
+{
+    /* volatile: the sum must not be moved out of the two calls */
+    const volatile double start = time;
+    volatile double end;
+    fenv_t floats;
+    floats_take(&floats);
+    end = start + step;
+    floats_give_back(&floats);
+    return end;
+}
+
+/* Step to `step_end`, or to where an event or the host ends it; `*event`: there was one. */
+static enum status step_in_parts(struct instance *c, double time, double step, double step_end,
+                                 fmi3Boolean *event)
 {
     const struct fmi3_host *host = c->host.callbacks;
     const bool to_event = c->host.event_mode || host->early_return;
-    const double step_end = time + step;
-    if ((!to_event && !host->update) || !(step > 0.0 && isfinite(step_end)))
+    if ((!to_event && !host->update) || !(isgreater(step, 0.0) && isfinite(step_end)))
         return instance_step(c, &DoStep, time, step);
     const double start = time;
     enum status worst = STATUS_OK;
@@ -147,12 +161,12 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoi
         !require(c, &DoStep, "lastSuccessfulTime", lastSuccessfulTime))
         return fmi3Error;
     fmi3Boolean event = fmi3False;
-    const double end = currentCommunicationPoint + communicationStepSize;
+    const double end = end_of(currentCommunicationPoint, communicationStepSize);
     enum status status =
-        step_in_parts(c, currentCommunicationPoint, communicationStepSize, &event);
+        step_in_parts(c, currentCommunicationPoint, communicationStepSize, end, &event);
     *eventHandlingNeeded = event && c->host.event_mode;
     *terminateSimulation = fmi3False;
     *lastSuccessfulTime = c->last_time;
-    *earlyReturn = status < STATUS_DISCARD && c->last_time < end;
+    *earlyReturn = status < STATUS_DISCARD && isless(c->last_time, end);
     return (fmi3Status)status;
 }

@@ -96,12 +96,15 @@ static bool start_by_flags(const char *home, struct message *reason)
  */
 static bool start_python(const char *home, struct message *reason)
 {
+    fenv_t floats;
+    floats_take(&floats);
     save_locale();
     bool started = process_symbol("PyInitConfig_Create") ? start_by_config(home, reason)
                                                          : start_by_flags(home, reason);
     restore_locale();
     if (started)
         py.PyEval_SaveThread();
+    floats_give_back(&floats);
     return started;
 }
 

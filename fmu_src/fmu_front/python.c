@@ -87,7 +87,18 @@ static bool is_in_main_interpreter(struct message *reason)
     return false;
 }
 
-enum entry python_enter(long life, PyGILState_STATE *lock, struct message *reason)
+void floats_take(fenv_t *host)
+{
+    fegetenv(host);
+    fesetenv(FE_DFL_ENV);
+}
+
+void floats_give_back(const fenv_t *host)
+{
+    fesetenv(host);
+}
+
+enum entry python_enter(long life, struct stay *stay, struct message *reason)
 {
     if (!py.Py_IsInitialized()) {
         append_text(reason, "the Python of this process has ended, and the FMU's slave with it");
@@ -95,18 +106,20 @@ enum entry python_enter(long life, PyGILState_STATE *lock, struct message *reaso
     }
     if (!is_in_main_interpreter(reason))
         return NOT_HERE;
-    *lock = py.PyGILState_Ensure();
+    floats_take(&stay->floats);
+    stay->lock = py.PyGILState_Ensure();
     if (life == 0 || life == python_life())
         return ENTERED;
-    py.PyGILState_Release(*lock);
+    python_leave(stay);
     append_text(reason, "the Python of this process was ended and started again, and the FMU's "
                         "slave has ended with it");
     return ENDED;
 }
 
-void python_leave(PyGILState_STATE lock)
+void python_leave(const struct stay *stay)
 {
-    py.PyGILState_Release(lock);
+    py.PyGILState_Release(stay->lock);
+    floats_give_back(&stay->floats);
 }
 
 long python_life(void)

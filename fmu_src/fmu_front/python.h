@@ -10,6 +10,7 @@
 
 #include "text.h"
 
+#include <fenv.h>
 #include <stdint.h>
 
 enum { OLDEST_PYTHON = 10, NEWEST_PYTHON = 14 }; /* minor versions of 3 */
@@ -110,14 +111,28 @@ enum entry {
     ENDED     /* the Python that the caller's objects belong to has ended */
 };
 
+/* What a thread that is in Python has to give back. */
+struct stay {
+    PyGILState_STATE lock;
+    fenv_t floats;
+};
+
 /*
- * Take Python's lock for this thread; python_leave gives it back.
+ * Put the host's floating-point environment aside and take the default one: its traps would end
+ * the process where a number that is not finite is refused, and its rounding would change digits.
+ */
+void floats_take(fenv_t *host);
+void floats_give_back(const fenv_t *host);
+
+/*
+ * Take Python's lock for this thread, and the default floating-point environment; python_leave
+ * gives both back.
  *
  * `life` is the python_life that the caller's objects belong to, or 0 if it has none. The reason is
  * given if the answer is not ENTERED.
  */
-enum entry python_enter(long life, PyGILState_STATE *lock, struct message *reason);
-void python_leave(PyGILState_STATE lock);
+enum entry python_enter(long life, struct stay *stay, struct message *reason);
+void python_leave(const struct stay *stay);
 
 /* The number of the running Python's life; another one after it was ended and started again. Call
  * it with Python's lock. */

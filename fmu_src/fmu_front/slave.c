@@ -221,13 +221,13 @@ struct slave *slave_create(const char *resources, const char *name, bool visible
 
 void slave_free(struct slave *s)
 {
-    PyGILState_STATE lock;
+    struct stay stay;
     struct message reason = {""};
     /* what an ended Python has left is gone with it */
-    if (python_enter(s->life, &lock, &reason) == ENTERED) {
+    if (python_enter(s->life, &stay, &reason) == ENTERED) {
         release(s->strings);
         release_methods(s);
-        python_leave(lock);
+        python_leave(&stay);
     }
     free(s);
 }
@@ -487,12 +487,12 @@ enum answer slave_state_from_bytes(struct slave *s, const char *bytes, size_t si
 
 void slave_free_state(struct slave_state *state)
 {
-    PyGILState_STATE lock;
+    struct stay stay;
     struct message reason = {""};
-    if (python_enter(state->life, &lock, &reason) == ENTERED) {
+    if (python_enter(state->life, &stay, &reason) == ENTERED) {
         release(state->object);
         release(state->bytes);
-        python_leave(lock);
+        python_leave(&stay);
     }
     free(state);
 }

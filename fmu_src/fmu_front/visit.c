@@ -7,7 +7,7 @@ enum answer visit_begin(struct visit *v, const struct listener *listener, long l
 {
     struct message reason = {""};
     *v = (struct visit){.listener = listener, .last = &v->first};
-    enum entry entry = python_enter(life, &v->lock, &reason);
+    enum entry entry = python_enter(life, &v->stay, &reason);
     if (entry == ENTERED)
         return DONE;
     listener->hear(listener->owner, STATUS_ERROR, NULL, reason.text);
@@ -16,7 +16,7 @@ enum answer visit_begin(struct visit *v, const struct listener *listener, long l
 
 void visit_end(struct visit *v)
 {
-    python_leave(v->lock);
+    python_leave(&v->stay);
     while (v->first) {
         struct note *note = v->first;
         v->first = note->next;

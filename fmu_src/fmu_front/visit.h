@@ -14,7 +14,7 @@ struct note {
 
 struct visit {
     const struct listener *listener;
-    PyGILState_STATE lock;
+    struct stay stay;
     struct note *first, **last;
     bool interrupted;
 };

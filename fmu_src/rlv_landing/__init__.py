@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from .parameters import Parameters
 
 __version__ = "0.1.0"
+# of the model in FMI, where its user gives it no other
+MODEL_NAME = "RlvLanding"
 __all__ = ["Landing", "LandingError", "Parameters", "__version__", "load_preset"]
 # the modules of the names that are imported when they are asked for: the command line's first
 # lines come before all that takes time

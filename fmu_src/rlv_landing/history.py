@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from html import escape
 from importlib import import_module
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 from .errors import LandingError, unknown
 from .outputs import Extreme
 from .parameters import Parameters
-from .quantities import OUTPUT_QUANTITIES
+from .quantities import MOST_LEGS, OUTPUT_QUANTITIES, SPACE, interface_of
 from .text.durable import text_of, whole_file
 from .touchdown import AT_REST, GroundMotion
 
@@ -25,7 +26,10 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-UNITS = {q.name: q.unit for q in OUTPUT_QUANTITIES} | {"time": "s"}
+UNITS = {q.name: q.unit for q in (*OUTPUT_QUANTITIES, *interface_of(SPACE, MOST_LEGS).outputs)} | {
+    "time": "s"
+}
+LEG_COLUMN = re.compile(r"leg\[(\d+)\]\.")
 # rows that are written at once: as Python's numbers they take four times their memory
 ROWS_AT_ONCE = 1000
 
@@ -89,6 +93,12 @@ class History:
 
     def __len__(self) -> int:
         return len(self.time)
+
+    @property
+    def legs(self) -> tuple[int, ...]:
+        """The numbers of the legs that have columns."""
+        found = {int(m.group(1)) for m in map(LEG_COLUMN.match, self.names) if m}
+        return tuple(sorted(found))
 
     def extreme(self, name: str) -> Extreme:
         """The extremes of a column and when it first has them.

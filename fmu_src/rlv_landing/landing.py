@@ -208,12 +208,12 @@ class Landing:
                 f"time = {time:g} s is not a time from {self._time:g} to {LATEST:g} s; "
                 "reset() starts again"
             )
-        return self._move_ground(time, step_end, to_event=to_event) or self._go_on(
+        return self._move_ground(time, step_end, to_event=to_event) or self._integrate(
             time, to_event=to_event
         )
 
-    def _go_on(self, time: float, *, to_event: bool) -> bool:
-        """Go on to `time` [s], or to an event; the ground begins and ends no motion until then."""
+    def _integrate(self, time: float, *, to_event: bool) -> bool:
+        """Integrate to `time` [s], or to an event; the ground keeps its motion until then."""
         reached, found = time, False
         with self._until(time):
             if to_event:
@@ -241,7 +241,7 @@ class Landing:
             return False
         self._inputs.begin_step(self._time, step_end)
         while (end := self._inputs.next_end(time)) is not None:
-            if self._go_on(end, to_event=to_event):
+            if self._integrate(end, to_event=to_event):
                 return True
             self._inputs.begin_step(end, step_end)
         return False

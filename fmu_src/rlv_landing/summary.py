@@ -44,7 +44,7 @@ def summarise(history: History) -> dict[str, Any]:
     result["top_axial_acceleration_max_time"] = top.maximum_time
     legs: list[dict[str, Any]] = []
     work = leg_work(history)
-    for leg in (1, 2, 3, 4):
+    for leg in history.legs:
         force = history.extreme(f"leg[{leg}].main_strut.force")
         stroke = history.extreme(f"leg[{leg}].main_strut.stroke")
         auxiliary = history.extreme(f"leg[{leg}].auxiliary_strut.force")

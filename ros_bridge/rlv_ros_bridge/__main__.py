@@ -1,4 +1,4 @@
-"""`python -m rlv_ros_bridge node|replay|log|animate|view|fmu`: the bridge's commands alone."""
+"""`python -m rlv_ros_bridge`: the bridge's commands alone, as `commands/group.py` lists them."""
 
 from __future__ import annotations
 

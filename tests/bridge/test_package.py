@@ -7,13 +7,22 @@ import os
 import shutil
 import subprocess
 import sys
+from importlib.metadata import EntryPoint
+from importlib.util import find_spec
 from pathlib import Path
 from xml.etree import ElementTree
 
+import pytest
 import yaml
 from bridge_tools import ROOT, TIMEOUT, environment, new_domain
 
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
 import rlv_landing
+from rlv_ros_bridge.commands.group import main as group
 from rlv_ros_bridge.logs.history import history_of
 from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.node.settings import SETTINGS
@@ -69,7 +78,8 @@ def test_colcon_builds_the_package_and_its_node_lands(fmu: Path, tmp_path: Path)
     ]
     line += [
         "-p",
-        f"fmu:={fmu}",
+        # as launch gives what was written to it
+        f"fmu:='{fmu}'",
         "-p",
         "realtime_factor:=0.0",
         "-p",
@@ -84,6 +94,8 @@ def test_colcon_builds_the_package_and_its_node_lands(fmu: Path, tmp_path: Path)
     )
     assert done.returncode == 0, done.stderr
     (log,) = (tmp_path / "logs").iterdir()
+    assert "finished: 1001 samples" in done.stdout
+    assert f"log: logs/{log.name}" in done.stdout
     assert len(history_of(LogReader(log))) == 1001
 
 
@@ -110,22 +122,62 @@ def test_the_package_declares_its_version_and_all_that_it_imports() -> None:
 def test_the_launch_file_and_its_parameter_file_name_parameters_of_the_node() -> None:
     # ROS 2's launch is not on PyPI: what can be seen without running it.
     tree = ast.parse(LAUNCH.read_text())
-    compile(tree, str(LAUNCH), "exec")
-    (given,) = (
-        node
-        for node in ast.walk(tree)
-        if isinstance(node, ast.keyword) and node.arg == "parameters"
-    )
-    keys = {
-        key.value
-        for d in ast.walk(given)
-        if isinstance(d, ast.Dict)
-        for key in d.keys
-        if isinstance(key, ast.Constant)
+    tables = {
+        node.targets[0].id: node.value
+        for node in tree.body
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name)
     }
-    assert keys
-    assert keys <= set(SETTINGS)
+    given = {name for name, _ in ast.literal_eval(tables["GIVEN"])}
+    set_besides = {
+        node.slice.value
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Subscript)
+        and isinstance(node.value, ast.Name)
+        and node.value.id == "given"
+        and isinstance(node.slice, ast.Constant)
+    }
+    assert given | set_besides == {"fmu", "mode", "realtime_factor", "log_root"}
+    assert given | set_besides | {"autostart"} <= set(SETTINGS)
     values = yaml.safe_load((PACKAGE / "config" / "landing.yaml").read_text())["/**"][
         "ros__parameters"
     ]
     assert set(values) <= set(SETTINGS)
+
+
+def test_the_bridge_alone_has_the_commands_that_the_package_announces() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    announced = {
+        name: EntryPoint(name, target, "").load()
+        for name, target in project["entry-points"]["rlv_landing.commands"].items()
+    }
+    assert announced == group.commands
+
+
+@pytest.mark.skipif(
+    find_spec("launch_ros") is None,
+    reason="launch_ros is not installed (there is no wheel of it): the launch file is not run",
+)
+def test_the_launch_file_lands(fmu: Path, tmp_path: Path) -> None:
+    line = "import sys; from launch import LaunchService, LaunchDescription as D\n"
+    line += "from launch.actions import IncludeLaunchDescription as I\n"
+    line += "from launch.launch_description_sources import AnyLaunchDescriptionSource as S\n"
+    line += "s = LaunchService()\n"
+    line += "given = [a.split(':=', 1) for a in sys.argv[2:]]\n"
+    line += "s.include_launch_description(D([I(S(sys.argv[1]), launch_arguments=given)]))\n"
+    line += "sys.exit(s.run())"
+    root = tmp_path / "it's"
+    arguments = (f"fmu:={fmu}", "realtime_factor:=0", f"log_root:={root}", "mode:=1-2-1")
+    done = subprocess.run(
+        [sys.executable, "-c", line, str(LAUNCH), *arguments],
+        env=environment(new_domain()),
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT,
+        check=False,
+    )
+    printed = done.stdout + done.stderr
+    assert done.returncode == 0, printed
+    (log,) = root.iterdir()
+    assert f"log: {log}" in printed
+    assert "process has finished cleanly" in printed

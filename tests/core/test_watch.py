@@ -10,9 +10,9 @@ from pytest import approx
 
 from rlv_landing.core.bodies.system import System
 from rlv_landing.core.records import Bend
-from rlv_landing.core.solvers.bend import crest, expected, narrowed, where_to_look
 from rlv_landing.core.solvers.dormand_prince import DormandPrince
 from rlv_landing.core.solvers.exponential import Exponential
+from rlv_landing.core.solvers.turning_points import crest, expected, narrowed, where_to_look
 
 METHODS = [Exponential, DormandPrince]
 # the outputs of `Swinging`

@@ -66,7 +66,9 @@ def host(tmp_path_factory) -> Callable[[str], Path]:
                 "-o",
                 str(program),
             ]
-            subprocess.run([*command, str(HOSTS / f"{name}.c"), "-ldl", "-lpthread"], check=True)
+            subprocess.run(
+                [*command, str(HOSTS / f"{name}.c"), "-ldl", "-lm", "-lpthread"], check=True
+            )
         return program
 
     return compiled

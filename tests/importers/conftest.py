@@ -16,8 +16,11 @@ from rlv_landing.quantities import OUTPUT_NAMES
 
 HOSTS = Path(__file__).resolve().parent / "hosts"
 ROOT = HOSTS.parent.parent.parent
-# CoFmuPy is installed apart (see cofmupy.txt)
-COFMUPY = ROOT / "build" / "cofmupy"
+# what is installed apart, and where (see cofmupy.txt and others.txt)
+APART = {
+    "cofmupy": "cofmupy",
+    **dict.fromkeys(("fmuloader", "pathsim", "fmugym", "sofirpy"), "importers"),
+}
 
 Landed = Callable[..., np.ndarray]
 
@@ -34,9 +37,10 @@ def landed_by(fmu: Path, ecos_environment: dict[str, str], tmp_path: Path) -> La
     ) -> np.ndarray:
         (tmp_path / "job.json").write_text(json.dumps(job.as_json(outputs)), encoding="utf-8")
         environment = ecos_environment
-        if name == "cofmupy":
-            assert COFMUPY.is_dir(), f"{COFMUPY} is missing: run make build/cofmupy/.packages"
-            environment = {**ecos_environment, "PYTHONPATH": str(COFMUPY)}
+        if name in APART:
+            folder = ROOT / "build" / APART[name]
+            assert folder.is_dir(), f"{folder} is missing: run make build/{folder.name}/.packages"
+            environment = {**ecos_environment, "PYTHONPATH": str(folder)}
         command = [
             sys.executable,
             str(HOSTS / f"with_{name}.py"),

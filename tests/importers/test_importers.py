@@ -12,8 +12,11 @@ import pytest
 import ssp
 from jobs import JOBS, SLIPPERY, Job, assert_same
 
-from rlv_landing.quantities import OUTPUT_QUANTITIES
+from rlv_landing.quantities import OUTPUT_NAMES, OUTPUT_QUANTITIES
 
+needs_python_3_11 = pytest.mark.skipif(
+    sys.version_info < (3, 11), reason="fmuloader needs Python 3.11"
+)
 SCENARIO_NAMESPACE = "http://github.com/Ecos-platform/libecos/resources/schema/ScenarioConfig"
 
 
@@ -41,9 +44,23 @@ def test_fmpy_gives_landings_trajectory_by_fmi_3(landed_by, fmu3, job):
     assert_same(landed_by("fmpy", job, file=fmu3), job)
 
 
-def test_cofmupy_that_sets_every_input_at_every_step_gives_landings_trajectory(landed_by):
-    """CoFmuPy 1.0.0 reads every output as a Real, Integers and Booleans too. It sets no strings."""
-    assert_same(landed_by("cofmupy", SLIPPERY), SLIPPERY)
+@needs_python_3_11
+@pytest.mark.parametrize("job", JOBS.values(), ids=list(JOBS))
+def test_fmuloader_gives_landings_trajectory(landed_by, job):
+    assert_same(landed_by("fmuloader", job), job)
+
+
+@needs_python_3_11
+def test_fmuloader_that_handles_every_event_gives_landings_trajectory_by_fmi_3(landed_by, fmu3):
+    """It reads no arrays, and so no legs."""
+    outputs = tuple(name for name in OUTPUT_NAMES if not name.startswith("leg["))
+    assert_same(landed_by("fmuloader", SLIPPERY, outputs, fmu3), SLIPPERY, outputs)
+
+
+@pytest.mark.parametrize("importer", ["cofmupy", "pathsim", "fmugym", "sofirpy"])
+def test_importer_that_sets_no_strings_gives_landings_trajectory(landed_by, importer):
+    """All but sofirpy read every output as a Real, Integers and Booleans too."""
+    assert_same(landed_by(importer, SLIPPERY), SLIPPERY)
 
 
 @pytest.mark.parametrize("job", JOBS.values(), ids=list(JOBS))

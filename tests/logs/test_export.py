@@ -86,7 +86,7 @@ def test_a_log_is_the_landings_history_and_every_plot_and_measure_takes_it(
     assert leg_work(history) == leg_work(landing)
 
 
-def taken(history: History, every: float) -> list[float]:
+def thinned_times(history: History, every: float) -> list[float]:
     choice = RowChoice(every=every)
     return [time for time in history.time.tolist() if choice.takes(time)]
 
@@ -170,8 +170,8 @@ def test_topics_span_and_step_choose_rows_and_columns(one_log: Path, tmp_path: P
     assert [round(1e3 * float(row.split(",")[0])) for row in rows[1:]] == list(range(100, 501, 10))
     whole = log_history(one_log)
     # Every 2.5 ms of 1 ms samples: the first instant in each, none interpolated.
-    assert np.allclose(taken(whole, 0.0025)[:5], [0.0, 0.003, 0.005, 0.008, 0.01])
-    assert taken(whole, 1e-9) == whole.time.tolist()
+    assert np.allclose(thinned_times(whole, 0.0025)[:5], [0.0, 0.003, 0.005, 0.008, 0.01])
+    assert thinned_times(whole, 1e-9) == whole.time.tolist()
 
 
 def test_a_cut_log_is_exported_as_far_as_it_goes(one_log: Path, tmp_path: Path) -> None:

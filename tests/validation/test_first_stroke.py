@@ -60,7 +60,7 @@ class Oscillator:
         first = np.arctan2(cosine, -sine) % pi
         return float((first + which * pi) / self.w)
 
-    def taken_up(self, t: float) -> float:
+    def absorbed_until(self, t: float) -> float:
         """Energy taken up until a turn: all of the motion's and the weight's work."""
         stroke = float(self.stroke(np.array([t]))[0])
         return 0.5 * self.m * self.v**2 + self.m * GRAVITY * stroke
@@ -94,8 +94,10 @@ def test_an_oscillators_work_is_the_energy_that_it_had(oscillator, periods):
     assert found.top == approx(top, abs=2 * step)
     assert found.end == approx(end, abs=2 * step)
     assert found.stroke_max == approx(high, rel=1e-3)
-    assert found.absorbed == approx(oscillator.taken_up(top), rel=2e-3)
-    assert found.dissipated == approx(oscillator.taken_up(end), rel=2e-3, abs=2e-3 * found.absorbed)
+    assert found.absorbed == approx(oscillator.absorbed_until(top), rel=2e-3)
+    assert found.dissipated == approx(
+        oscillator.absorbed_until(end), rel=2e-3, abs=2e-3 * found.absorbed
+    )
 
 
 HEAVY = Oscillator(25000.0, 2.0, 0.3, 4.0)
@@ -111,11 +113,11 @@ def test_the_record_says_how_far_it_goes_and_gives_no_number_beyond():
     assert "run it longer" in early.note
     middle = HEAVY.work(0.5 * (top + end))
     assert middle.state == "in rebound"
-    assert middle.absorbed == approx(HEAVY.taken_up(top), rel=1e-4)
+    assert middle.absorbed == approx(HEAVY.absorbed_until(top), rel=1e-4)
     assert (middle.end, middle.dissipated) == (None, None)
     whole = HEAVY.work(3.0 * end)
     assert (whole.state, whole.note) == ("complete", "")
-    assert whole.dissipated == approx(HEAVY.taken_up(end), rel=1e-4)
+    assert whole.dissipated == approx(HEAVY.absorbed_until(end), rel=1e-4)
 
 
 def test_a_damper_that_creeps_to_its_rest_never_rebounds_and_keeps_all():

@@ -17,8 +17,8 @@ from ..interruptible import check_going
 WIDTH = 5e-10
 # a stroke [m] that is further from a stop's edge by no more than rounding is in the stop
 ROUNDING = 1e-12
-# outputs at a time, the marks of what holds there
-Look = tuple[Sequence[float], Sequence[bool]]
+# at a time: the outputs' distances from their edges, and the phase; on which sides they are
+Distances = tuple[Sequence[float], Sequence[bool]]
 
 
 class EventSearch:
@@ -64,29 +64,31 @@ class EventSearch:
         """
         solver = self._solver
         check_going(solver)
-        here = self._look(start)
+        here = self._distances(start)
         while start < time:
             if solver.t <= start:
                 if not solver.advance_some(time, 1):
                     check_going(solver)
                 continue
             until = min(solver.t, time)
-            there = self._look(until)
+            there = self._distances(until)
             found = self._first_change(start, here, until, there)
             if found is not None:
                 return found, True
             start, here = until, there
         return time, False
 
-    def _look(self, t: float) -> Look:
-        """Outputs and marks at time `t` [s], inside the solver's last step."""
+    def _distances(self, t: float) -> Distances:
+        """Distances and sides at time `t` [s], inside the solver's last step."""
         self._solver.interpolate(t, self._y)
         self._solver.outputs_at(t, self._y, self._out)
         row = self._out
         distances = [row[i] - edge for i, edge in self._edges]
         return [*distances, row[self._phase]], [d > 0.0 for d in distances]
 
-    def _first_change(self, start: float, first: Look, end: float, last: Look) -> float | None:
+    def _first_change(
+        self, start: float, first: Distances, end: float, last: Distances
+    ) -> float | None:
         """Time [s] of the first event after `start`, until `end`, both inside the last step.
 
         An event that another undoes within the step is found where the parabola through start,
@@ -95,31 +97,31 @@ class EventSearch:
         middle = 0.5 * (start + end)
         if not start < middle < end:
             return end if _differ(first, last) else None
-        amid = self._look(middle)
+        amid = self._distances(middle)
         if _differ(first, amid):
             return self._narrowed(start, first, middle)
         if _differ(first, last):
             return self._narrowed(middle, first, end)
         for part in turns(first[0], amid[0], last[0]):
             at = start + part * (end - start)
-            if start < at < end and _differ(first, self._look(at)):
+            if start < at < end and _differ(first, self._distances(at)):
                 return self._narrowed(start, first, at)
         return None
 
-    def _narrowed(self, low: float, first: Look, high: float) -> float:
+    def _narrowed(self, low: float, first: Distances, high: float) -> float:
         """Time [s] just after an event between `low`, where all is as at `first`, and `high`."""
         while high - low > WIDTH:
             middle = 0.5 * (low + high)
             if not low < middle < high:
                 break
-            if _differ(first, self._look(middle)):
+            if _differ(first, self._distances(middle)):
                 high = middle
             else:
                 low = middle
         return high
 
 
-def _differ(one: Look, other: Look) -> bool:
+def _differ(one: Distances, other: Distances) -> bool:
     """Whether marks or phases differ."""
     return one[1] != other[1] or one[0][-1] != other[0][-1]
 

@@ -11,14 +11,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..history import History
-from ..quantities import touchdown_groups
+from ..quantities import SPACE, touchdown_groups
 from ..text.durable import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-COLOURS = ("#0b6e99", "#c8553d", "#5b8c3e")
+COLOURS = (
+    "#0b6e99",
+    "#c8553d",
+    "#5b8c3e",
+    "#8a4fa0",
+    "#c79a1e",
+    "#3f3f8f",
+    "#17a398",
+    "#7a5c3e",
+)
 # outputs of a leg, and the factor to the unit of their axis
 # what is drawn of a leg, and of the body: the column, its factor from SI, and the axis's label
 MAIN_FORCE = ("main_strut.force", 1e-3, "main strut force [kN]")
@@ -138,6 +147,6 @@ def inline_svg(
 
 def _groups(history: History) -> list[tuple[int, ...]]:
     mode = history.parameters.drop.mode if history.parameters is not None else None
-    if mode is None:
-        return [(1,), (2,), (3,)]
+    if mode is None or mode == SPACE:
+        return [(leg,) for leg in history.legs]
     return touchdown_groups(mode)

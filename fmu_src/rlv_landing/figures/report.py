@@ -135,7 +135,7 @@ def _scalar_rows(found: Validation) -> list[dict[str, Any]]:
             {
                 "id": s.id,
                 "mode": s.mode,
-                "what": _what(s),
+                "what": _scalar_name(s),
                 "unit": s.unit,
                 "simulation": number(s.simulation, s.unit),
                 "tests": " / ".join(number(v, s.unit) for v in (s.test_a, s.test_b) if v == v)
@@ -151,7 +151,7 @@ def _scalar_rows(found: Validation) -> list[dict[str, Any]]:
     return rows
 
 
-def _what(s: Scalar) -> str:
+def _scalar_name(s: Scalar) -> str:
     leg = f", leg {s.leg}" if s.leg else ""
     return f"{s.quantity.replace('_', ' ')}{leg}: {s.event}"
 

@@ -63,7 +63,7 @@ class FreeNumbers:
         self.outside = [
             label
             for label, (prior, _), value in zip(self.labels, self.columns, self.starts())
-            if not _holds(prior, value)
+            if not _within_bounds(prior, value)
         ]
         for label, (prior, mode) in zip(self.labels, self.columns):
             if label in self.outside and prior.name not in given:
@@ -119,7 +119,7 @@ class FreeNumbers:
         return self.base.with_values(shared, "identified").with_mode_values(by_mode, "identified")
 
 
-def _holds(prior: Prior, value: float) -> bool:
+def _within_bounds(prior: Prior, value: float) -> bool:
     """Whether a value is within the bounds, but for its last digits."""
     rounding = ROUNDED * max(abs(prior.lo), abs(prior.hi)) if value else 0.0
     if prior.logarithmic:

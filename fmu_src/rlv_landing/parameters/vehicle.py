@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from ..quantities import LEAST_LEGS, MOST_LEGS
 from .declaration import real, text
 
 
@@ -35,7 +36,9 @@ class Vehicle:
         text("footpad", "joint", source="derived"),
     ] = "footpad"
     legs: Annotated[
-        float, "number of legs, evenly round the body; 4 but in mode = space", real("", 3.0, 8.0)
+        float,
+        "number of legs, evenly round the body; 4 but in mode = space",
+        real("", float(LEAST_LEGS), float(MOST_LEGS)),
     ] = 4.0
     leg_azimuth: Annotated[
         float,

@@ -8,9 +8,11 @@ reference pages.
 from .inputs import INPUT_NAMES, INPUT_QUANTITIES, INPUTS_BY_NAME
 from .interface import Interface, interface_of
 from .legs import (
+    LEAST_LEGS,
     LEGS,
     MIRRORED,
     MODES,
+    MOST_LEGS,
     SPACE,
     LegGroup,
     azimuth,
@@ -39,10 +41,12 @@ __all__ = [
     "INPUTS_BY_NAME",
     "INPUT_NAMES",
     "INPUT_QUANTITIES",
+    "LEAST_LEGS",
     "LEGS",
     "LEG_QUANTITIES",
     "MIRRORED",
     "MODES",
+    "MOST_LEGS",
     "NOMINALS",
     "OUTPUTS_BY_NAME",
     "OUTPUT_NAMES",

@@ -9,6 +9,8 @@ from math import cos, radians, sin
 from ..errors import LandingError
 
 LEGS = (1, 2, 3, 4)
+# of a landing in space
+LEAST_LEGS, MOST_LEGS = 3, 8
 # quantities of a leg whose sign changes in its mirror image
 MIRRORED = ("footpad.z", "contact.force_z")
 

@@ -6,13 +6,14 @@ import signal
 import threading
 from collections.abc import Callable
 from types import FrameType, TracebackType
-from typing import Any
+from typing import Any, TypeVar
 
 # Ctrl-C, `kill`, and the end of the terminal, where the system has it
 ENDING = tuple(
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 )
 HANG_UP = getattr(signal, "SIGHUP", None)
+Note = TypeVar("Note", bound="SignalNote")
 _hung_up = False
 _last = 0
 
@@ -76,10 +77,11 @@ class Handlers:
             signal.signal(number, before)
 
 
-class Hold:
-    """Notes the signals that end a command while it is entered; the first follows at the end.
+class SignalNote:
+    """Notes the signals that end a command while it is entered.
 
-    A mask of signals does not help: another thread may take the signal.
+    Attributes:
+        number: The number of the first signal that has come, or 0.
     """
 
     def __init__(self) -> None:
@@ -93,14 +95,7 @@ class Hold:
     def _note(self, number: int, frame: FrameType | None) -> None:
         self.number = self.number or number
 
-    def release(self) -> None:
-        """End the hold: the first signal that has come is sent again."""
-        self._handlers.restore()
-        number, self.number = self.number, 0
-        if number:
-            signal.raise_signal(number)
-
-    def __enter__(self) -> Hold:
+    def __enter__(self: Note) -> Note:
         self._handlers.set()
         return self
 
@@ -111,3 +106,21 @@ class Hold:
         trace: TracebackType | None,
     ) -> None:
         self.release()
+
+    def release(self) -> None:
+        """End the noting; the handlers are those that were before."""
+        self._handlers.restore()
+
+
+class Hold(SignalNote):
+    """Holds the signals that end a command back while it is entered; the first follows at the end.
+
+    A mask of signals does not help: another thread may take the signal.
+    """
+
+    def release(self) -> None:
+        """End the hold: the first signal that has come is sent again."""
+        super().release()
+        number, self.number = self.number, 0
+        if number:
+            signal.raise_signal(number)

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from ..core import Phase
 from ..errors import LandingError
 from ..history import History
-from ..quantities import LEGS
 from .first_stroke import State, first_stroke
 
 Array = NDArray[np.float64]
@@ -183,15 +182,15 @@ def onset(time: Array, stroke: Array) -> float:
     )
 
 
-def leg_work(history: History, legs: Iterable[int] = LEGS) -> dict[int, DamperWork]:
-    """The work of the dampers of those of `legs` that touch the ground, by leg.
+def leg_work(history: History, legs: Iterable[int] | None = None) -> dict[int, DamperWork]:
+    """The work of the dampers of those of `legs` that touch the ground, by leg; None: of all.
 
     Contact is the first sample at which the ground pushes on the footpad. The motion after toppling
     does not count. `largest` is the landing's, between its samples too, where it is known.
     """
     history = before_toppling(history)
     found: dict[int, DamperWork] = {}
-    for leg in legs:
+    for leg in history.legs if legs is None else legs:
         first = first_push(history, leg)
         if first is not None:
             stroke = f"leg[{leg}].main_strut.stroke"

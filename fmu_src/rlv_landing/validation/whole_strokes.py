@@ -5,7 +5,6 @@ from __future__ import annotations
 from ..core import Phase
 from ..history import History, joined
 from ..landing import Landing
-from ..quantities import LEGS
 from .measures import leg_work
 from .reading import RUN_AFTER_CONTACT
 from .sensors import SAMPLING
@@ -24,15 +23,15 @@ def whole_strokes(landing: Landing) -> History:
     """
     until = max(SHORTEST, landing.parameters.drop.contact_time + RUN_AFTER_CONTACT + 0.1)
     history = landing.run(until, 1.0 / SAMPLING)
-    while history.time[-1] < LONGEST and _goes_on(history):
+    while history.time[-1] < LONGEST and _is_stroking(history):
         until = min(LONGER * until, LONGEST)
         history = joined([history, landing.run(until, 1.0 / SAMPLING)])
     return history
 
 
-def _goes_on(history: History) -> bool:
+def _is_stroking(history: History) -> bool:
     """Whether the landing is not decided and a damper has not ended its first rebound."""
     if history["status.phase"][-1] in (Phase.SETTLED, Phase.TOPPLED):
         return False
     work = leg_work(history)
-    return len(work) < len(LEGS) or any(w.state != "complete" for w in work.values())
+    return len(work) < len(history.legs) or any(w.state != "complete" for w in work.values())

@@ -90,7 +90,7 @@ def animate(files: tuple[Path, ...], *, force: bool, **options: Any) -> None:
     if output.suffix not in ENDINGS:
         raise LandingError(f"{output} must end in {' or '.join(ENDINGS)}")
     check_writable(output, output.suffix, force=force)
-    vehicle = VehicleOptions.take(options)
+    vehicle = VehicleOptions.pop_from(options)
     film = Film(**options)
     cut = False
     if len(files) == 2:

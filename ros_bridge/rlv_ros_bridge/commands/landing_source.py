@@ -32,12 +32,12 @@ class VehicleOptions:
     pairs: tuple[str, ...]
 
     @classmethod
-    def take(cls, options: dict[str, Any]) -> VehicleOptions:
+    def pop_from(cls, options: dict[str, Any]) -> VehicleOptions:
         """Takes the options out of `options`, those of a command by name."""
         return cls(*(options.pop(name) for name in ("preset", "file", "mode", "pairs")))
 
     @property
-    def given(self) -> bool:
+    def is_given(self) -> bool:
         """Whether at least one of them is given."""
         return bool(self.preset or self.file or self.mode or self.pairs)
 
@@ -92,12 +92,12 @@ def read_landing(path: Path, vehicle: VehicleOptions) -> tuple[History, Paramete
     if ground in reader.channels and next(iter(reader.messages([ground])), None) is not None:
         click.echo("warning: the ground was moved in this landing; it is drawn at rest", err=True)
     if history.parameters is not None:
-        if vehicle.given:
+        if vehicle.is_given:
             raise LandingError(
                 f"{path} carries its parameters; leave --preset, --parameters, --mode and --set out"
             )
         return history, history.parameters, reader.cut
-    if not vehicle.given:
+    if not vehicle.is_given:
         raise LandingError(
             f"{path} does not carry the vehicle's parameters; "
             "name them by --parameters FILE.toml, or --preset and --mode"

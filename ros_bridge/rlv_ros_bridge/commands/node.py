@@ -16,10 +16,8 @@ from rlv_landing.text.durable import writing
 from rlv_landing.text.files import is_utf8
 
 from ..messages.topics import check_namespace
-from ..node.run_summary import RunSummary
+from ..node.run_summary import EXIT_RECORDING_FAILED, print_summary
 from ..ros.arguments import ROS_COMMAND_SETTINGS, split_ros_args
-
-EXIT_RECORDING_FAILED = 1
 
 
 @click.command(context_settings=ROS_COMMAND_SETTINGS)
@@ -44,7 +42,7 @@ EXIT_RECORDING_FAILED = 1
     multiple=True,
     help='Change a parameter (SI, or as "-2 deg"). Repeatable.',
 )
-@click.option("--fmu", metavar="FILE", help="The FMU to step. Default: build/RlvLanding.fmu.")
+@click.option("--fmu", metavar="FILE", help="The FMU to step. Default: that of this installation.")
 @click.option(
     "--realtime-factor",
     type=Number(),
@@ -88,6 +86,12 @@ EXIT_RECORDING_FAILED = 1
     type=Number("s"),
     metavar="SECONDS",
     help="Longest wait for them. Default: 30.",
+)
+@click.option(
+    "--start-delay",
+    type=Number("s"),
+    metavar="SECONDS",
+    help="Wait for so long after that; /clock stands meanwhile. Default: 0.",
 )
 @click.option(
     "--managed",
@@ -138,7 +142,7 @@ def node(
         summary = land({**settings, **recording, **changes}, passed_on, stop, namespace)
     if summary is None:
         sys.exit(128 + stop.number if stop.number else 0)
-    _print_summary(summary)
+    print_summary(summary)
     if report and summary.folder is not None:
         try:
             _print_report(summary.folder)
@@ -181,38 +185,6 @@ def _recording_parameters(options: dict[str, Any], *, report: bool) -> dict[str,
     if no_record:
         return {}
     return {"record": record} if record else {"log_root": log_root}
-
-
-def _print_summary(summary: RunSummary) -> None:
-    click.echo(
-        f"{summary.end}: {summary.samples} samples, "
-        f"{summary.simulated:g} s in {summary.wall:.2f} s "
-        f"(real-time factor {summary.realtime_factor:.2f}); {summary.late_steps} steps late; "
-        f"lateness {summary.median_lateness * 1e6:.0f} us in the median, "
-        f"{summary.p99_lateness * 1e6:.0f} us in 99 % of samples, "
-        f"{summary.largest_lateness * 1e3:.2f} ms at most"
-    )
-    warnings = []
-    if summary.lost:
-        warnings.append(f"{summary.lost:.2f} s of wall time were lost to stalls and not made up")
-    if summary.dropped:
-        warnings.append(
-            f"{summary.dropped} messages were not published in time, and dropped; the log has them"
-        )
-    if not summary.acknowledged:
-        warnings.append("not every reliable subscriber has acknowledged all samples")
-    for text in warnings:
-        click.echo(one_line(f"warning: {text}"), err=True)
-    if summary.folder is not None:
-        click.echo(f"log: {summary.folder}")
-    if summary.recording_error:
-        click.echo(
-            one_line(
-                f"error: {summary.recording_error}; what was written can be read with "
-                f"`rlv-landing log info {summary.folder}`"
-            ),
-            err=True,
-        )
 
 
 def _print_report(folder: Path) -> None:

@@ -85,6 +85,14 @@ from .log import split_names, warn_incomplete_and_exit
     metavar="SECONDS",
     help="Longest wait for them.",
 )
+@click.option(
+    "--start-delay",
+    type=Number("s"),
+    default=0.0,
+    show_default=True,
+    metavar="SECONDS",
+    help="Wait for so long after that; /clock stands meanwhile.",
+)
 @click.argument("ros_args", nargs=-1, type=click.UNPROCESSED)
 def replay(log: Path, topics: tuple[str, ...], ros_args: tuple[str, ...], **options: Any) -> None:
     """Play a log back with its original timing: LOG is a log's folder or an .mcap file.

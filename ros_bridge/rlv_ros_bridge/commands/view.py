@@ -76,7 +76,7 @@ def view(log: Path | None, *, save: Path | None, force: bool, **options: Any) ->
     Examples:
       rlv-landing view logs/20260131T120000Z-2-2
       rlv-landing view logs/20260131T120000Z-2-2 --save landing.rrd     # then: rerun landing.rrd
-      rlv-landing view & rlv-landing node --mode 1-2-1
+      rlv-landing view & rlv-landing node --mode 1-2-1 --wait-for-subscribers 1
       rlv-landing view --no-browser --port 9100
           (from elsewhere: ssh -L 9100:127.0.0.1:9100 -L 9101:127.0.0.1:9101 HOST)
 
@@ -85,12 +85,12 @@ def view(log: Path | None, *, save: Path | None, force: bool, **options: Any) ->
     Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged, 130, 143 or
     129 ended by SIGINT, SIGTERM or SIGHUP.
     """
-    vehicle = VehicleOptions.take(options)
+    vehicle = VehicleOptions.pop_from(options)
     server = ServerOptions(options["port"], options["no_browser"])
     namespace = options["namespace"]
     check_namespace(namespace)
     check_writable(save, ".rrd", force=force)
-    if log is None and vehicle.given:
+    if log is None and vehicle.is_given:
         raise LandingError(
             "live topics need no vehicle named; leave --preset, --parameters, --mode and --set out"
         )
@@ -157,7 +157,7 @@ def _show_live(namespace: str, options: ServerOptions) -> int:
             shown.append(scene)
 
         _print_address(server.address, options)
-        click.echo(f"waiting for a landing below /{namespace.strip('/')}")
+        click.echo(_waiting_text(namespace))
         watch(namespace, connect, server.check_running, stop)
         for scene in shown:
             scene.stream.disconnect()
@@ -179,9 +179,7 @@ def _save_live(namespace: str, save: Path) -> int:
             if landings == 1:
                 saved.begin(scene)
 
-        click.echo(
-            f"waiting for a landing below /{namespace.strip('/')}; Ctrl-C ends the recording"
-        )
+        click.echo(f"{_waiting_text(namespace)}; Ctrl-C ends the recording")
         samples = watch(namespace, save_first, lambda: landings < 2, stop)
         if not landings:
             raise LandingError(
@@ -191,6 +189,13 @@ def _save_live(namespace: str, save: Path) -> int:
         saved.finish()
     click.echo(f"{save}: {samples} instants; open it by: rerun {save}")
     return 128 + stop.number if stop else 0
+
+
+def _waiting_text(namespace: str) -> str:
+    return (
+        f"waiting for a landing below /{namespace.strip('/')}; started with "
+        "--wait-for-subscribers 1, node and replay wait for this view"
+    )
 
 
 def _server(options: ServerOptions) -> Any:

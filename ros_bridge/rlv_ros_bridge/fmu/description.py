@@ -11,6 +11,7 @@ from math import prod
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from rlv_landing import MODEL_NAME
 from rlv_landing.errors import LandingError, reason_of
 from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
 from rlv_landing.quantities import (
@@ -22,7 +23,6 @@ from rlv_landing.quantities import (
     whole_name,
 )
 
-MODEL_NAME = "RlvLanding"
 # how the description of an FMU that our build has made says so
 MADE_BY = "rlv-landing "
 # the start values of a vehicle that is not the default one
@@ -140,11 +140,18 @@ def read_description(path: Path) -> Any:
     return description
 
 
-def places(description: Any, path: Path) -> dict[str, Place]:
+def places(
+    description: Any, path: Path, needed: Container[str] = frozenset(NAMES)
+) -> dict[str, Place]:
     """Where our FMU has each quantity, by our names, also where its own are flat or arrays.
 
+    Args:
+        description: Its description.
+        path: Its file, for the error.
+        needed: The quantities that it must have. Those of other versions may lack others.
+
     Raises:
-        LandingError: It lacks a variable: it is of another version.
+        LandingError: It lacks a needed variable: it is of another version.
     """
     known = {v.name: v for v in description.modelVariables}
     found: dict[str, Place] = {}
@@ -152,14 +159,20 @@ def places(description: Any, path: Path) -> dict[str, Place]:
     own_names = [_own_name(name, known, arrays=arrays) for name in NAMES]
     sizes, seen = Counter(own_names), Counter[str]()
     for name, own in zip(NAMES, own_names):
-        if own not in known or _size(known[own]) != sizes[own]:
-            raise LandingError(
-                f"{path} (version {description.version or 'unknown'}) has no variable {name!r}; "
-                "build it again by `rlv-landing fmu build`"
-            )
-        found[name] = Place(known[own].valueReference, seen[own], sizes[own])
-        seen[own] += 1
+        if own in known and _size(known[own]) == sizes[own]:
+            found[name] = Place(known[own].valueReference, seen[own], sizes[own])
+            seen[own] += 1
+        elif name in needed:
+            raise without(path, description.version, name)
     return found
+
+
+def without(path: Path, version: str, name: str) -> LandingError:
+    """The error of an FMU that lacks the quantity `name`."""
+    return LandingError(
+        f"{path} (version {version or 'unknown'}) has no variable {name!r}; "
+        "build it again by `rlv-landing fmu build`"
+    )
 
 
 def _own_name(name: str, known: Container[str], *, arrays: bool) -> str:

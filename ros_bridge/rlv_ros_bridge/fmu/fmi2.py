@@ -40,12 +40,7 @@ class Fmi2:
     def __init__(self, description: Any, folder: str, name: str, log: Log) -> None:
         from fmpy.fmi2 import FMU2Slave
 
-        self.slave = FMU2Slave(
-            guid=description.guid,
-            modelIdentifier=description.coSimulation.modelIdentifier,
-            unzipDirectory=folder,
-            instanceName=name,
-        )
+        self.slave = FMU2Slave(**slave_arguments(description, folder, name))
         self.slave.instantiate(callbacks=self._callbacks(log), loggingOn=True)
         self._step = function(self.slave, "fmi2DoStep", DO_STEP)
 
@@ -95,6 +90,22 @@ class Fmi2:
         values = (ctypes.c_double * count)(*rates.values())
         set_rates = function(self.slave, self.SET_RATES, SET_RATES)
         return int(set_rates(self.slave.component, wanted, count, orders, values))
+
+
+def slave_arguments(description: Any, folder: str, name: str) -> dict[str, str]:
+    """Arguments of FMPy's slaves of both versions.
+
+    Args:
+        description: The FMU's description.
+        folder: Its unpacked files.
+        name: The instance's name.
+    """
+    return {
+        "guid": description.guid,
+        "modelIdentifier": description.coSimulation.modelIdentifier,
+        "unzipDirectory": folder,
+        "instanceName": name,
+    }
 
 
 def function(slave: Any, name: str, arguments: Sequence[Any]) -> Any:

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 from rlv_landing.errors import LandingError
 from rlv_landing.inputs.driven import RATE_INPUTS
 
-from .fmi2 import Call, Log, function
+from .fmi2 import Call, Log, function, slave_arguments
 
 DO_STEP = (
     ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_bool, *[ctypes.c_void_p] * 4,
@@ -46,12 +46,7 @@ class Fmi3:
             text = (message or b"").decode("utf-8", "replace").strip()
             log(status, text.replace("##", "#"))
 
-        self.slave = FMU3Slave(
-            guid=description.guid,
-            modelIdentifier=description.coSimulation.modelIdentifier,
-            unzipDirectory=folder,
-            instanceName=name,
-        )
+        self.slave = FMU3Slave(**slave_arguments(description, folder, name))
         self.slave.instantiate(loggingOn=True, logMessage=logger)
         self._step = function(self.slave, "fmi3DoStep", DO_STEP)
         # event, end, early return: they and the last time are of no use where steps are made whole

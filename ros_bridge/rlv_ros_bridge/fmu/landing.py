@@ -66,10 +66,10 @@ def land_fmu(
         now = 0.0
         for row, time in zip(rows, times):
             while waiting and (waiting.time < time or waiting.time == time == 0.0):
-                now = _go_on(runner, now, waiting.time)
+                now = _advance_to(runner, now, waiting.time)
                 runner.set_inputs(waiting.values, waiting.rates)
                 waiting = next(settings, None)
-            now = _go_on(runner, now, time)
+            now = _advance_to(runner, now, time)
             row[:] = runner.values()
             if progress is not None:
                 progress(time)
@@ -79,7 +79,7 @@ def land_fmu(
     return history
 
 
-def _go_on(runner: FmuRunner, now: float, time: float) -> float:
+def _advance_to(runner: FmuRunner, now: float, time: float) -> float:
     if time > now:
         runner.advance(now, time)
     return max(now, time)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from contextlib import suppress
 from operator import itemgetter
 from pathlib import Path
@@ -10,6 +10,7 @@ from tempfile import gettempdir
 from types import TracebackType
 from typing import Any, NoReturn, TypeVar
 
+from rlv_landing import MODEL_NAME
 from rlv_landing.errors import LandingError, unknown
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.quantities import (
@@ -22,7 +23,7 @@ from rlv_landing.quantities import (
 )
 from rlv_landing.text.durable import writing
 
-from .description import MODEL_NAME, check_size, places, read_description
+from .description import NAMES, check_size, places, read_description, without
 from .fmi2 import Fmi2
 from .fmi3 import Fmi3, with_ground_rates
 from .folder import ProcessFolder
@@ -41,13 +42,23 @@ class FmuRunner:
     Args:
         fmu_path: the `.fmu` file.
         values: parameters by name, SI; others keep the FMU's defaults.
+        needed: quantities that the FMU must have. One of an older version may lack others;
+            parameters that it lacks must have their defaults.
+
+    Attributes:
+        output_names: the outputs of `values()`: `OUTPUT_NAMES`, without those that it lacks.
 
     Raises:
         LandingError: no such file, not an FMU, another model, an unknown parameter, or one that the
-            FMU refuses (with its reason), or there is no room to unpack it.
+            FMU lacks or refuses (with its reason), or there is no room to unpack it.
     """
 
-    def __init__(self, fmu_path: str | Path, values: Mapping[str, float | str]) -> None:
+    def __init__(
+        self,
+        fmu_path: str | Path,
+        values: Mapping[str, float | str],
+        needed: Container[str] = frozenset(NAMES),
+    ) -> None:
         self.path = Path(fmu_path)
         self._messages: list[tuple[int, str]] = []
         self._instance: Fmi2 | Fmi3 | None = None
@@ -59,16 +70,26 @@ class FmuRunner:
         self.guid: str = description.guid
         self.version: str = description.version or ""
         self.made_by: str = description.generationTool or ""
-        self._places = places(description, self.path)
-        for name in values:
-            if name not in PARAMETER_QUANTITIES:
-                raise unknown("parameter", name, PARAMETER_QUANTITIES)
+        self._places = places(description, self.path, needed)
+        self.output_names = tuple(name for name in OUTPUT_NAMES if name in self._places)
         try:
-            self._instantiate(description, values)
+            self._instantiate(description, self._own_parameters(values))
             self._prepare_outputs()
         except BaseException:
             self.close()
             raise
+
+    def _own_parameters(self, values: Mapping[str, float | str]) -> dict[str, float | str]:
+        """The parameters without the defaults of those that the FMU lacks."""
+        own = {}
+        for name, value in values.items():
+            if name not in PARAMETER_QUANTITIES:
+                raise unknown("parameter", name, PARAMETER_QUANTITIES)
+            if name in self._places:
+                own[name] = value
+            elif value != PARAMETER_QUANTITIES[name].default:
+                raise without(self.path, self.version, name)
+        return own
 
     def _instantiate(self, description: Any, values: Mapping[str, float | str]) -> None:
         from fmpy import extract
@@ -107,9 +128,10 @@ class FmuRunner:
         return reader.values()
 
     def _prepare_outputs(self) -> None:
+        kinds = {q.name: q.kind for q in OUTPUT_QUANTITIES}
         for k, kind in enumerate(("real", "integer", "boolean")):
-            indices = [i for i, q in enumerate(OUTPUT_QUANTITIES) if q.kind == kind]
-            self._readers.append(self._reader(kind, [OUTPUT_NAMES[i] for i in indices]))
+            indices = [i for i, name in enumerate(self.output_names) if kinds[name] == kind]
+            self._readers.append(self._reader(kind, [self.output_names[i] for i in indices]))
             if kind != "real":
                 self._not_real += [(i, k, j) for j, i in enumerate(indices)]
         self._not_real.sort(key=itemgetter(0))
@@ -174,7 +196,7 @@ class FmuRunner:
             self._fail("doStep", status)
 
     def values(self) -> list[float]:
-        """All outputs at the current time, SI, in the order of `OUTPUT_NAMES`.
+        """All outputs at the current time, SI, in the order of `output_names`.
 
         Raises:
             LandingError: the FMU refuses.
@@ -198,10 +220,15 @@ class FmuRunner:
         Raises:
             LandingError: the FMU refuses, or has been freed.
         """
-        names = [q.name for q in PEAK_QUANTITIES]
-        numbers = self._read(self._reader("real", names))
-        values = dict(zip(names, numbers))
-        return {p.value.name: (values[p.value.name], values[p.time.name]) for p in PEAKS}
+        names = [q.name for q in PEAK_QUANTITIES if q.name in self._places]
+        if not names:
+            return {}
+        values = dict(zip(names, self._read(self._reader("real", names))))
+        return {
+            p.value.name: (values[p.value.name], values[p.time.name])
+            for p in PEAKS
+            if p.value.name in values
+        }
 
     def is_compiled(self) -> bool:
         """Whether the FMU computes with its compiled core."""
@@ -228,6 +255,8 @@ class FmuRunner:
         for name in (*inputs, *(rates or {})):
             if name not in INPUT_NAMES:
                 raise unknown("input", name, INPUT_NAMES)
+            if name not in self._places:
+                raise without(self.path, self.version, name)
         instance = self._own()
         if isinstance(instance, Fmi3):
             inputs, rates = with_ground_rates(inputs, rates or {}), None

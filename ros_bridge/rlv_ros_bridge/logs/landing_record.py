@@ -87,7 +87,7 @@ class LandingRows:
 
     def __init__(self, parameters: Parameters) -> None:
         self._parameters = parameters
-        self._take = itemgetter(*(OUTPUT_NAMES.index(name) for name in COLUMNS))
+        self._columns_of = itemgetter(*(OUTPUT_NAMES.index(name) for name in COLUMNS))
         self._rows = array("d")
         self._times = array("d")
         self._phase = 0
@@ -99,7 +99,7 @@ class LandingRows:
         self._phase = int(values[PHASE])
         if len(self._times) < MOST_SAMPLES:
             self._times.append(time)
-            self._rows.extend(self._take(values))
+            self._rows.extend(self._columns_of(values))
 
     def texts(self, peaks: Mapping[str, Found]) -> dict[str, str]:
         """The record's texts by name; empty where it cannot be made.

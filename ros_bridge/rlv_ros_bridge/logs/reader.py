@@ -100,11 +100,11 @@ class LogReader:
                     channel, _ = definitions.find(record.channel_id)
                     yield LogMessage(channel.topic, record.log_time, record.data)
                 else:
-                    self._take(record, definitions)
+                    self._keep_record(record, definitions)
             self.cut = self.cut or not stream.finished or bool(stream.damage)
             self.damage += [f"{file.name}, {text}" for text in stream.damage]
 
-    def _take(self, record: Any, definitions: Definitions) -> None:
+    def _keep_record(self, record: Any, definitions: Definitions) -> None:
         """Keeps a record other than a message."""
         from mcap.records import Attachment, Metadata
 
@@ -137,7 +137,7 @@ class LogReader:
         for summary in self.summaries:
             definitions = Definitions(summary.file)
             for record in (*summary.definitions, *summary.others):
-                self._take(record, definitions)
+                self._keep_record(record, definitions)
         return True
 
     def read_through(self) -> None:

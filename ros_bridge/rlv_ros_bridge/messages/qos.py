@@ -52,6 +52,8 @@ TELEMETRY = Qos()
 # ROS's own profile for sensors: lost messages are not sent again.
 SENSOR_DATA = Qos(reliability="best_effort", depth=5)
 CLOCK = Qos(depth=1)
+# A subscription of best effort matches publishers of either kind.
+INPUT = Qos(reliability="best_effort")
 # For what is published once: later subscribers get it as well.
 LATCHED = Qos(durability="transient_local", depth=1)
 PROFILES = {"telemetry": TELEMETRY, "sensor_data": SENSOR_DATA}

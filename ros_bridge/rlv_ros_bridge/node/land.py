@@ -14,7 +14,7 @@ from rlv_landing.signals.interrupts import answer
 from ..ros.setup import StopFlag, ros_context
 from ..ros.spinner import Spinner
 from .landing_node import NAMESPACE, LandingNode
-from .run_summary import RunSummary
+from .run_summary import EXIT_RECORDING_FAILED, RunSummary, print_summary
 
 # Period of checking for signals and of updating the progress bar [s].
 POLL_SECONDS = 0.02
@@ -41,8 +41,8 @@ def land(
     Raises:
         LandingError: bad parameters, or the landing failed.
     """
-    with ros_context(ros_args):
-        node = LandingNode(changes, namespace)
+    with ros_context(ros_args) as shared:
+        node = LandingNode(changes, namespace, shared)
         try:
             with Spinner(node) as spinner:
                 if node.values["autostart"]:
@@ -103,7 +103,12 @@ def _wait_for_end(node: LandingNode, stop: StopFlag) -> None:
 
 
 def main() -> int:
-    """The entry point for `ros2 run`, where all settings are ROS parameters; the exit code."""
+    """The entry point for `ros2 run` and `ros2 launch`, where all settings are ROS parameters.
+
+    Returns:
+        The exit code: 0 also after a signal that has ended the landing with a complete log, which
+        `ros2 launch` else takes for a crash.
+    """
     try:
         with StopFlag() as stop:
             summary = land({}, sys.argv[1:], stop)
@@ -112,7 +117,9 @@ def main() -> int:
         return 2
     except KeyboardInterrupt:
         # while a parameter file was waited for
-        return answer()
+        answer()
+        return 0
     if summary is None:
-        return 128 + stop.number if stop.number else 0
-    return 128 + summary.signal if summary.signal else 1 if summary.recording_error else 0
+        return 0
+    print_summary(summary)
+    return EXIT_RECORDING_FAILED if summary.recording_error else 0

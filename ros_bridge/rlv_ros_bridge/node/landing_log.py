@@ -17,7 +17,6 @@ from ..logs.landing_record import LandingRows
 from ..logs.peaks import peak_texts
 from ..logs.recorder import RecordedTopic, Recorder
 from ..messages import topics
-from ..messages.qos import LATCHED
 from ..messages.samples import SampleBytes
 from ..messages.topics import Topic
 from ..messages.wire import padded
@@ -69,10 +68,7 @@ class LandingLog:
         if self._folder is None or self.recorder is not None:
             return None
         names, qos = self._publishing.names, self._publishing.qos
-        recorded = [
-            RecordedTopic(names[t], t.type_name, LATCHED if t is topics.ROBOT_DESCRIPTION else qos)
-            for t in topics.RECORDED
-        ]
+        recorded = [RecordedTopic(names[t], t.type_name, qos[t]) for t in topics.RECORDED]
         self.recorder = Recorder(
             self._folder,
             recorded,

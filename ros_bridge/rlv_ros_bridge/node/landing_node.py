@@ -16,19 +16,19 @@ from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 
 from rlv_landing.audit.transverse import joint_warning
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, first_of
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES
 
 from ..messages import topics
-from ..messages.qos import PROFILES, TELEMETRY
-from ..messages.rclpy_qos import qos_profile
+from ..messages.qos import INPUT, PROFILES
+from ..messages.rclpy_qos import create_subscription
 from ..ros.rclpy_internals import lifecycle_state
 from ..ros.setup import wait_for_acknowledgement
 from .input_queue import InputQueue
 from .landing_run import Identity, LandingRun
 from .landing_thread import LandingThread, as_landing_error, create_landing_services
-from .parameters import NodeParameters
+from .parameters import NodeParameters, unused_overrides
 from .publishing import create_publishing
 from .run_summary import RunSummary
 from .settings import unused_folder
@@ -54,13 +54,17 @@ class LandingNode(LifecycleNode):
     Args:
         changes: ROS parameters by name; they override those of the command line.
         namespace: namespace of the node and its topics.
+        shared: parameters that a file gives to every node; unknown ones are ignored with a warning.
 
     Raises:
         LandingError: bad parameters.
     """
 
     def __init__(
-        self, changes: Mapping[str, Any] | None = None, namespace: str = NAMESPACE
+        self,
+        changes: Mapping[str, Any] | None = None,
+        namespace: str = NAMESPACE,
+        shared: frozenset[str] = frozenset(),
     ) -> None:
         given = [Parameter(name, value=value) for name, value in (changes or {}).items()]
         super().__init__("landing_node", namespace=namespace, parameter_overrides=given)
@@ -68,7 +72,9 @@ class LandingNode(LifecycleNode):
         self.ended = threading.Event()
         self.landing: LandingRun | None = None
         self._thread: LandingThread | None = None
-        self.values = NodeParameters(self, lambda: self.is_landing, self._parameters_changed)
+        self.values = NodeParameters(
+            self, lambda: self.is_landing, self._parameters_changed, shared
+        )
         self._landing_error: LandingError | None = None
         self._previous: LandingRun | None = None
         self._landings = 0
@@ -80,8 +86,14 @@ class LandingNode(LifecycleNode):
             (WrenchStamped, "external_wrench", self._inputs.receive_wrench),
             (JointState, "ground", self._inputs.receive_ground),
         ):
-            self.create_subscription(kind, name, callback, qos_profile(TELEMETRY))
+            create_subscription(self, kind, name, callback, INPUT)
         create_landing_services(self, self.reset, self.step)
+        foreign = unused_overrides(self, shared)
+        if foreign:
+            self.get_logger().warning(
+                f"ignored, as no parameters of this node: {first_of(foreign)} "
+                "(a parameter file gives them to every node)"
+            )
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Loads the FMU, publishes its variables and the vehicle's description.
@@ -178,7 +190,11 @@ class LandingNode(LifecycleNode):
 
     def _note_end(self) -> None:
         landing = self._require_landing()
-        self.get_logger().debug(f"{landing.end} after {landing.time:g} s")
+        # With `autostart` the command prints it.
+        if not self.values["autostart"]:
+            recorder = landing.log.recorder
+            log = f"; log: {recorder.folder}" if recorder else ""
+            self.get_logger().info(f"{landing.end} after {landing.time:g} s{log}")
         self.ended.set()
 
     def _note_error(self, error: LandingError) -> None:

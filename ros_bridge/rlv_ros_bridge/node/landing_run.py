@@ -14,6 +14,7 @@ from rclpy.serialization import serialize_message
 
 from rlv_landing import Landing
 from rlv_landing.core import Phase
+from rlv_landing.quantities import OUTPUT_NAMES
 
 from ..fmu.runner import FmuRunner
 from ..logs.landing_record import PHASE
@@ -118,6 +119,17 @@ class LandingRun:
         ]
         # The clock comes first, and is not recorded.
         self._recorded = slice(packer.slices[0].stop, None)
+        self._start_clock = packer.pack(1, [0.0] * len(OUTPUT_NAMES))[packer.slices[0]]
+
+    def publish_start_clock(self) -> None:
+        """Publishes `/clock`, if the node does, as it stands until the landing starts.
+
+        It is 1 ns, and so it is at sample 0: to ROS a clock at 0 has not started, and who waits for
+        it, as a recorder in simulation time, would miss the landing.
+        """
+        clock = self._publishing.publishers.get(topics.CLOCK)
+        if clock is not None:
+            clock.publish(self._start_clock)
 
     def run(self, interrupted: Callable[[], bool]) -> None:
         """Lands at the pace of `realtime_factor` until the end, or `interrupted` returns true.
@@ -193,7 +205,7 @@ class LandingRun:
         self.end = "toppled" if toppled else "finished" if k == s.steps else ""
         messages = self._packer.pack(k * s.step_ns, values, k)
         self.log.write_sample(k, values, messages[self._recorded])
-        return values, messages
+        return values, messages if k else self._start_clock + messages[self._recorded]
 
     def _apply_inputs(self, now: int) -> None:
         """Applies and records, at the simulation time `now` [ns], the inputs that have arrived."""

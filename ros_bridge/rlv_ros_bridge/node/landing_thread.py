@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -11,15 +12,16 @@ from std_srvs.srv import Trigger
 
 from rlv_landing.errors import LandingError, reason_of
 
-from ..ros.setup import wait_until_matched
+from ..ros.setup import MATCH_POLL_SECONDS, wait_until_matched
 from .landing_run import LandingRun
 from .publish_queue import TopicPublisher
+from .settings import Settings
 
 
 class LandingThread:
     """Runs a landing in a thread of its own, until it ends, fails or is stopped.
 
-    Before the first sample it waits for the subscribers that the settings ask for.
+    Before the first sample it waits for the subscribers and the time that the settings ask for.
 
     Args:
         landing: the landing, whose log is open.
@@ -48,18 +50,30 @@ class LandingThread:
         landing, s = self._landing, self._landing.settings
         try:
             if not landing.samples:
-                wait_until_matched(
-                    self._awaited.publisher,
-                    s.wait_for_subscribers,
-                    s.wait_timeout,
-                    self._pause.is_set,
-                )
+                self._wait_for_start(s)
             landing.run(self._pause.is_set)
             if landing.end:
                 landing.close_log()
                 self._on_end()
         except Exception as e:
             self._on_error(as_landing_error(e))
+
+    def _wait_for_start(self, s: Settings) -> None:
+        """Waits for subscribers, and then for `start_delay`; meanwhile `/clock` stands.
+
+        Raises:
+            LandingError: there are not enough subscribers in time.
+        """
+        wait_until_matched(
+            self._awaited.publisher, s.wait_for_subscribers, s.wait_timeout, self._is_paused
+        )
+        end = time.monotonic() + s.start_delay
+        while time.monotonic() < end and not self._is_paused():
+            time.sleep(MATCH_POLL_SECONDS)
+
+    def _is_paused(self) -> bool:
+        self._landing.publish_start_clock()
+        return self._pause.is_set()
 
     def stop(self) -> None:
         """Pauses the landing after its present sample, and waits for the thread's end."""

@@ -6,8 +6,7 @@ a text with a unit, such as "-2 deg".
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from pathlib import Path
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from rcl_interfaces.msg import (
@@ -26,11 +25,13 @@ from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.text.values import parse_value
 
 from ..fmu.description import own_vehicle
+from ..fmu.installed import fmu_path
 from ..ros.rclpy_internals import parameter_overrides
 from .settings import SETTINGS, Settings, check_setting, make_settings
 
 # The parameters that rclpy declares for every node.
 BUILT_IN = ("use_sim_time", "start_type_description_service")
+QOS_OVERRIDES = "qos_overrides."
 # The setting `mode` stands for this quantity: it also chooses the values that depend on the mode.
 MODE = "drop.mode"
 
@@ -42,6 +43,8 @@ class NodeParameters:
         node: the landing node.
         is_running: whether the node lands at present.
         on_change: called with the changed values by name.
+        shared: names that a parameter file gives to every node. Those that are not this node's are
+            ignored.
 
     Raises:
         LandingError: a bad value on the command line or in a parameter file: unknown name, wrong
@@ -53,11 +56,14 @@ class NodeParameters:
         node: Node,
         is_running: Callable[[], bool],
         on_change: Callable[[dict[str, Any]], None],
+        shared: frozenset[str] = frozenset(),
     ) -> None:
         given = parameter_overrides(node)
         for name in given:
-            if name not in (*SETTINGS, *PARAMETER_QUANTITIES, *BUILT_IN) and not name.startswith(
-                "qos_overrides."
+            if (
+                name not in (*SETTINGS, *PARAMETER_QUANTITIES, *BUILT_IN)
+                and not name.startswith(QOS_OVERRIDES)
+                and name not in shared
             ):
                 raise unknown("ROS parameter", name, (*SETTINGS, *PARAMETER_QUANTITIES))
         if MODE in given:
@@ -168,7 +174,8 @@ class NodeParameters:
         try:
             if self._refusal:
                 raise LandingError(self._refusal)
-            self._merged(parameters)
+            if _own(parameters):
+                self._merged(parameters)
         except LandingError as e:
             return SetParametersResult(successful=False, reason=str(e))
         return SetParametersResult(successful=True)
@@ -187,8 +194,33 @@ class NodeParameters:
         return values, physical
 
     def _post_set(self, parameters: list[Parameter[Any]]) -> None:
-        self._values, self.parameters = self._merged(parameters)
-        self._on_change({p.name: p.value for p in parameters})
+        own = _own(parameters)
+        if own:
+            self._values, self.parameters = self._merged(own)
+            self._on_change({p.name: p.value for p in own})
+
+
+def unused_overrides(node: Node, shared: frozenset[str]) -> list[str]:
+    """Which of the `shared` names are not parameters of `node`, which has all its topics.
+
+    Args:
+        node: the node.
+        shared: names that a parameter file gives to every node.
+
+    Raises:
+        LandingError: an override that is not shared is of the quality of service of no topic.
+    """
+    unused = [name for name in parameter_overrides(node) if not node.has_parameter(name)]
+    for name in unused:
+        if name.startswith(QOS_OVERRIDES) and name not in shared:
+            known = list(node.get_parameters_by_prefix(QOS_OVERRIDES.strip(".")))
+            raise unknown("ROS parameter", name, [f"{QOS_OVERRIDES}{n}" for n in known])
+    return [name for name in unused if name in shared]
+
+
+def _own(parameters: Sequence[Parameter[Any]]) -> list[Parameter[Any]]:
+    """The settings and quantities among `parameters`; others are rclpy's."""
+    return [p for p in parameters if p.name in SETTINGS or p.name in PARAMETER_QUANTITIES]
 
 
 def _vehicle(values: Mapping[str, Any], changes: Mapping[str, Any]) -> tuple[Parameters, str]:
@@ -204,10 +236,11 @@ def _vehicle(values: Mapping[str, Any], changes: Mapping[str, Any]) -> tuple[Par
         LandingError: There is no such preset, file or mode.
     """
     preset, file, mode = (values[n] or None for n in ("preset", "parameters_file", "mode"))
-    own = own_vehicle(Path(values["fmu"])) if preset is None and file is None else None
+    fmu = fmu_path(values["fmu"])
+    own = own_vehicle(fmu) if preset is None and file is None else None
     if own is None:
         return choose_parameters(preset, file, mode, changes), ""
-    return own.for_mode(mode or own.drop.mode).with_values(changes), values["fmu"]
+    return own.for_mode(mode or own.drop.mode).with_values(changes), str(fmu)
 
 
 def _constraints(choices: tuple[str, ...], when: str) -> str:

@@ -15,7 +15,7 @@ from rlv_landing.parameters import Parameters
 from ..messages import topics
 from ..messages.message_types import is_installed, message_class
 from ..messages.qos import CLOCK, LATCHED, Qos
-from ..messages.rclpy_qos import qos_profile
+from ..messages.rclpy_qos import create_publisher
 from ..messages.robot_description import robot_description, variables
 from ..messages.topics import Topic, resolve
 from .publish_queue import PublishQueue, TopicPublisher
@@ -25,14 +25,14 @@ from .publish_queue import PublishQueue, TopicPublisher
 class Publishing:
     """The publishers of a node by topic, the queue in front of them, and their topics' full names.
 
-    `names` also holds topics without a publisher, which are only recorded. `qos` is the quality of
-    service of what is published at every step.
+    `names` and `qos`, the quality of service that is offered, also hold topics without a publisher,
+    which are only recorded.
     """
 
     queue: PublishQueue
     publishers: Mapping[Topic, TopicPublisher]
     names: Mapping[Topic, str]
-    qos: Qos
+    qos: Mapping[Topic, Qos]
 
     def describe(self, parameters: Parameters) -> bytes:
         """Publishes the FMU's variables and the vehicle's description.
@@ -52,7 +52,16 @@ class Publishing:
 
 
 def create_publishing(node: Node, qos: Qos, *, clock: bool) -> Publishing:
-    """Creates the landing's publishers on `node`; `clock`: also that of `/clock`."""
+    """Creates the landing's publishers on `node`.
+
+    Args:
+        node: has the publishers; its parameters may override their quality of service.
+        qos: of what is published at every step.
+        clock: also create that of `/clock`.
+
+    Raises:
+        LandingError: an override of the quality of service is not valid.
+    """
     # A subscriber that waits for a match on `struts` finds the others matched: it comes last.
     others = reversed([t for t in topics.RECORDED if t not in topics.LATCHED])
     profiles = {**dict.fromkeys(topics.LATCHED, LATCHED), **dict.fromkeys(others, qos)}
@@ -65,6 +74,6 @@ def create_publishing(node: Node, qos: Qos, *, clock: bool) -> Publishing:
         names[topic] = resolve(node.get_namespace(), topic.name)
         if topic is not topics.TF or is_installed(topic.type_name):
             kind = message_class(topic.type_name)
-            publisher = node.create_publisher(kind, names[topic], qos_profile(profile))
+            publisher, profiles[topic] = create_publisher(node, kind, names[topic], profile)
             publishers[topic] = queue.add(TopicPublisher(publisher))
-    return Publishing(queue, publishers, names, qos)
+    return Publishing(queue, publishers, names, profiles)

@@ -20,6 +20,7 @@ from rlv_landing.presets import DEFAULT_PRESET
 from rlv_landing.quantities import Quantity
 from rlv_landing.text.values import to_si
 
+from ..fmu.installed import fmu_path
 from ..messages.qos import PROFILES
 from ..messages.topics import CLOCK, OCCASIONAL, SAMPLED, Topic
 
@@ -51,7 +52,7 @@ def downsampling_setting(topic: Topic) -> str:
 
 PUBLISHED: tuple[Topic, ...] = (*SAMPLED, *OCCASIONAL, CLOCK)
 SETTINGS: dict[str, Setting] = {
-    "fmu": Setting("build/RlvLanding.fmu", "the FMU to step"),
+    "fmu": Setting("", "the FMU to step; empty: that of this installation"),
     "preset": Setting(
         "",
         f"preset of parameters; empty: the FMU's own vehicle, else {DEFAULT_PRESET}",
@@ -109,6 +110,13 @@ SETTINGS: dict[str, Setting] = {
         0, "subscriptions on `struts` to wait for before the landing starts", 0.0, 1000.0
     ),
     "wait_timeout": Setting(30.0, "longest wait for them [s]", 0.0, 86400.0, unit="s"),
+    "start_delay": Setting(
+        0.0,
+        "wall time [s] for which the landing waits after that, while /clock stands",
+        0.0,
+        86400.0,
+        unit="s",
+    ),
     **{
         downsampling_setting(t): Setting(
             0,
@@ -141,6 +149,7 @@ class Settings:
     log_root: str
     wait_for_subscribers: int
     wait_timeout: float
+    start_delay: float
     every: Mapping[Topic, int] = field(default_factory=dict)
 
     @property
@@ -199,7 +208,7 @@ def make_settings(values: Mapping[str, Any], parameters: Parameters, origin: str
         )
     own = {t: max(1, round(t.period / values["step_size"])) for t in PUBLISHED}
     return Settings(
-        fmu=Path(values["fmu"]),
+        fmu=fmu_path(values["fmu"]),
         parameters=parameters,
         preset=origin or values["parameters_file"] or values["preset"] or DEFAULT_PRESET,
         realtime_factor=values["realtime_factor"],
@@ -210,6 +219,7 @@ def make_settings(values: Mapping[str, Any], parameters: Parameters, origin: str
         log_root=values["log_root"],
         wait_for_subscribers=values["wait_for_subscribers"],
         wait_timeout=values["wait_timeout"],
+        start_delay=values["start_delay"],
         every={t: values[downsampling_setting(t)] or own[t] for t in PUBLISHED},
     )
 

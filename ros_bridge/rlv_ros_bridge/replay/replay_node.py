@@ -28,16 +28,19 @@ from ..logs.reader import LogMessage
 from ..messages import topics as landing_topics
 from ..messages.message_types import message_class
 from ..messages.qos import CLOCK, parse_qos
-from ..messages.rclpy_qos import qos_profile
+from ..messages.rclpy_qos import create_publisher
 from ..messages.samples import set_stamp
 from ..node.pacer import lateness_percentiles
-from ..ros.setup import StopFlag, ros_context, wait_for_acknowledgement, wait_for_subscribers
+from ..node.parameters import unused_overrides
+from ..ros.setup import StopFlag, ros_context, wait_for_acknowledgement, wait_until_matched
 from .clock import ReplayClock
 from .keyboard import Keyboard
 from .restamp import Restamper
 from .selection import ReplayOptions, Selection
 from .waiting import ReplayWaits
 
+# Period of serving the node while it waits for its start [s].
+SERVE_SECONDS = 0.02
 BAR = "replay {percentage:3.0f}%|{bar}| {n:.2f}/{total:.2f} s [{elapsed}<{remaining}]{postfix}"
 
 
@@ -101,8 +104,8 @@ class ReplayNode(Node):
             name = selection.names[c.topic]
             if name not in publishers:
                 _check_name(name)
-                publishers[name] = self.create_publisher(
-                    message_class(c.type_name), name, qos_profile(parse_qos(c.qos))
+                publishers[name], _ = create_publisher(
+                    self, message_class(c.type_name), name, parse_qos(c.qos)
                 )
         self._publisher_of = {c.topic: publishers[selection.names[c.topic]] for c in channels}
         self._types = {c.topic: c.type_name for c in channels}
@@ -110,8 +113,8 @@ class ReplayNode(Node):
         self._clock_message = message_class(landing_topics.CLOCK.type_name)()
         self._clock_publisher = None
         if options.clock > 0.0:
-            self._clock_publisher = self.create_publisher(
-                type(self._clock_message), landing_topics.CLOCK.name, qos_profile(CLOCK)
+            self._clock_publisher, _ = create_publisher(
+                self, type(self._clock_message), landing_topics.CLOCK.name, CLOCK
             )
         self._lateness: list[float] = []
 
@@ -130,13 +133,7 @@ class ReplayNode(Node):
         It ends at the end of the selection, on a signal, or on the key q.
         """
         o, selection, stop = self._options, self._selection, self._stop
-        wait_for_subscribers(
-            self._publisher_of[self._match_topic],
-            o.wait_for_subscribers,
-            o.wait_timeout,
-            self._service_executor,
-            stop,
-        )
+        self._wait_for_start()
         played = rounds = 0
         # tqdm makes its lock on first use, which takes milliseconds.
         tqdm.get_lock()  # type: ignore[no-untyped-call]
@@ -177,6 +174,29 @@ class ReplayNode(Node):
             acknowledged=acknowledged,
             cut=selection.cut,
         )
+
+    def _wait_for_start(self) -> None:
+        """Waits for subscribers, and then for `start_delay`; meanwhile `/clock` stands.
+
+        Raises:
+            LandingError: there are not enough subscribers in time.
+        """
+        o = self._options
+
+        def interrupted() -> bool:
+            self._publish_clock(self._selection.first)
+            self._service_executor.spin_once(SERVE_SECONDS)
+            return bool(self._stop)
+
+        wait_until_matched(
+            self._publisher_of[self._match_topic],
+            o.wait_for_subscribers,
+            o.wait_timeout,
+            interrupted,
+        )
+        end = time.monotonic() + o.start_delay
+        while time.monotonic() < end and not interrupted():
+            continue
 
     def _play_round(
         self, messages: Generator[LogMessage, None, None], epoch: int
@@ -228,7 +248,8 @@ class ReplayNode(Node):
 
     def _publish_clock(self, nanoseconds: int) -> None:
         if self._clock_publisher is not None:
-            set_stamp(self._clock_message.clock, nanoseconds)
+            # to ROS a clock at 0 has not started
+            set_stamp(self._clock_message.clock, max(1, nanoseconds))
             self._clock_publisher.publish(serialize_message(self._clock_message))
 
     def destroy_node(self) -> None:
@@ -274,9 +295,10 @@ def replay(options: ReplayOptions, ros_args: Sequence[str], stop: StopFlag) -> R
     for topic, kind in selection.left_out.items():
         warning = f"warning: {topic} is left out: its type {kind} is not installed here"
         print(one_line(warning), file=sys.stderr)
-    with ros_context(ros_args), Keyboard() as keyboard:
+    with ros_context(ros_args) as shared, Keyboard() as keyboard:
         node = ReplayNode(selection, options, keyboard, stop)
         try:
+            unused_overrides(node, shared)
             return node.play()
         finally:
             node.destroy_node()

@@ -24,9 +24,9 @@ MOST_KEPT, MESSAGE_BYTES = 32 * 1024 * 1024, 200
 class ReplayOptions:
     """The options of a replay.
 
-    Times are in s of the log, `wait_timeout` in s of wall time. `rate` is seconds of the log per
-    second. `clock` is the rate of /clock in Hz of wall time; 0: no /clock. `remap` holds texts
-    OLD:=NEW.
+    Times are in s of the log, `wait_timeout` and `start_delay` in s of wall time. `rate` is seconds
+    of the log per second. `clock` is the rate of /clock in Hz of wall time; 0: no /clock. `remap`
+    holds texts OLD:=NEW.
     """
 
     path: Path
@@ -40,6 +40,7 @@ class ReplayOptions:
     clock: float = 0.0
     wait_for_subscribers: int = 0
     wait_timeout: float = 30.0
+    start_delay: float = 0.0
 
     def check(self) -> None:
         """Checks every value against its bounds.
@@ -53,6 +54,7 @@ class ReplayOptions:
             ("--clock", self.clock, "Hz", 0.0, 1e4),
             ("--wait-for-subscribers", float(self.wait_for_subscribers), "", 0.0, 1e3),
             ("--wait-timeout", self.wait_timeout, "s", 0.0, 86400.0),
+            ("--start-delay", self.start_delay, "s", 0.0, 86400.0),
         ):
             if not (lo <= value <= hi and math.isfinite(value)):
                 raise LandingError(

@@ -8,15 +8,15 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from types import FrameType, TracebackType
 from typing import TYPE_CHECKING, Any
 
 from rlv_landing.errors import LandingError, reason_of
-from rlv_landing.signals.handlers import Handlers
+from rlv_landing.signals.handlers import SignalNote
 from rlv_landing.text.files import read_text
 
+from .parameter_files import shared_names
+
 if TYPE_CHECKING:
-    from rclpy.executors import Executor
     from rclpy.publisher import Publisher
 
 # Longest wait for acknowledgements [s]. Fast DDS asks its readers for them every 3 s.
@@ -27,39 +27,14 @@ SIGNAL_POLL_SECONDS = 0.05
 MATCH_POLL_SECONDS = 0.01
 
 
-class StopFlag:
-    """Notes SIGINT, SIGTERM and SIGHUP while it is entered: the loop ends after a whole step.
-
-    `number` is the number of the first signal, or 0.
-    """
-
-    def __init__(self) -> None:
-        self.number = 0
-        self._handlers = Handlers(self._note)
-
-    def __bool__(self) -> bool:
-        return self.number != 0
+class StopFlag(SignalNote):
+    """Notes the signals that end a command: the loop that looks at it ends after a whole step."""
 
     def wait(self, seconds: float) -> None:
         """Waits for a signal, at most `seconds` [s]."""
         end = time.monotonic() + seconds
         while not self.number and time.monotonic() < end:
             time.sleep(min(seconds, SIGNAL_POLL_SECONDS))
-
-    def _note(self, number: int, _frame: FrameType | None) -> None:
-        self.number = self.number or number
-
-    def __enter__(self) -> StopFlag:
-        self._handlers.set()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._handlers.restore()
 
 
 def require_ros() -> None:
@@ -79,8 +54,10 @@ def require_ros() -> None:
 
 
 @contextmanager
-def ros_context(args: Sequence[str] = ()) -> Iterator[Any]:
+def ros_context(args: Sequence[str] = ()) -> Iterator[frozenset[str]]:
     """Starts rclpy with `args` (`--ros-args ...`), and shuts it down at the end.
+
+    It gives the names of parameters that files give to every node, see `shared_names`.
 
     Raises:
         LandingError: ROS 2 is missing, or it does not accept `args`.
@@ -94,8 +71,9 @@ def ros_context(args: Sequence[str] = ()) -> Iterator[Any]:
             rclpy.init(args=["rlv-landing", *own], signal_handler_options=SignalHandlerOptions.NO)
         except Exception as e:
             raise LandingError(f"ROS 2 does not start: {reason_of(e)}") from None
+        shared = shared_names(own)
     try:
-        yield rclpy
+        yield shared
     finally:
         rclpy.try_shutdown()
 
@@ -129,29 +107,6 @@ def _ensure_log_folder() -> None:
         os.environ["ROS_LOG_DIR"] = str(
             Path(tempfile.gettempdir()) / f"rlv-landing-ros-log-{os.getuid()}"
         )
-
-
-def wait_for_subscribers(
-    publisher: Publisher[Any], count: int, timeout: float, executor: Executor, stop: StopFlag
-) -> None:
-    """Spins `executor` until `count` subscriptions are matched, or a signal came.
-
-    Args:
-        publisher: the publisher of the topic.
-        count: subscriptions to wait for.
-        timeout: longest wait [s].
-        executor: spun while waiting.
-        stop: ends the wait.
-
-    Raises:
-        LandingError: there are fewer after `timeout`.
-    """
-
-    def interrupted() -> bool:
-        executor.spin_once(timeout_sec=0.02)
-        return bool(stop)
-
-    wait_until_matched(publisher, count, timeout, interrupted)
 
 
 def wait_until_matched(

@@ -27,11 +27,13 @@ from ..ros.setup import StopFlag, ros_context
 from ..ros.spinner import Spinner
 from .rerun_scene import AUXILIARY, BODY, MAIN, Scene
 
-WATCHED: tuple[Topic, ...] = (STRUTS, RPY, TWIST, *CONTACTS)
-# Best effort, so that the viewer never delays the landing. One second of messages may wait.
-QOS = Qos(reliability="best_effort", depth=1000)
+# `struts` last: a node that waits for a subscriber of it finds the others matched.
+WATCHED: tuple[Topic, ...] = (RPY, TWIST, *CONTACTS, STRUTS)
+# Reliable: what is sent before the viewer has found its sender comes all the same. Five seconds of
+# messages may wait. A viewer that takes none does not delay the landing.
+QOS = Qos(depth=5000)
 # Samples that lack a topic are dropped when a sample is newer by this [ns].
-LONGEST_GAP = 100_000_000
+LONGEST_GAP = 2_000_000_000
 # Period of drawing [s], and of checking for signals [s].
 DRAW_SECONDS, POLL_SECONDS = 0.05, 0.1
 NO_CONTACT = dict.fromkeys(
@@ -61,7 +63,7 @@ class LiveScenes:
         self._rows: dict[int, dict[str, float]] = {}
         self._markers: list[tuple[int, Any]] = []
         self._forces = NO_CONTACT
-        for topic in (*WATCHED, MARKERS):
+        for topic in (MARKERS, *WATCHED):
             callback = self._receive_markers if topic is MARKERS else self._row_callback(topic)
             node.create_subscription(
                 message_class(topic.type_name),
@@ -70,7 +72,7 @@ class LiveScenes:
                 qos_profile(QOS),
             )
         self._parameters = AsyncParameterClient(node, resolve(namespace, "landing_node"))
-        node.create_timer(DRAW_SECONDS, self._draw)
+        node.create_timer(DRAW_SECONDS, self.draw)
 
     def _row_callback(self, topic: Topic) -> Callable[[Any], None]:
         names, reading = READINGS[topic.name]
@@ -83,14 +85,16 @@ class LiveScenes:
     def _receive_markers(self, message: Any) -> None:
         stamp = stamp_of(message.markers[0].header)
         if stamp < self._last_stamp or self.scene is None:
-            self._draw()
+            self.draw()
+            if self.scene is not None:
+                # what is left of the landing before
+                self._rows = {t: row for t, row in self._rows.items() if t <= stamp}
             try:
                 self.scene = Scene(mode_of(message))
                 self._on_scene(self.scene)
             except LandingError as e:
                 self.failure = e
                 return
-            self._rows = {t: row for t, row in self._rows.items() if t <= stamp}
             self._request_slope(self.scene)
         self._last_stamp = stamp
         self._markers.append((stamp, message))
@@ -105,14 +109,16 @@ class LiveScenes:
 
             self._parameters.get_parameters(["ground.slope"]).add_done_callback(draw_ground)
 
-    def _draw(self) -> None:
+    def draw(self) -> None:
+        """Draws what has been received since the last time."""
+        oldest = max(self._rows, default=0) - LONGEST_GAP
+        if self.scene is None:
+            self._rows = {t: row for t, row in self._rows.items() if t > oldest}
+            return
         complete = {
             t: row for t, row in sorted(self._rows.items()) if len(row) == self._column_count
         }
-        oldest = max(self._rows, default=0) - LONGEST_GAP
         self._rows = {t: row for t, row in self._rows.items() if t not in complete and t > oldest}
-        if self.scene is None:
-            return
         if complete:
             rows = list(complete.values())
             time = np.array(list(complete)) / NANOSECONDS
@@ -160,13 +166,15 @@ def watch(
     Raises:
         LandingError: ROS 2 is missing, or markers that are no landing's.
     """
-    with ros_context() as rclpy:
-        node = rclpy.create_node("landing_view")
+    with ros_context():
+        node = Node("landing_view")
         scenes = LiveScenes(node, namespace, on_scene)
         try:
-            with Spinner(node):
+            with Spinner(node) as spinner:
                 while not stop and keep_running() and scenes.failure is None:
                     stop.wait(POLL_SECONDS)
+                # what has come and waits
+                spinner.call(scenes.draw)
         finally:
             node.destroy_node()
         if scenes.failure is not None:

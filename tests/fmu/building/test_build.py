@@ -117,3 +117,18 @@ def test_the_fronts_declarations_of_python_are_those_of_its_limited_api(binary, 
     includes = [f"-I{sysconfig.get_path('include')}", str(source)]
     done = subprocess.run([*command, *includes], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
+
+
+def test_make_builds_the_fmu_anew_when_a_file_that_it_is_made_of_changes():
+    """The Makefile reads the lists of `fmu_build/sources.py`."""
+    from fmu_build.sources import FOLDERS, MODULES, PACKAGE
+
+    database = subprocess.run(
+        ["make", "-pnq", "build/RlvLanding.fmu"], cwd=ROOT, capture_output=True, text=True
+    ).stdout
+    files = [PACKAGE / name for name in MODULES]
+    files += [file for folder in FOLDERS for file in (PACKAGE / folder).rglob("*.py")]
+    files += (ROOT / "fmu_src" / "fmu_front").glob("*.*")
+    for fmu in ("RlvLanding.fmu", "RlvLanding3.fmu"):
+        (needs,) = re.findall(rf"^build/{fmu}: (.*)$", database, re.M)
+        assert {file.relative_to(ROOT).as_posix() for file in files} - set(needs.split()) == set()

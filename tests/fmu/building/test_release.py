@@ -162,7 +162,7 @@ def test_the_front_under_address_sanitizer_lands_without_a_word(unpacked, binary
     binary.compile_front(front, header, Compiler(("gcc",), (*flags, "-g")))
     program = tmp_path / "land"
     sources = ["-std=gnu11", "-isystem", HEADERS, "-o", program, HOSTS / "land.c"]
-    subprocess.run(["gcc", *flags, *sources, "-ldl", "-lpthread"], check=True)
+    subprocess.run(["gcc", *flags, *sources, "-ldl", "-lm", "-lpthread"], check=True)
     done = run([str(program), str(front), *numbers(fmu)], ASAN_OPTIONS="detect_leaks=0")
     assert done.stderr == ""
     assert_landed(done)

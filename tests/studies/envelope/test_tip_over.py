@@ -7,29 +7,16 @@ from math import atan, cos, radians, sin, tan
 import pytest
 from pytest import approx
 
-from rlv_landing import Landing, Parameters, load_preset
+from rlv_landing import Landing, Parameters
 from rlv_landing.studies.envelope.judged_landing import judged_landing
 from rlv_landing.studies.envelope.search import envelope
 from rlv_landing.studies.envelope.study import Axis, EnvelopeStudy
-from rlv_landing.studies.envelope.tip_over import LOCKED, RigidBlock
+from rlv_landing.studies.envelope.tip_over import RigidBlock, locked_vehicle
 from rlv_landing.studies.outcome import outcome
 from rlv_landing.studies.whole_landing import whole_landing
 
 V = "drop.horizontal_velocity"
 BLOCK = RigidBlock(194.8, 290.0, 1.0, 1.96, 9.81)
-
-
-def locked(mode: str = "2-2", **values: float) -> Parameters:
-    start = {
-        "drop.contact_time": 0.0,
-        "drop.pitch_rate": 0.0,
-        "drop.tilt": 0.0,
-        "drop.vertical_velocity": -0.5,
-        "drop.horizontal_velocity": 0.0,
-    }
-    return load_preset("yue2022-figures", mode).with_values(
-        {**LOCKED, **start, **{n.replace("__", "."): v for n, v in values.items()}}
-    )
 
 
 def higher(by: float) -> dict[str, float]:
@@ -78,17 +65,17 @@ def test_the_block_is_its_own_mirror_image():
 @pytest.mark.parametrize(
     ("parameters", "tolerance"),
     [
-        (locked(), 0.02),
-        (locked(drop__tilt=0.2), 0.02),
-        (locked(drop__tilt=0.1, drop__vertical_velocity=-1.4), 0.02),
-        (locked(ground__slope=0.1, drop__tilt=0.2), 0.02),
-        (locked(**higher(-0.5), drop__tilt=0.05), 0.02),
-        (locked(**higher(0.5), drop__tilt=0.05), 0.02),
-        (locked(**higher(1.0), ground__slope=0.05, drop__tilt=0.1), 0.02),
-        (locked("1-2-1", drop__tilt=0.05), 0.02),
-        (locked("1-2-1", ground__slope=0.1, drop__tilt=0.1), 0.02),
+        (locked_vehicle(), 0.02),
+        (locked_vehicle(drop__tilt=0.2), 0.02),
+        (locked_vehicle(drop__tilt=0.1, drop__vertical_velocity=-1.4), 0.02),
+        (locked_vehicle(ground__slope=0.1, drop__tilt=0.2), 0.02),
+        (locked_vehicle(**higher(-0.5), drop__tilt=0.05), 0.02),
+        (locked_vehicle(**higher(0.5), drop__tilt=0.05), 0.02),
+        (locked_vehicle(**higher(1.0), ground__slope=0.05, drop__tilt=0.1), 0.02),
+        (locked_vehicle("1-2-1", drop__tilt=0.05), 0.02),
+        (locked_vehicle("1-2-1", ground__slope=0.1, drop__tilt=0.1), 0.02),
         # the trailing feet strike in the same instant, hard enough to take part before they lift
-        (locked(ground__slope=0.1, drop__tilt=0.1, drop__vertical_velocity=-1.4), 0.04),
+        (locked_vehicle(ground__slope=0.1, drop__tilt=0.1, drop__vertical_velocity=-1.4), 0.04),
     ],
 )
 def test_the_critical_speed_of_the_locked_vehicle_is_the_blocks(parameters, tolerance):
@@ -103,12 +90,12 @@ def test_the_critical_speed_of_the_locked_vehicle_is_the_blocks(parameters, tole
     ("parameters", "speeds"),
     [
         # the trailing feet strike first, and the vehicle slaps down on the leading ones
-        (locked(drop__tilt=-0.1), (-4.0, 2.5, 4.2)),
+        (locked_vehicle(drop__tilt=-0.1), (-4.0, 2.5, 4.2)),
         # uphill: one that does not get over its leading feet swings back and topples over the
         # others
-        (locked(ground__slope=-0.1), (-3.3, 2.5, 3.3)),
-        (locked("1-2-1", drop__tilt=-0.1), (-3.3, 5.0)),
-        (locked("1-2-1", ground__slope=-0.1), (-4.1, 4.2)),
+        (locked_vehicle(ground__slope=-0.1), (-3.3, 2.5, 3.3)),
+        (locked_vehicle("1-2-1", drop__tilt=-0.1), (-3.3, 5.0)),
+        (locked_vehicle("1-2-1", ground__slope=-0.1), (-4.1, 4.2)),
     ],
 )
 def test_the_locked_vehicle_swings_from_foot_to_foot_as_the_block_does(parameters, speeds):
@@ -122,7 +109,7 @@ def test_the_locked_vehicle_swings_from_foot_to_foot_as_the_block_does(parameter
 def test_the_envelopes_boundary_of_the_locked_vehicle_is_the_blocks():
     """Found by the envelope's own refinement and bisection, in speed and tilt."""
     study = EnvelopeStudy(
-        locked(),
+        locked_vehicle(),
         Axis(V, 1.7, 3.5, 0.06),
         Axis("drop.tilt", radians(0.5), radians(8.0), radians(1.0)),
         cells=2,
@@ -138,7 +125,7 @@ def test_the_envelopes_boundary_of_the_locked_vehicle_is_the_blocks():
 
 def test_at_rest_on_a_slope_it_topples_where_the_tangent_passes_half_track_over_height():
     """Stiff ground, that it does not rock when let go."""
-    parameters = locked(ground__stiffness=1e8, drop__vertical_velocity=-1e-3)
+    parameters = locked_vehicle(ground__stiffness=1e8, drop__vertical_velocity=-1e-3)
     tipping = tan(RigidBlock.of(parameters).tipping_slope)
     for part, name in ((0.99, "settled or moving"), (1.005, "toppled")):
         slope = atan(part * tipping)
@@ -153,7 +140,7 @@ def test_at_rest_on_a_slope_it_topples_where_the_tangent_passes_half_track_over_
 @pytest.mark.parametrize("mode", ["2-2", "1-2-1"])
 @pytest.mark.parametrize("friction", [0.1, 0.3])
 def test_at_rest_on_a_slope_it_slides_where_the_tangent_passes_the_friction(mode, friction):
-    parameters = locked(mode, ground__friction=friction, drop__vertical_velocity=-1e-3)
+    parameters = locked_vehicle(mode, ground__friction=friction, drop__vertical_velocity=-1e-3)
     for part, name in ((0.99, "settled"), (1.01, "slid")):
         slope = atan(part * friction)
         history = whole_landing(

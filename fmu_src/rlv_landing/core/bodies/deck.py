@@ -46,7 +46,17 @@ def ground_axes(turn: DeckTurn, p: SpatialModel) -> Rotation:
     down = on_deck(Vector(p.down_x, p.down_y, p.down_z), turn)
     normal = on_deck(Vector(p.normal_x, p.normal_y, p.normal_z), turn)
     along = on_deck(Vector(p.along_x, 0.0, p.along_z), turn)
-    return Rotation(down.x, down.y, down.z, normal.x, normal.y, normal.z, along.x, along.y, along.z)
+    return Rotation(
+        x_x=down.x,
+        x_y=down.y,
+        x_z=down.z,
+        y_x=normal.x,
+        y_y=normal.y,
+        y_z=normal.z,
+        z_x=along.x,
+        z_y=along.y,
+        z_z=along.z,
+    )
 
 
 def deck_spin(u: SpatialInputs, turn: DeckTurn) -> Vector:

@@ -1,4 +1,4 @@
-"""The planar body's own."""
+"""Records of the planar body: attitude, foot points, loads, accelerations and held energy."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""The solvers' own."""
+"""Records of the solvers: stiff pairs of states, their weights, bends and crests of quantities."""
 
 from typing import NamedTuple
 

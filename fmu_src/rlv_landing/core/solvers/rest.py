@@ -101,7 +101,7 @@ class Rest(Watch):
             False where there is no rest, or it is too far away.
         """
         self._inputs_at(self.t)
-        step = self._go_far(y)
+        step = self._probe_step(y)
         if step < NEARER * self.nearest:
             self.nearest = step
             self.still = 0
@@ -114,11 +114,11 @@ class Rest(Watch):
                 return False
             if step <= LEFT:
                 return True
-            step = self._go_far(y)
+            step = self._probe_step(y)
             way += step
         return way <= near and step <= LEFT
 
-    def _go_far(self, y: Doubles) -> float:
+    def _probe_step(self, y: Doubles) -> float:
         """Take a probe's step from the state `y`; return how far [m] it leads."""
         f0, shift, a = data(self._f0), data(self._shift), data(self._matrix)
         m = self.system.controlled

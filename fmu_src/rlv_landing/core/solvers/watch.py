@@ -13,8 +13,8 @@ from math import fabs, inf
 from ..bodies.system import System
 from ..memory import Buffer, Doubles, copy, data
 from ..records import Bend
-from .bend import LEVEL, expected, mark_turns, narrowed, where_to_look
 from .path import Path
+from .turning_points import LEVEL, expected, mark_turns, narrowed, where_to_look
 
 # a crest is no higher above the middle of a bend than so many times its higher side
 REACH = 2.0

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from math import atan2, cos, hypot, sin, sqrt
 
 from ...parameters import Parameters
+from ...presets import load_preset
 from ...quantities import azimuth, groups_of
 from ...touchdown import footpad_at_rest
 
@@ -46,7 +47,26 @@ LOCKED: dict[str, float | str] = {
     "ground.stribeck_gain": 0.0,
     "ground.stick_damping": 1e4,
 }
+# upright, sinking at 0.5 m/s, at the contact
+START = {
+    "drop.contact_time": 0.0,
+    "drop.pitch_rate": 0.0,
+    "drop.tilt": 0.0,
+    "drop.vertical_velocity": -0.5,
+    "drop.horizontal_velocity": 0.0,
+}
 AT_REST = 1e-6
+
+
+def locked_vehicle(mode: str = "2-2", **values: float) -> Parameters:
+    """The vehicle of the preset yue2022-figures with locked legs, upright and at 0.5 m/s downward.
+
+    Args:
+        mode: The landing mode.
+        values: Other parameters by name [SI], with `__` for the dot: `drop__tilt`.
+    """
+    given = {name.replace("__", "."): value for name, value in values.items()}
+    return load_preset("yue2022-figures", mode).with_values({**LOCKED, **START, **given})
 
 
 @dataclass(frozen=True)

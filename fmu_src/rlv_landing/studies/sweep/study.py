@@ -17,7 +17,7 @@ from ...effort import duration_text
 from ...errors import LandingError, unknown
 from ...parameters import PARAMETER_QUANTITIES, Parameters
 from ...presets import to_toml
-from ...quantities import MODES, Quantity
+from ...quantities import MODES, Quantity, groups_of
 from ...text.files import LARGEST_INTEGER
 from .. import toml_keys
 from ..limits import LIMITS
@@ -249,6 +249,7 @@ def _parameters(
 def _modes(
     keys: Mapping[str, Any], parameters: Parameters, given: Collection[str]
 ) -> tuple[str, ...]:
+    groups_of(parameters.drop.mode)
     modes = toml_keys.texts(keys, "modes")
     if "drop.mode" in given:
         if modes is not None:

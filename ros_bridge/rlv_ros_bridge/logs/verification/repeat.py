@@ -9,9 +9,9 @@ from typing import Any
 
 from rlv_landing import Landing, Parameters
 from rlv_landing.errors import LandingError
-from rlv_landing.quantities import OUTPUT_NAMES
 from rlv_landing.text.units import parse_number
 
+from ...messages.fields import FIELDS
 from ...messages.inputs import READINGS
 from ...messages.topics import APPLIED, resolve
 from ...messages.wire import NANOSECONDS
@@ -20,6 +20,8 @@ from ..reader import Decoder, LogReader
 
 # Inputs by the number of the sample from which on they act.
 Inputs = dict[int, list[dict[str, float]]]
+# An FMU that repeats a run has these, and may be of an older version, which lacks other quantities.
+NEEDED = frozenset(output for field in FIELDS for output in field.outputs)
 
 
 class RepeatedRun:
@@ -65,12 +67,13 @@ class RepeatedRun:
     def peaks(self) -> dict[str, tuple[float, float]]:
         """Value [SI] and time [s] of each peak until the last of `samples`, by `peak.OUTPUT.SIDE`.
 
+        Those that an FMU of an older version lacks are left out.
         Only while `samples` is not closed.
         """
         return self._peaks()
 
     def samples(self) -> Generator[dict[str, float], None, None]:
-        """All outputs by name at 0, one step, two steps, and so on without end.
+        """The model's outputs by name at 0, one step, two steps, and so on without end.
 
         The inputs act at their times, those at 0 before the first sample.
         """
@@ -85,10 +88,10 @@ class RepeatedRun:
             return
         from ...fmu.runner import FmuRunner
 
-        with FmuRunner(self._fmu, dict(self.parameters.items())) as runner:
+        with FmuRunner(self._fmu, dict(self.parameters.items()), NEEDED) as runner:
             self._peaks = runner.peaks
             yield from self._samples(
-                lambda: dict(zip(OUTPUT_NAMES, runner.values())),
+                lambda: dict(zip(runner.output_names, runner.values())),
                 runner.set_inputs,
                 lambda k: runner.step(k, self.step),
             )

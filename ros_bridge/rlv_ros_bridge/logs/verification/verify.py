@@ -144,6 +144,8 @@ class _Comparison:
             k += 1
         repeated = run.peaks()
         for name, (value, time) in recorded.items():
+            if f"peak.{name}" not in repeated:
+                continue  # of a version of the FMU before this peak
             expected, expected_time = repeated[f"peak.{name}"]
             found.peaks += 1
             if (value, time) == (expected, expected_time):
