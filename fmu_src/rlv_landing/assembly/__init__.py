@@ -1,6 +1,12 @@
 """The kernels' vehicle, and its state at the start, from the user's parameters."""
 
-from .legs import LEG_SCALE, leg_model, touchdown_energy
+from .legs import (
+    LEG_SCALE,
+    bearing_nothing_at_rest,
+    leg_model,
+    tangential_stiffness,
+    touchdown_energy,
+)
 from .planar import (
     BODY_SCALE,
     body_model,
@@ -16,6 +22,7 @@ from .start import begin, landing_system, new_solver
 __all__ = [
     "BODY_SCALE",
     "LEG_SCALE",
+    "bearing_nothing_at_rest",
     "begin",
     "body_model",
     "ground_motion",
@@ -27,5 +34,6 @@ __all__ = [
     "planar_start",
     "planar_system",
     "spatial_system",
+    "tangential_stiffness",
     "touchdown_energy",
 ]

@@ -7,10 +7,10 @@ from math import ceil, cos, sin, sqrt
 from typing import NamedTuple
 
 from ..core import LegPlace, SpatialInputs, SpatialModel, SpatialState
-from ..core.bodies.deck import deck_of
+from ..core.bodies.deck import deck_turn, from_origin, ground_axes
 from ..core.bodies.spatial_legs import cg_of, in_leg
 from ..core.records import Rotation, Vector
-from ..core.vectors import added, cross, dot, less, rotation, scaled, to_body, to_inertial
+from ..core.vectors import added, cross, dot, less, rotation, scaled, solved, to_body, to_inertial
 from ..errors import LandingError
 from ..parameters import Parameters
 from ..touchdown import DEPTH_LIMIT, STEEPEST, footpad_at_rest
@@ -87,7 +87,7 @@ class SpatialFlight:
         velocity = Vector(drop.horizontal_velocity, drop.vertical_velocity, drop.lateral_velocity)
         center = to_inertial(turn, self._center)
         self._velocity = added(velocity, to_inertial(turn, cross(spin, self._center)))
-        up = deck_of(deck.at(self._duration), body).normal.y
+        up = ground_axes(deck_turn(deck.at(self._duration)), body).y_y
         if up < cos(STEEPEST):
             raise LandingError(
                 f"the ground's normal is {up:.3g} upwards at the first contact, "
@@ -98,9 +98,10 @@ class SpatialFlight:
 
     def _clearance(self, cg: Vector, turn: Rotation, t: float) -> float:
         """Height [m] of the lowest footpad above the ground at time `t` [s], along its normal."""
-        deck = deck_of(self._deck.at(t), self._body)
-        above = less(cg, deck.origin)
-        return min(dot(added(above, to_inertial(turn, foot)), deck.normal) for foot in self._feet)
+        deck = self._deck.at(t)
+        axes, above = ground_axes(deck_turn(deck), self._body), from_origin(deck, cg)
+        places = (added(above, to_inertial(turn, foot)) for foot in self._feet)
+        return min(to_body(axes, place).y for place in places)
 
     def start(self) -> SpatialState:
         """The body's state at time 0.
@@ -161,7 +162,7 @@ class SpatialFlight:
             0.5 * (w * s.z + x * s.y - y * s.x),
         )
         momentum = Vector(*(dot(row, s) for row in self._inertia))
-        return Tumbling(q, _solved(self._inertia, scaled(cross(s, momentum), -1.0)))
+        return Tumbling(q, solved(*self._inertia, scaled(cross(s, momentum), -1.0)))
 
 
 def attitude(tilt: float, roll: float, heading: float) -> Quaternion:
@@ -206,11 +207,3 @@ def _whole_inertia(
             rows[i][i] += mass * dot(d, d)
     a, b, c = (Vector(*row) for row in rows)
     return a, b, c
-
-
-def _solved(a: Tensor, b: Vector) -> Vector:
-    """Solve a x = b by Cramer's rule: `a` is symmetric and positive."""
-    c1, c2, c3 = cross(a[1], a[2]), cross(a[2], a[0]), cross(a[0], a[1])
-    determinant = dot(a[0], c1)
-    total = added(added(scaled(c1, b.x), scaled(c2, b.y)), scaled(c3, b.z))
-    return scaled(total, 1.0 / determinant)

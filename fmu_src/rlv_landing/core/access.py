@@ -17,6 +17,7 @@ from .records import (
     BodyModel,
     BodyOutputs,
     BodyState,
+    DeckTurn,
     EnergyOutputs,
     FootLoads,
     Inputs,
@@ -29,6 +30,7 @@ from .records import (
     LegStatus,
     PhiWeights,
     PlanarLoads,
+    Rotation,
     SpatialAttitude,
     SpatialInputs,
     SpatialLoads,
@@ -53,6 +55,8 @@ SPATIAL_STATE = len(SpatialState._fields)
 SPATIAL_INPUTS = len(SpatialInputs._fields)
 SPATIAL_LOADS = len(SpatialLoads._fields)
 SPATIAL_ATTITUDE = len(SpatialAttitude._fields)
+ROTATION = len(Rotation._fields)
+DECK_TURN = len(DeckTurn._fields)
 STIFF_PAIR = len(StiffPair._fields)
 PHI_WEIGHTS = len(PhiWeights._fields)
 BODY_OUTPUTS = len(BodyOutputs._fields)
@@ -167,6 +171,16 @@ def spatial_loads_of(kept: Records[SpatialLoads], i: int) -> SpatialLoads:
 
 
 def spatial_attitude_of(kept: Records[SpatialAttitude], i: int) -> SpatialAttitude:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def rotation_of(kept: Records[Rotation], i: int) -> Rotation:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def deck_turn_of(kept: Records[DeckTurn], i: int) -> DeckTurn:
     """The `i`-th record of those kept."""
     return kept[i]
 

@@ -69,3 +69,12 @@ def to_body(r: Rotation, v: Vector) -> Vector:
         r.y_x * v.x + r.y_y * v.y + r.y_z * v.z,
         r.z_x * v.x + r.z_y * v.y + r.z_z * v.z,
     )
+
+
+def solved(x: Vector, y: Vector, z: Vector, right: Vector) -> Vector:
+    """The vector whose products with `x`, `y`, `z` are `right`, by Cramer's rule."""
+    by_x = cross(y, z)
+    by_y = cross(z, x)
+    by_z = cross(x, y)
+    total = added(added(scaled(by_x, right.x), scaled(by_y, right.y)), scaled(by_z, right.z))
+    return scaled(total, 1.0 / dot(x, by_x))

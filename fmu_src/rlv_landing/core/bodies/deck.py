@@ -4,64 +4,82 @@ from __future__ import annotations
 
 from math import cos, sin
 
-from ..records import Deck, FootMotion, SpatialInputs, SpatialModel, Vector
-from ..vectors import added, cross, dot, less
+from ..records import DeckTurn, FootMotion, Rotation, SpatialInputs, SpatialModel, Vector
+from ..vectors import added, cross, less, to_body
 
 
-def on_deck(v: Vector, u: SpatialInputs) -> Vector:
+def deck_turn(u: SpatialInputs) -> DeckTurn:
+    """The deck's angles at the inputs `u`."""
+    return DeckTurn(
+        yaw=u.yaw,
+        roll=u.roll,
+        tilt=u.tilt,
+        sin_y=sin(u.yaw),
+        cos_y=cos(u.yaw),
+        sin_r=sin(u.roll),
+        cos_r=cos(u.roll),
+        sin_t=sin(u.tilt),
+        cos_t=cos(u.tilt),
+    )
+
+
+def is_turn_at(turn: DeckTurn, u: SpatialInputs) -> bool:
+    """Whether the deck's angles are those at the inputs `u`."""
+    return turn.yaw == u.yaw and turn.roll == u.roll and turn.tilt == u.tilt
+
+
+def on_deck(v: Vector, turn: DeckTurn) -> Vector:
     """A vector of the deck's axes in inertial axes.
 
     The deck is turned by its yaw about y, then by its roll about x, then clockwise by its tilt
     about z.
     """
-    s = sin(u.yaw)
-    c = cos(u.yaw)
-    x = c * v.x + s * v.z
-    z = c * v.z - s * v.x
-    s = sin(u.roll)
-    c = cos(u.roll)
-    y = c * v.y - s * z
-    z = s * v.y + c * z
-    s = sin(u.tilt)
-    c = cos(u.tilt)
-    return Vector(c * x + s * y, c * y - s * x, z)
+    x = turn.cos_y * v.x + turn.sin_y * v.z
+    yawed = turn.cos_y * v.z - turn.sin_y * v.x
+    y = turn.cos_r * v.y - turn.sin_r * yawed
+    z = turn.sin_r * v.y + turn.cos_r * yawed
+    return Vector(turn.cos_t * x + turn.sin_t * y, turn.cos_t * y - turn.sin_t * x, z)
 
 
-def deck_spin(u: SpatialInputs) -> Vector:
+def ground_axes(turn: DeckTurn, p: SpatialModel) -> Rotation:
+    """The ground's axis 1, its normal and its axis 2."""
+    down = on_deck(Vector(p.down_x, p.down_y, p.down_z), turn)
+    normal = on_deck(Vector(p.normal_x, p.normal_y, p.normal_z), turn)
+    along = on_deck(Vector(p.along_x, 0.0, p.along_z), turn)
+    return Rotation(
+        x_x=down.x,
+        x_y=down.y,
+        x_z=down.z,
+        y_x=normal.x,
+        y_y=normal.y,
+        y_z=normal.z,
+        z_x=along.x,
+        z_y=along.y,
+        z_z=along.z,
+    )
+
+
+def deck_spin(u: SpatialInputs, turn: DeckTurn) -> Vector:
     """Angular velocity of the deck [rad/s], inertial axes."""
-    s = sin(u.roll)
-    c = cos(u.roll)
     # the yaw's axis is tilted and rolled, the roll's is tilted
     x = u.roll_rate
-    y = c * u.yaw_rate
-    z = s * u.yaw_rate
-    s = sin(u.tilt)
-    c = cos(u.tilt)
-    return Vector(c * x + s * y, c * y - s * x, z - u.tilt_rate)
+    y = turn.cos_r * u.yaw_rate
+    z = turn.sin_r * u.yaw_rate
+    return Vector(turn.cos_t * x + turn.sin_t * y, turn.cos_t * y - turn.sin_t * x, z - u.tilt_rate)
 
 
-def deck_of(u: SpatialInputs, p: SpatialModel) -> Deck:
-    """The ground at the inputs `u`."""
-    return Deck(
-        origin=Vector(u.surge, u.heave, u.sway),
-        velocity=Vector(u.surge_rate, u.heave_rate, u.sway_rate),
-        spin=deck_spin(u),
-        down=on_deck(Vector(p.down_x, p.down_y, p.down_z), u),
-        along=on_deck(Vector(p.along_x, 0.0, p.along_z), u),
-        normal=on_deck(Vector(p.normal_x, p.normal_y, p.normal_z), u),
-    )
+def from_origin(u: SpatialInputs, point: Vector) -> Vector:
+    """An inertial point from the deck's origin [m]."""
+    return less(point, Vector(u.surge, u.heave, u.sway))
 
 
-def deck_velocity(deck: Deck, point: Vector) -> Vector:
-    """The ground's velocity [m/s] at an inertial point."""
-    return added(deck.velocity, cross(deck.spin, less(point, deck.origin)))
+def deck_velocity(u: SpatialInputs, spin: Vector, place: Vector) -> Vector:
+    """The ground's velocity [m/s] at a place from the deck's origin, whose `spin` is in rad/s."""
+    return added(Vector(u.surge_rate, u.heave_rate, u.sway_rate), cross(spin, place))
 
 
-def motion_on_deck(deck: Deck, point: Vector, velocity: Vector) -> FootMotion:
-    """A point against the ground, by its velocity relative to the ground."""
-    return FootMotion(
-        -dot(less(point, deck.origin), deck.normal),
-        -dot(velocity, deck.normal),
-        dot(velocity, deck.down),
-        dot(velocity, deck.along),
-    )
+def motion_on_ground(axes: Rotation, place: Vector, velocity: Vector) -> FootMotion:
+    """A place from the deck's origin against the ground, by its velocity relative to it."""
+    slip = to_body(axes, velocity)
+    depth = -(axes.y_x * place.x + axes.y_y * place.y + axes.y_z * place.z)
+    return FootMotion(depth, -slip.y, slip.x, slip.z)

@@ -27,6 +27,9 @@ from .planar_legs import footpad_kinetic_energy, footpad_moment
 from .planar_motion import PlanarMotion
 from .status import phase_of
 
+# [rad]
+TURNED_OVER = 1.5707963267948966
+
 
 class Planar(PlanarMotion):
     """The planar body with its outputs: body, energies, status, then each leg group.
@@ -134,5 +137,6 @@ class Planar(PlanarMotion):
         margin = min(x - low, high - x)
         r = body_state(rates, 0)
         acceleration = fabs(r.vx) + fabs(r.vy) + fabs(r.pitch_rate)
-        phase = phase_of(margin, body.pitch, depth, kinetic, mass, acceleration)
+        upright = TURNED_OVER - fabs(body.pitch)
+        phase = phase_of(margin, upright, depth, kinetic, mass, acceleration)
         put(StatusOutputs(phase, margin), out, at)

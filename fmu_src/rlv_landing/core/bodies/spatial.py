@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import acos, asin, atan2, fabs, inf, sqrt
+from math import asin, atan2, fabs, inf, sqrt
 
 from ..access import (
     ENERGY_OUTPUTS,
@@ -16,6 +16,7 @@ from ..access import (
     leg_place,
     leg_state,
     put,
+    rotation_of,
     spatial_attitude_of,
     spatial_inputs,
     spatial_model,
@@ -23,7 +24,7 @@ from ..access import (
 )
 from ..memory import Doubles
 from ..records import LegLoadOutputs, Rotation, SpatialOutputs, StatusOutputs, Vector
-from ..vectors import added, cross, dot, length_of, less, rotation, to_body
+from ..vectors import added, cross, dot, length_of, less, to_body
 from .spatial_legs import cg_of, foot_place
 from .spatial_motion import SpatialMotion
 from .status import phase_of
@@ -51,8 +52,7 @@ class Spatial(SpatialMotion):
 
     def read(self, y: Doubles, u: Doubles, dy: Doubles, out: Doubles, at: int) -> None:
         """Write all outputs to `out[at:]`, from what `rhs` has kept of the legs."""
-        s = spatial_state(y, 0)
-        turn = rotation(s.q_w, s.q_x, s.q_y, s.q_z)
+        turn = rotation_of(self._turn, 0)
         self._keep_status(y)
         kinetic = self._kinetic_energy(y, turn)
         self._put_body(y, dy, turn, out, at)
@@ -176,15 +176,27 @@ class Spatial(SpatialMotion):
         r = spatial_state(rates, 0)
         acceleration = fabs(r.vx) + fabs(r.vy) + fabs(r.vz)
         acceleration += fabs(r.spin_x) + fabs(r.spin_y) + fabs(r.spin_z)
-        lean = acos(min(max(turn.y_y, -1.0), 1.0))
-        phase = phase_of(margin, lean, depth, kinetic, mass, acceleration)
+        phase = phase_of(margin, turn.y_y, depth, kinetic, mass, acceleration)
         put(StatusOutputs(phase, margin), out, at)
 
     def _margin(self, x: float, z: float) -> float:
         """Distance [m] of a point seen from above to the nearest edge of the footpads' polygon.
 
         An edge is a line from one footpad to another one that has all others on its inner side.
+        Most footpads stand in the order of their legs.
         """
+        margin = inf
+        last = self.groups - 1
+        for i in range(self.groups):
+            edge = self._edge(last, i, x, z)
+            if edge == inf:
+                return self._margin_of_any(x, z)
+            margin = min(margin, edge)
+            last = i
+        return margin
+
+    def _margin_of_any(self, x: float, z: float) -> float:
+        """The same for footpads in any order; -inf where there is no edge."""
         margin = inf
         for i in range(self.groups):
             for j in range(self.groups):
@@ -197,11 +209,12 @@ class Spatial(SpatialMotion):
         b = foot_loads_of(self._feet, j)
         along_x = b.x - a.x
         along_z = b.z - a.z
-        length = sqrt(along_x * along_x + along_z * along_z)
-        if length < ONE_CORNER:
+        square = along_x * along_x + along_z * along_z
+        if square < ONE_CORNER * ONE_CORNER:
             return inf
         for k in range(self.groups):
             c = foot_loads_of(self._feet, k)
-            if along_x * (c.z - a.z) - along_z * (c.x - a.x) < -ONE_CORNER * length:
+            inner = along_x * (c.z - a.z) - along_z * (c.x - a.x)
+            if inner < 0.0 and inner * inner > ONE_CORNER * ONE_CORNER * square:
                 return inf
-        return (along_x * (z - a.z) - along_z * (x - a.x)) / length
+        return (along_x * (z - a.z) - along_z * (x - a.x)) / sqrt(square)

@@ -12,17 +12,22 @@ from ..records import (
     SpatialModel,
     Vector,
 )
-from ..vectors import added, cross, dot, less, scaled
+from ..vectors import added, cross, less
 
 
-def outward(place: LegPlace) -> Vector:
-    """The leg's axis r."""
-    return Vector(place.cos_g, 0.0, place.sin_g)
+def radial_part(place: LegPlace, v: Vector) -> float:
+    """Part along the leg's axis r of a vector of body axes."""
+    return place.cos_g * v.x + place.sin_g * v.z
 
 
-def across(place: LegPlace) -> Vector:
-    """The leg's axis t, across its plane."""
-    return Vector(-place.sin_g, 0.0, place.cos_g)
+def transverse_part(place: LegPlace, v: Vector) -> float:
+    """Part along the leg's axis t of a vector of body axes."""
+    return place.cos_g * v.z - place.sin_g * v.x
+
+
+def about_across(place: LegPlace, point: Vector) -> Vector:
+    """The moment of a unit force along the leg's axis t at a point, body axes [m]."""
+    return Vector(place.cos_g * point.y, -radial_part(place, point), place.sin_g * point.y)
 
 
 def in_leg(place: LegPlace, r: float, h: float) -> Vector:
@@ -40,35 +45,29 @@ def foot_place(leg: LegState, place: LegPlace, p: SpatialModel) -> FootPlace:
     return FootPlace(less(in_leg(place, leg.r, leg.h), cg_of(p)), in_leg(place, leg.vr, leg.vh))
 
 
-def foot_bias(foot: FootPlace, spin: Vector) -> Vector:
-    """Acceleration that a footpad has by the body's spin alone [m/s2]."""
-    return added(cross(spin, cross(spin, foot.from_cg)), scaled(cross(spin, foot.rate), 2.0))
-
-
-def acts_at(foot: Vector, place: LegPlace, leg: LegModel, p: SpatialModel) -> Vector:
-    """The point from the CG at which the leg's transverse force acts on the body [m]."""
-    if p.at_joint > 0.0:
-        return less(in_leg(place, leg.Lc, leg.Ld), cg_of(p))
-    return foot
+def joint_place(place: LegPlace, leg: LegModel, p: SpatialModel) -> Vector:
+    """The auxiliary strut's joint from the CG [m]."""
+    return less(in_leg(place, leg.Lc, leg.Ld), cg_of(p))
 
 
 def spatial_loads(
-    force: Vector, bias: Vector, foot: Vector, at: Vector, forces: LegForces, place: LegPlace
+    force: Vector, bias: Vector, foot: Vector, forces: LegForces, place: LegPlace
 ) -> SpatialLoads:
-    """Loads by the leg's `forces`, and by the `force` of ground and gravity on the footpad [N]."""
+    """Loads by the leg's `forces`, and by the `force` of ground and gravity on the footpad [N].
+
+    `bias` is the acceleration [m/s2] that the footpad at the place `foot` has by the body's spin,
+    body axes.
+    """
     return SpatialLoads(
-        radial=dot(outward(place), force) + forces.main_r + forces.auxiliary_r,
+        radial=radial_part(place, force) + forces.main_r + forces.auxiliary_r,
         vertical=force.y + forces.main_h + forces.auxiliary_h,
-        tangential=dot(across(place), force),
-        bias_x=bias.x,
-        bias_y=bias.y,
-        bias_z=bias.z,
+        tangential=transverse_part(place, force),
+        bias_r=radial_part(place, bias),
+        bias_h=bias.y,
+        bias_t=transverse_part(place, bias),
         foot_x=foot.x,
         foot_y=foot.y,
         foot_z=foot.z,
-        at_x=at.x,
-        at_y=at.y,
-        at_z=at.z,
     )
 
 
@@ -79,31 +78,28 @@ def force_on_body(forces: LegForces, place: LegPlace) -> Vector:
     )
 
 
-def moment_on_body(forces: LegForces, force: Vector, place: LegPlace, p: SpatialModel) -> Vector:
-    """The moment of the struts' `force` about the CG [N m]."""
-    return less(scaled(across(place), -forces.moment), cross(cg_of(p), force))
-
-
-def foot_acceleration(loads: SpatialLoads, a: Vector, spin_rate: Vector) -> Vector:
-    """Acceleration of a footpad at rest in its leg's plane [m/s2]."""
-    foot = Vector(loads.foot_x, loads.foot_y, loads.foot_z)
-    bias = Vector(loads.bias_x, loads.bias_y, loads.bias_z)
-    return added(added(a, cross(spin_rate, foot)), bias)
+def foot_acceleration(loads: SpatialLoads, place: LegPlace, a: Vector, spin_rate: Vector) -> Vector:
+    """Acceleration of a footpad at rest in its leg's plane, along r, h, t [m/s2]."""
+    moved = added(a, cross(spin_rate, Vector(loads.foot_x, loads.foot_y, loads.foot_z)))
+    return Vector(
+        radial_part(place, moved) + loads.bias_r,
+        moved.y + loads.bias_h,
+        transverse_part(place, moved) + loads.bias_t,
+    )
 
 
 def spatial_leg_rates(
     leg: LegState,
     forces: LegForces,
     loads: SpatialLoads,
-    place: LegPlace,
     frame: Vector,
     m_d: float,
 ) -> LegState:
-    """The rates of a leg's state, whose frame has the acceleration `frame` [m/s2]."""
+    """The rates of a leg's state, whose frame has the acceleration `frame` along r, h [m/s2]."""
     return LegState(
         r=leg.vr,
         h=leg.vh,
-        vr=loads.radial / m_d - dot(outward(place), frame),
+        vr=loads.radial / m_d - frame.x,
         vh=loads.vertical / m_d - frame.y,
         z1=forces.dz1,
         z2=forces.dz2,

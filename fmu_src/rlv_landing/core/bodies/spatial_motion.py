@@ -4,60 +4,87 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Sequence
+from math import inf
 
 from ..access import (
+    DECK_TURN,
     ENERGY_OUTPUTS,
     LEG,
     LEG_LOAD_OUTPUTS,
     LEG_OUTPUTS,
+    ROTATION,
     SPATIAL_ATTITUDE,
     SPATIAL_INPUTS,
     SPATIAL_LOADS,
     SPATIAL_OUTPUTS,
     STATUS_OUTPUTS,
+    deck_turn_of,
     keep,
     leg_forces_of,
     leg_model,
     leg_place,
     leg_state,
     put,
+    rotation_of,
+    spatial_attitude_of,
     spatial_inputs,
     spatial_loads_of,
     spatial_model,
     spatial_state,
 )
 from ..leg import leg_forces
-from ..linear import solve
-from ..memory import Buffer, Doubles, Records, data, room, stored
+from ..memory import Buffer, Doubles, Records, room, stored
 from ..records import (
-    Deck,
+    DeckTurn,
     FootLoads,
     LegModel,
     LegPlace,
     Rotation,
     SpatialAttitude,
+    SpatialInputs,
     SpatialLoads,
     SpatialModel,
     SpatialState,
     Vector,
 )
-from ..vectors import added, cross, dot, length_of, less, rotation, scaled, to_body, to_inertial
-from .deck import deck_of, deck_velocity, motion_on_deck
+from ..vectors import (
+    added,
+    cross,
+    dot,
+    length_of,
+    less,
+    rotation,
+    scaled,
+    solved,
+    to_body,
+    to_inertial,
+)
+from .deck import (
+    deck_spin,
+    deck_turn,
+    deck_velocity,
+    from_origin,
+    ground_axes,
+    is_turn_at,
+    motion_on_ground,
+)
 from .legged import Legged
 from .spatial_legs import (
-    across,
-    acts_at,
+    about_across,
+    cg_of,
     foot_acceleration,
-    foot_bias,
     foot_place,
     force_on_body,
-    moment_on_body,
+    joint_place,
     spatial_leg_rates,
     spatial_loads,
+    transverse_part,
 )
 
-# accelerations of the CG and of the spin
-DEGREES = 6
+
+def gone_on(place: float, speed: float, acceleration: float, dt: float) -> float:
+    """The place of the deck `dt` [s] after it was at `place` with a `speed`."""
+    return place + (speed + 0.5 * acceleration * dt) * dt
 
 
 class SpatialMotion(Legged):
@@ -70,9 +97,14 @@ class SpatialMotion(Legged):
     _body: Records[SpatialModel]
     _loads: Records[SpatialLoads]
     _attitude: Records[SpatialAttitude]
-    _matrix: Buffer
-    _right: Buffer
+    _turn: Records[Rotation]
+    _deck: Records[DeckTurn]
+    _ground: Records[Rotation]
     _transverse: Buffer
+    # inverse of the mass that an acceleration along the body's x, z moves [1/kg]
+    _xx: float
+    _xz: float
+    _zz: float
 
     def __init__(
         self,
@@ -90,10 +122,24 @@ class SpatialMotion(Legged):
         self._body = stored([body])
         self._loads = room(len(legs), SPATIAL_LOADS)
         self._attitude = room(1, SPATIAL_ATTITUDE)
-        self._matrix = array("d", bytes(8 * DEGREES * DEGREES))
-        self._right = array("d", bytes(8 * DEGREES))
+        self._turn = room(1, ROTATION)
+        self._deck = room(1, DECK_TURN)
+        # of no angles yet
+        keep(DeckTurn(inf, inf, inf, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0), self._deck, 0)
+        self._ground = room(1, ROTATION)
         # the force that keeps each footpad in its leg's plane, along t [N]
         self._transverse = array("d", bytes(8 * len(legs)))
+        along_x = body.m_u
+        along_z = body.m_u
+        both = 0.0
+        for leg, place in zip(legs, places):
+            along_x += leg.m_d * place.sin_g * place.sin_g
+            along_z += leg.m_d * place.cos_g * place.cos_g
+            both -= leg.m_d * place.sin_g * place.cos_g
+        determinant = along_x * along_z - both * both
+        self._xx = along_z / determinant
+        self._xz = -both / determinant
+        self._zz = along_x / determinant
 
     def inputs_after(self, u: Doubles, rates: Doubles, dt: float, now: Doubles) -> None:
         """Loads go on at their rates, the deck at its own, which change at theirs.
@@ -101,14 +147,32 @@ class SpatialMotion(Legged):
         Rates of the deck's position in `rates` are those of a motion to a new one; they add to the
         deck's own.
         """
-        first_of_deck = DEGREES
-        for i in range(DEGREES):
-            now[i] = u[i] + rates[i] * dt
-        for k in range(DEGREES):
-            i = first_of_deck + 2 * k
-            speed = u[i + 1] + rates[i]
-            now[i] = u[i] + (speed + 0.5 * rates[i + 1] * dt) * dt
-            now[i + 1] = speed + rates[i + 1] * dt
+        a = spatial_inputs(u, 0)
+        rate = spatial_inputs(rates, 0)
+        put(
+            SpatialInputs(
+                force_x=a.force_x + rate.force_x * dt,
+                force_y=a.force_y + rate.force_y * dt,
+                force_z=a.force_z + rate.force_z * dt,
+                moment_x=a.moment_x + rate.moment_x * dt,
+                moment_y=a.moment_y + rate.moment_y * dt,
+                moment_z=a.moment_z + rate.moment_z * dt,
+                surge=gone_on(a.surge, a.surge_rate + rate.surge, rate.surge_rate, dt),
+                surge_rate=a.surge_rate + rate.surge + rate.surge_rate * dt,
+                heave=gone_on(a.heave, a.heave_rate + rate.heave, rate.heave_rate, dt),
+                heave_rate=a.heave_rate + rate.heave + rate.heave_rate * dt,
+                sway=gone_on(a.sway, a.sway_rate + rate.sway, rate.sway_rate, dt),
+                sway_rate=a.sway_rate + rate.sway + rate.sway_rate * dt,
+                roll=gone_on(a.roll, a.roll_rate + rate.roll, rate.roll_rate, dt),
+                roll_rate=a.roll_rate + rate.roll + rate.roll_rate * dt,
+                yaw=gone_on(a.yaw, a.yaw_rate + rate.yaw, rate.yaw_rate, dt),
+                yaw_rate=a.yaw_rate + rate.yaw + rate.yaw_rate * dt,
+                tilt=gone_on(a.tilt, a.tilt_rate + rate.tilt, rate.tilt_rate, dt),
+                tilt_rate=a.tilt_rate + rate.tilt + rate.tilt_rate * dt,
+            ),
+            now,
+            0,
+        )
 
     def rhs(self, y: Doubles, u: Doubles, dy: Doubles) -> None:
         """Write dy/dt at the state `y` and the inputs `u` to `dy`.
@@ -118,22 +182,19 @@ class SpatialMotion(Legged):
         p = spatial_model(self._body, 0)
         s = spatial_state(y, 0)
         now = spatial_inputs(u, 0)
-        turn = rotation(s.q_w, s.q_x, s.q_y, s.q_z)
+        keep(rotation(s.q_w, s.q_x, s.q_y, s.q_z), self._turn, 0)
+        self._turn_ground(now)
+        turn = rotation_of(self._turn, 0)
         spin = Vector(s.spin_x, s.spin_y, s.spin_z)
-        deck = deck_of(now, p)
+        rolling = deck_spin(now, deck_turn_of(self._deck, 0))
         for i in range(self.groups):
-            self._load(i, y, s, turn, deck)
+            self._load(i, y, now, rolling)
         force = to_body(turn, Vector(now.force_x, now.force_y - p.m_u * p.g, now.force_z))
         moment = to_body(turn, Vector(now.moment_x, now.moment_y, now.moment_z))
-        self._accelerate(spin, force, moment)
-        right = data(self._right)
-        a = Vector(right[0], right[1], right[2])
-        spin_rate = Vector(right[3], right[4], right[5])
-        keep(
-            SpatialAttitude(a.x, a.y, a.z, spin_rate.x, spin_rate.y, spin_rate.z),
-            self._attitude,
-            0,
-        )
+        keep(self._acceleration(spin, force, moment), self._attitude, 0)
+        attitude = spatial_attitude_of(self._attitude, 0)
+        a = Vector(attitude.a_x, attitude.a_y, attitude.a_z)
+        spin_rate = Vector(attitude.spin_x, attitude.spin_y, attitude.spin_z)
         a_inertial = to_inertial(turn, a)
         put(
             SpatialState(
@@ -157,34 +218,36 @@ class SpatialMotion(Legged):
         transverse = 0.0
         for i in range(self.groups):
             transverse += self._move(i, y, a, spin, spin_rate, dy)
-        turned = to_inertial(turn, spin)
-        external = (
-            now.force_x * s.vx
-            + now.force_y * s.vy
-            + now.force_z * s.vz
-            + now.moment_x * turned.x
-            + now.moment_y * turned.y
-            + now.moment_z * turned.z
-        )
+        external = now.force_x * s.vx + now.force_y * s.vy + now.force_z * s.vz + dot(moment, spin)
         self._put_powers(external, transverse, dy)
 
-    def _load(self, i: int, y: Doubles, s: SpatialState, turn: Rotation, deck: Deck) -> None:
-        """Keep the forces and loads of leg `i`."""
+    def _turn_ground(self, now: SpatialInputs) -> None:
+        """Keep the deck's angles and the ground's axes, which most decks seldom change."""
+        if not is_turn_at(deck_turn_of(self._deck, 0), now):
+            keep(deck_turn(now), self._deck, 0)
+            turn = deck_turn_of(self._deck, 0)
+            keep(ground_axes(turn, spatial_model(self._body, 0)), self._ground, 0)
+
+    def _load(self, i: int, y: Doubles, now: SpatialInputs, rolling: Vector) -> None:
+        """Keep the forces and loads of leg `i`, on a deck whose spin is `rolling` [rad/s]."""
         p = spatial_model(self._body, 0)
+        s = spatial_state(y, 0)
+        turn = rotation_of(self._turn, 0)
+        axes = rotation_of(self._ground, 0)
         leg = leg_state(y, self._first_leg + LEG * i)
         place = leg_place(self._places, i)
         model = leg_model(self._legs, i)
         spin = Vector(s.spin_x, s.spin_y, s.spin_z)
         foot = foot_place(leg, place, p)
+        moved = added(cross(spin, foot.from_cg), foot.rate)
         point = added(Vector(s.x, s.y, s.z), to_inertial(turn, foot.from_cg))
-        moved = to_inertial(turn, added(cross(spin, foot.from_cg), foot.rate))
-        ground = deck_velocity(deck, point)
-        velocity = less(added(Vector(s.vx, s.vy, s.vz), moved), ground)
-        motion = motion_on_deck(deck, point, velocity)
+        above = from_origin(now, point)
+        ground = deck_velocity(now, rolling, above)
+        velocity = less(added(Vector(s.vx, s.vy, s.vz), to_inertial(turn, moved)), ground)
+        motion = motion_on_ground(axes, above, velocity)
         keep(leg_forces(leg, motion, model), self._forces, i)
         forces = leg_forces_of(self._forces, i)
-        along = added(scaled(deck.down, forces.f1), scaled(deck.along, forces.f2))
-        contact = added(along, scaled(deck.normal, forces.normal))
+        contact = to_inertial(axes, Vector(forces.f1, forces.normal, forces.f2))
         keep(
             FootLoads(
                 x=point.x,
@@ -199,22 +262,19 @@ class SpatialMotion(Legged):
             self._feet,
             i,
         )
-        weight = model.m_d * p.g
-        force = to_body(turn, Vector(contact.x, contact.y - weight, contact.z))
-        at = acts_at(foot.from_cg, place, model, p)
-        keep(
-            spatial_loads(force, foot_bias(foot, spin), foot.from_cg, at, forces, place),
-            self._loads,
-            i,
-        )
+        force = to_body(turn, Vector(contact.x, contact.y - model.m_d * p.g, contact.z))
+        bias = cross(spin, added(moved, foot.rate))
+        keep(spatial_loads(force, bias, foot.from_cg, forces, place), self._loads, i)
 
-    def _accelerate(self, spin: Vector, force: Vector, moment: Vector) -> None:
-        """Write the accelerations of the CG and of the spin to `_right`, body axes.
+    def _acceleration(self, spin: Vector, force: Vector, moment: Vector) -> SpatialAttitude:
+        """The body's acceleration under the legs' loads, body axes.
 
         With e_t across each leg's plane, c = rho x e_t and d = p_N x e_t, where p_N is the point at
         which its transverse force N = m e_t.(a + w' x rho + b) - F.e_t acts on the body:
         (m_u 1 + sum m e_t e_t^T) a + sum m e_t c^T w' = f - sum e_t (m e_t.b - F.e_t) and
         sum m d e_t^T a + (I + sum m d c^T) w' = t - w x I w - sum d (m e_t.b - F.e_t).
+        The first ones' matrix does not change, and a_y, along which no e_t has a part, stands
+        alone: with a_x and a_z eliminated three equations for w' are left.
 
         Args:
             spin: The body's angular velocity [rad/s].
@@ -222,58 +282,61 @@ class SpatialMotion(Legged):
             moment: Their moment about the CG [N m].
         """
         p = spatial_model(self._body, 0)
-        m, right = data(self._matrix), data(self._right)
-        for k in range(DEGREES * DEGREES):
-            m[k] = 0.0
-        m[0] = m[7] = m[14] = p.m_u
-        m[21] = p.I_x
-        m[28] = p.I_y
-        m[35] = p.I_z
-        m[22] = m[27] = p.I_xy
-        m[23] = m[33] = p.I_xz
-        m[29] = m[34] = p.I_yz
-        turning = Vector(
-            p.I_x * spin.x + p.I_xy * spin.y + p.I_xz * spin.z,
-            p.I_xy * spin.x + p.I_y * spin.y + p.I_yz * spin.z,
-            p.I_xz * spin.x + p.I_yz * spin.y + p.I_z * spin.z,
-        )
+        # the inertia, by rows
+        i_x = Vector(p.I_x, p.I_xy, p.I_xz)
+        i_y = Vector(p.I_xy, p.I_y, p.I_yz)
+        i_z = Vector(p.I_xz, p.I_yz, p.I_z)
+        turning = Vector(dot(i_x, spin), dot(i_y, spin), dot(i_z, spin))
         moment = less(moment, cross(spin, turning))
+        struts = Vector(0.0, 0.0, 0.0)
+        # sum m e_t c^T by rows and sum m d e_t^T by columns, those of x and z
+        c_x = Vector(0.0, 0.0, 0.0)
+        c_z = Vector(0.0, 0.0, 0.0)
+        d_x = Vector(0.0, 0.0, 0.0)
+        d_z = Vector(0.0, 0.0, 0.0)
         for i in range(self.groups):
             place = leg_place(self._places, i)
+            model = leg_model(self._legs, i)
             loads = spatial_loads_of(self._loads, i)
             forces = leg_forces_of(self._forces, i)
-            m_d = leg_model(self._legs, i).m_d
-            e = across(place)
-            c = cross(Vector(loads.foot_x, loads.foot_y, loads.foot_z), e)
-            d = cross(Vector(loads.at_x, loads.at_y, loads.at_z), e)
-            bias = m_d * dot(e, Vector(loads.bias_x, loads.bias_y, loads.bias_z))
-            bias -= loads.tangential
-            on_body = force_on_body(forces, place)
-            force = less(added(force, on_body), scaled(e, bias))
-            moment = added(moment, moment_on_body(forces, on_body, place, p))
-            moment = less(moment, scaled(d, bias))
-            self._add_row(0, m_d * e.x, e, c)
-            self._add_row(2, m_d * e.z, e, c)
-            self._add_row(3, m_d * d.x, e, c)
-            self._add_row(4, m_d * d.y, e, c)
-            self._add_row(5, m_d * d.z, e, c)
-        right[0] = force.x
-        right[1] = force.y
-        right[2] = force.z
-        right[3] = moment.x
-        right[4] = moment.y
-        right[5] = moment.z
-        solve(m, right, DEGREES)
-
-    def _add_row(self, k: int, part: float, e: Vector, c: Vector) -> None:
-        """Add a `part` of (e, c) to row `k` of the matrix; e has no y."""
-        m = data(self._matrix)
-        at = DEGREES * k
-        m[at] += part * e.x
-        m[at + 2] += part * e.z
-        m[at + 3] += part * c.x
-        m[at + 4] += part * c.y
-        m[at + 5] += part * c.z
+            foot = Vector(loads.foot_x, loads.foot_y, loads.foot_z)
+            c = about_across(place, foot)
+            d = c
+            if p.at_joint > 0.0:
+                d = about_across(place, joint_place(place, model, p))
+            felt = scaled(d, model.m_d)
+            c_x = less(c_x, scaled(c, model.m_d * place.sin_g))
+            c_z = added(c_z, scaled(c, model.m_d * place.cos_g))
+            d_x = less(d_x, scaled(felt, place.sin_g))
+            d_z = added(d_z, scaled(felt, place.cos_g))
+            i_x = added(i_x, scaled(c, felt.x))
+            i_y = added(i_y, scaled(c, felt.y))
+            i_z = added(i_z, scaled(c, felt.z))
+            bias = model.m_d * loads.bias_t - loads.tangential
+            struts = added(struts, force_on_body(forces, place))
+            force = less(force, Vector(-bias * place.sin_g, 0.0, bias * place.cos_g))
+            across = Vector(-forces.moment * place.sin_g, 0.0, forces.moment * place.cos_g)
+            moment = less(moment, added(across, scaled(d, bias)))
+        force = added(force, struts)
+        moment = less(moment, cross(cg_of(p), struts))
+        of_x = added(scaled(c_x, self._xx), scaled(c_z, self._xz))
+        of_z = added(scaled(c_x, self._xz), scaled(c_z, self._zz))
+        free_x = self._xx * force.x + self._xz * force.z
+        free_z = self._xz * force.x + self._zz * force.z
+        spin_rate = solved(
+            less(i_x, added(scaled(of_x, d_x.x), scaled(of_z, d_z.x))),
+            less(i_y, added(scaled(of_x, d_x.y), scaled(of_z, d_z.y))),
+            less(i_z, added(scaled(of_x, d_x.z), scaled(of_z, d_z.z))),
+            less(moment, added(scaled(d_x, free_x), scaled(d_z, free_z))),
+        )
+        return SpatialAttitude(
+            a_x=free_x - dot(of_x, spin_rate),
+            a_y=force.y / p.m_u,
+            a_z=free_z - dot(of_z, spin_rate),
+            spin_x=spin_rate.x,
+            spin_y=spin_rate.y,
+            spin_z=spin_rate.z,
+        )
 
     def _move(
         self, i: int, y: Doubles, a: Vector, spin: Vector, spin_rate: Vector, dy: Doubles
@@ -284,21 +347,20 @@ class SpatialMotion(Legged):
             The power that this force creates [W].
         """
         at = self._first_leg + LEG * i
+        p = spatial_model(self._body, 0)
         leg = leg_state(y, at)
         place = leg_place(self._places, i)
-        m_d = leg_model(self._legs, i).m_d
+        model = leg_model(self._legs, i)
         loads = spatial_loads_of(self._loads, i)
-        frame = foot_acceleration(loads, a, spin_rate)
-        put(
-            spatial_leg_rates(leg, leg_forces_of(self._forces, i), loads, place, frame, m_d), dy, at
-        )
-        e = across(place)
-        force = m_d * dot(e, frame) - loads.tangential
-        arm = Vector(
-            loads.foot_x - loads.at_x, loads.foot_y - loads.at_y, loads.foot_z - loads.at_z
-        )
+        frame = foot_acceleration(loads, place, a, spin_rate)
+        put(spatial_leg_rates(leg, leg_forces_of(self._forces, i), loads, frame, model.m_d), dy, at)
+        force = model.m_d * frame.z - loads.tangential
         self._transverse[i] = force
-        return force * dot(e, cross(spin, arm))
+        if p.at_joint > 0.0:
+            foot = Vector(loads.foot_x, loads.foot_y, loads.foot_z)
+            arm = less(foot, joint_place(place, model, p))
+            return force * transverse_part(place, cross(spin, arm))
+        return 0.0
 
     def project(self, y: Doubles) -> None:
         """Bring what the friction laws keep to where they let it be, the quaternion to length 1."""

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from math import fabs
-
 from ..records import Phase
 
-# [rad]
-TURNED_OVER = 1.5707963267948966
 # of a vehicle at rest, at most: speed [m/s] by its kinetic energy, sum of the body's accelerations
 # [m/s2, rad/s2]
 REST_SPEED = 2e-3
@@ -15,7 +11,7 @@ REST_ACCELERATION = 0.05
 
 
 def phase_of(
-    margin: float, lean: float, depth: float, kinetic: float, mass: float, acceleration: float
+    margin: float, upright: float, depth: float, kinetic: float, mass: float, acceleration: float
 ) -> int:
     """The `Phase` of a landing.
 
@@ -24,13 +20,13 @@ def phase_of(
 
     Args:
         margin: Stability margin [m].
-        lean: Angle of the body's axis from the vertical [rad].
+        upright: Below 0 where the body has turned over.
         depth: Penetration of the footpad that is deepest in the ground [m].
         kinetic: Kinetic energy of the vehicle [J].
         mass: Its mass [kg].
         acceleration: Sum of the body's accelerations [m/s2, rad/s2].
     """
-    if margin < 0.0 or fabs(lean) > TURNED_OVER:
+    if margin < 0.0 or upright < 0.0:
         return Phase.TOPPLED
     if depth <= 0.0:
         return Phase.FALLING

@@ -38,7 +38,7 @@ from .outputs import (
 )
 from .planar import Attitude, BodyAcceleration, FootPoint, PlanarLoads, Turn
 from .spatial import (
-    Deck,
+    DeckTurn,
     FootPlace,
     Rotation,
     SpatialAttitude,
@@ -63,7 +63,7 @@ __all__ = [
     "BodyState",
     "Chamber",
     "Crest",
-    "Deck",
+    "DeckTurn",
     "EnergyOutputs",
     "Fault",
     "FluidState",

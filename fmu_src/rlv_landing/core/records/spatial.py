@@ -12,7 +12,10 @@ class Vector(NamedTuple):
 
 
 class Rotation(NamedTuple):
-    """A rotation: the body's three axes, in inertial axes."""
+    """A rotation: three axes of a body, in inertial axes.
+
+    Those of the ground are 1 down the slope, its normal, and 2.
+    """
 
     x_x: float  # the body's x axis
     x_y: float
@@ -101,15 +104,18 @@ class SpatialInputs(NamedTuple):
     tilt_rate: float  # [rad/s]
 
 
-class Deck(NamedTuple):
-    """The ground as it moves, inertial axes."""
+class DeckTurn(NamedTuple):
+    """The deck's angles, with their sines and cosines."""
 
-    origin: Vector  # [m]
-    velocity: Vector  # [m/s]
-    spin: Vector  # [rad/s]
-    down: Vector  # axis 1
-    along: Vector  # axis 2
-    normal: Vector
+    yaw: float  # [rad]
+    roll: float  # [rad]
+    tilt: float  # [rad]
+    sin_y: float
+    cos_y: float
+    sin_r: float
+    cos_r: float
+    sin_t: float
+    cos_t: float
 
 
 class FootPlace(NamedTuple):
@@ -120,21 +126,18 @@ class FootPlace(NamedTuple):
 
 
 class SpatialLoads(NamedTuple):
-    """Loads of one leg in the spatial body's motion, body axes."""
+    """Loads of one leg in the spatial body's motion, the leg's axes."""
 
     radial: float  # all forces on the footpad but the transverse one along r [N]
     vertical: float  # along h [N]
     tangential: float  # along t [N]
     # acceleration of the footpad at rest in its leg, but for those of the CG and of the spin
-    bias_x: float  # [m/s2]
-    bias_y: float
-    bias_z: float
-    foot_x: float  # footpad from the CG [m]
+    bias_r: float  # [m/s2]
+    bias_h: float
+    bias_t: float
+    foot_x: float  # footpad from the CG, body axes [m]
     foot_y: float
     foot_z: float
-    at_x: float  # where its transverse force acts on the body, from the CG [m]
-    at_y: float
-    at_z: float
 
 
 class SpatialAttitude(NamedTuple):
