@@ -1,4 +1,4 @@
-"""Input files that may be pipes or terminals, as `<(command)` gives: a wait for them is told.
+"""Input files that may be pipes or terminals, as `<(command)` gives: a wait for them is reported.
 
 A pipe whose writer does not come, or writes nothing, would hold a command for ever without a word.
 """
@@ -18,7 +18,7 @@ from typing import BinaryIO, NoReturn
 
 from ..signals.handlers import Handlers
 
-# after this time [s] without a byte the user is told
+# after this time [s] without a byte the wait is reported
 PATIENCE = 2.0
 
 

@@ -50,8 +50,8 @@ def log() -> None:
 def info(log: Path, *, as_json: bool, check: bool) -> None:
     """Show the contents of a log: topics, parameters, outcome and peaks of the landing.
 
-    The log's summary and its record of the landing tell them. A log without, which is cut or of
-    another program, is read through, as is one with --check. LOG may be cut, or damaged.
+    They come from the log's summary and its record of the landing. A log that lacks them, cut or of
+    another program, is read through, as is every log with --check. LOG may be cut, or damaged.
 
     \b
     Examples:

@@ -95,7 +95,7 @@ class SampleBytes:
     Args:
         prefixes: by topic, what comes before its message in what `pack` gives; see `MessageLayout`.
 
-    `topics` are in the order of the messages; `slices` tell where each one's message is in what
+    `topics` are in the order of the messages; `slices` are where each one's message is in what
     `pack` gives.
     """
 

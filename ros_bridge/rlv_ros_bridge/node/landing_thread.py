@@ -82,7 +82,7 @@ class LandingThread:
 
 
 def as_landing_error(error: Exception) -> LandingError:
-    """An error as one that is told in one line; another than ours with its type."""
+    """An error as one that fits in one line; another than ours with its type."""
     if isinstance(error, LandingError):
         return error
     return LandingError(f"{type(error).__name__}: {reason_of(error)}")
