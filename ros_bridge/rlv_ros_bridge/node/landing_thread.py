@@ -59,7 +59,7 @@ class LandingThread:
             self._on_error(as_landing_error(e))
 
     def _wait_for_start(self, s: Settings) -> None:
-        """Waits for subscribers, and then for `start_delay`; meanwhile `/clock` stands.
+        """Waits for subscribers, and then for `start_delay`; meanwhile `/clock` is held.
 
         Raises:
             LandingError: there are not enough subscribers in time.
