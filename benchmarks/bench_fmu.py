@@ -136,22 +136,13 @@ def calls(fmu: Path, folder: Path) -> dict[str, float]:
     return taken
 
 
-def main() -> None:
-    """Measure both FMUs, print the table and append the rows."""
-    start()
-    with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
-        folder = Path(name)
-        fmus = {"FMU": FMU, "C FMU without a model": empty_fmu(folder)}
-        unpacked = {
-            case: Path(fmpy.extract(str(fmu), str(folder / case.split()[0])))
-            for case, fmu in fmus.items()
-        }
-        best: dict[str, dict[str, float]] = {case: {} for case in fmus}
-        for _ in range(REPEATS):
-            for case, fmu in fmus.items():
-                for key, seconds in {**cold(fmu), **calls(fmu, unpacked[case])}.items():
-                    best[case][key] = min(seconds, best[case].get(key, seconds))
-    load = start().load
+def cost_table(best: dict[str, dict[str, float]], load: float) -> Table:
+    """The costs of both FMUs, and their ratios.
+
+    Args:
+        best: Seconds of each part, by FMU: ours, then the one without a model.
+        load: The machine's load before the measurement.
+    """
     ours, empty = best.values()
     table = Table(
         title=f"Cost to FMPy {fmpy.__version__}: best of {REPEATS}, "
@@ -177,7 +168,26 @@ def main() -> None:
     table.caption = (
         "the C FMU computes nothing: the ratios are upper bounds of those to the same model in C"
     )
-    Console(width=110).print(table)
+    return table
+
+
+def main() -> None:
+    """Measure both FMUs, print the table and append the rows."""
+    start()
+    with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
+        folder = Path(name)
+        fmus = {"FMU": FMU, "C FMU without a model": empty_fmu(folder)}
+        unpacked = {
+            case: Path(fmpy.extract(str(fmu), str(folder / case.split()[0])))
+            for case, fmu in fmus.items()
+        }
+        best: dict[str, dict[str, float]] = {case: {} for case in fmus}
+        for _ in range(REPEATS):
+            for case, fmu in fmus.items():
+                for key, seconds in {**cold(fmu), **calls(fmu, unpacked[case])}.items():
+                    best[case][key] = min(seconds, best[case].get(key, seconds))
+    load = start().load
+    Console(width=110).print(cost_table(best, load))
     rows: list[dict[str, Any]] = [
         {"case": f"cost {case}", "load": load, "fmpy": fmpy.__version__, **cost}
         for case, cost in best.items()

@@ -227,6 +227,18 @@ def space(
     )
 
 
+def pure(mode: str) -> float:
+    """Seconds per call of the uncompiled core, in a process of its own."""
+    done = subprocess.run(
+        [sys.executable, "-c", PURE, mode, str(UNTIL)],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "RLV_LANDING_PURE": "1"},
+    )
+    return float(done.stdout)
+
+
 def calls_at(runs: Runs, error: float) -> float:
     """Calls at which `error` [m] would be met, by interpolation in logarithms."""
     errors, calls = np.log(np.array(sorted(runs))).T
@@ -253,16 +265,7 @@ def measure(mode: str) -> list[dict[str, Any]]:
             f"{mode} rtol {rtol:.0e}: core {ours[-1][0]:.1e} m in {ours[-1][1]} calls, "
             f"3-D {full[-1][0]:.1e} m in {full[-1][1]} calls"
         )
-    command = [sys.executable, "-c", PURE, mode, str(UNTIL)]
-    done = subprocess.run(
-        command,
-        capture_output=True,
-        text=True,
-        check=True,
-        env={**os.environ, "RLV_LANDING_PURE": "1"},
-    )
-    pure_seconds = float(done.stdout)
-
+    pure_seconds = pure(mode)
     parameters = load_preset(PRESET, mode)
     core_work = work_of_core(parameters, MOMENT)
     counted = Counted3D(parameters)
@@ -292,10 +295,20 @@ def measure(mode: str) -> list[dict[str, Any]]:
     return rows
 
 
-def main() -> None:
-    """Measure both modes, print the table and append the rows."""
-    start()
-    rows = [row for mode in ("2-2", "1-2-1") for row in measure(mode)]
+def work_ratios(row: dict[str, Any], base: dict[str, Any]) -> list[float]:
+    """The work of a row over that of the row `base`, without and with the dense elimination.
+
+    Work is calls times operations, of which a function counts as 20.
+    """
+    return [
+        row["rhs_calls"] * (row["operations"] + extra + 20 * row["functions"])
+        / (base["rhs_calls"] * (base["operations"] + 20 * base["functions"]))
+        for extra in (0, row["elimination"])
+    ]  # fmt: skip
+
+
+def work_table(rows: list[dict[str, Any]]) -> Table:
+    """The table of the rows, with their `work_ratio`."""
     table = Table(title=f"Landing to {UNTIL} s at equal error of the strokes", title_justify="left")
     for name in (
         "case",
@@ -309,14 +322,8 @@ def main() -> None:
         "work to core",
     ):
         table.add_column(name, justify="left" if name == "case" else "right")
-    for i, row in enumerate(rows):
-        base = rows[i - i % 3]
-        ratio = [
-            row["rhs_calls"] * (row["operations"] + extra + 20 * row["functions"])
-            / (base["rhs_calls"] * (base["operations"] + 20 * base["functions"]))
-            for extra in (0, row["elimination"])
-        ]  # fmt: skip
-        row["work_ratio"] = ratio
+    for row in rows:
+        ratio = row["work_ratio"]
         table.add_row(
             row["case"],
             f"{1e3 * row['error']:.0e}",
@@ -333,7 +340,16 @@ def main() -> None:
         "elimination. Seconds compare languages too: numpy against compiled or plain Python; the "
         "work does not. The core's includes its energy accounts."
     )
-    Console(width=130).print(table)
+    return table
+
+
+def main() -> None:
+    """Measure both modes, print the table and append the rows."""
+    start()
+    rows = [row for mode in ("2-2", "1-2-1") for row in measure(mode)]
+    for i, row in enumerate(rows):
+        row["work_ratio"] = work_ratios(row, rows[i - i % 3])
+    Console(width=130).print(work_table(rows))
     append_rows(rows)
 
 

@@ -47,7 +47,7 @@ class Bridge(Structure):
 
 
 @cache
-def sundials(part: str) -> CDLL:
+def sundials_library(part: str) -> CDLL:
     """One of SUNDIALS' libraries in scikit-sundae's wheel."""
     folder = Path(sksundae.cvode.__file__).parents[2] / "scikit_sundae.libs"
     (path,) = folder.glob(f"libsundials_{part}-*.so*")
@@ -58,7 +58,7 @@ def sundials(part: str) -> CDLL:
 def function(name: str) -> Any:
     """A function of SUNDIALS."""
     part, result, arguments = SIGNATURES[name]
-    found = getattr(sundials(part), name)
+    found = getattr(sundials_library(part), name)
     found.restype, found.argtypes = result, arguments
     return found
 
@@ -97,7 +97,7 @@ class CvodeInC:
         self._y, self._atol = doubles(problem.state), doubles(rtol * problem.scale)
         self._landing = CLanding(problem.landing().parameters, rtol)
         self._bridge = Bridge(
-            self._landing._landing, cast(sundials("core").N_VGetArrayPointer, c_void_p)
+            self._landing._landing, cast(sundials_library("core").N_VGetArrayPointer, c_void_p)
         )
         self._context = c_void_p()
         call("SUNContext_Create", 0, byref(self._context))

@@ -1,10 +1,11 @@
-"""The pages in docs, the README and the examples' pages: links, index, and the map of the code."""
+"""The pages (links, index, the map of the code), and what holds for folders and files."""
 
 import re
 from collections import Counter
 from pathlib import Path
 
 import pytest
+from mypy.main import process_options
 
 ROOT = Path(__file__).resolve().parent.parent
 INDEX = ROOT / "docs" / "README.md"
@@ -85,6 +86,14 @@ def test_the_map_names_every_folder_of_the_packages():
         name_of(init.parent) for package in PACKAGES for init in package.rglob("__init__.py")
     }
     assert folders - PATHS == set()
+
+
+def test_mypy_checks_every_file_of_the_packages(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    sources, _ = process_options(["--config-file", "pyproject.toml"])
+    checked = {Path(source.path).resolve() for source in sources if source.path}
+    files = {file for package in PACKAGES for file in package.rglob("*.py")}
+    assert {name_of(file) for file in files - checked} == set()
 
 
 def test_each_test_folder_imports_its_own_modules_and_shared_ones():

@@ -26,7 +26,7 @@ def main(*, write: bool, slow: bool) -> None:
                 click.echo(f"{claim}: {claim.shown.strip()!r}, right is {text.strip()!r}")
         if write:
             update(page, VALUES, slow=slow)
-    click.echo(f"{wrong} wrong" + (", mended" if write and wrong else ""))
+    click.echo(f"{wrong} wrong" + (", corrected" if write and wrong else ""))
     sys.exit(1 if wrong and not write else 0)
 
 

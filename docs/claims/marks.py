@@ -141,10 +141,10 @@ def update(page: Path, values: dict[str, Value], *, slow: bool) -> int:
     }
     text = page.read_text(encoding="utf-8")
 
-    def mended(match: re.Match[str]) -> str:
+    def corrected(match: re.Match[str]) -> str:
         c = _claim(page, text, match)
         shown = right.get((c.line, c.name, c.arguments), c.shown)
         return f"<!-- ={match['call']} -->{shown}<!-- = -->"
 
-    page.write_text(MARK.sub(mended, text), encoding="utf-8")
+    page.write_text(MARK.sub(corrected, text), encoding="utf-8")
     return len(right)

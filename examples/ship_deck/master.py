@@ -1,7 +1,7 @@
 """A co-simulation master in Python: FMPy's instances, a fixed step, Jacobi.
 
-Jacobi: all instances make their step with the inputs of its start; then outputs go to the inputs
-    that they are connected to.
+Jacobi: all instances make their step with the inputs of its start. Then outputs go to the inputs
+that they are connected to.
 """
 
 from __future__ import annotations

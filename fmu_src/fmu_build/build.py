@@ -143,7 +143,7 @@ def pack(files: Path, target: Path, date: datetime) -> None:
 
 
 @contextmanager
-def _workshop() -> Iterator[Path]:
+def _temporary_folder() -> Iterator[Path]:
     """A temporary folder to build in.
 
     Raises:
@@ -180,7 +180,7 @@ def build(target: Path, wanted: Wanted) -> list[str]:
     """
     ends = expected(wanted)
     date = source_date()
-    with _workshop() as folder:
+    with _temporary_folder() as folder:
         files, package, script = build_with_pythonfmu(folder, wanted)
         core_names = [] if wanted.pure else [file.name for file in compiled_cores()]
         others = wanted.other_targets
@@ -215,12 +215,8 @@ def _end(number: int, _frame: object) -> None:
     raise KeyboardInterrupt(number)
 
 
-def main() -> None:
-    """Build the FMU of the default vehicle that the command line asks for.
-
-    An end from outside is as Ctrl-C: it leaves no temporary folder. The exit code is 128 and the
-    signal's number.
-    """
+def _arguments() -> argparse.Namespace:
+    """The arguments of the command line."""
     parser = argparse.ArgumentParser(
         prog="build_fmu.sh",
         description="Builds the FMU and checks it: FMPy validates it and simulates one landing.",
@@ -252,7 +248,16 @@ def main() -> None:
         help="binaries for this machine's platform, or for all that Zig compiles for: Linux on "
         "x86-64 and Arm, Windows, macOS [default: own]",
     )
-    arguments = parser.parse_args()
+    return parser.parse_args()
+
+
+def main() -> None:
+    """Build the FMU of the default vehicle that the command line asks for.
+
+    An end from outside is as Ctrl-C: it leaves no temporary folder. The exit code is 128 and the
+    signal's number.
+    """
+    arguments = _arguments()
     wanted = Wanted(fmi=arguments.fmi, pure=arguments.pure, platforms=arguments.platforms)
     name = f"{MODEL_NAME}{'3' if wanted.fmi == '3' else ''}.fmu"
     for ending in (signal.SIGTERM, signal.SIGHUP):

@@ -33,7 +33,7 @@ static void send_message(const struct host *host, const char *name, enum status 
                          const char *category, const char *text)
 {
     const struct fmi3_host *callbacks = host->callbacks;
-    (void)name; /* the host tells instances apart by their environment */
+    (void)name; /* the host distinguishes instances by their environment */
     /* the host takes what is between two # for a value reference, and a path may hold one */
     char escaped[2 * sizeof(struct message)];
     double_character(text, '#', escaped, sizeof escaped);

@@ -81,7 +81,7 @@ enum status instance_exit_initialization(struct instance *c, const struct functi
 enum status instance_step(struct instance *c, const struct function *f, double time, double step);
 /*
  * Step from `time` to `stop`, in what is left of a step that ends at `end`, or to the first event
- * if `to_event`. `*event` tells whether there is one; the time reached is c->last_time.
+ * if `to_event`. `*event` is whether there is one; the time reached is c->last_time.
  */
 enum status instance_step_part(struct instance *c, const struct function *f, double time,
                                double end, double stop, bool to_event, bool *event);

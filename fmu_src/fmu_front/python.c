@@ -13,7 +13,7 @@ int python_minor_version(void *get_version)
     return sscanf(version(), "3.%d", &minor) == 1 ? minor : 0;
 }
 
-/* Functions that tell interpreters apart; none of them is in the limited API. */
+/* Functions that distinguish interpreters; none of them is in the limited API. */
 static struct {
     int minor;
     PyInterpreterState *(*first)(void), *(*next)(PyInterpreterState *);
@@ -68,7 +68,7 @@ static bool is_main(PyInterpreterState *interpreter)
  * True if this thread may take Python's lock for the main interpreter.
  *
  * PyGILState_Ensure waits for ever, or ends the process, in a thread that runs in a
- * sub-interpreter. Before Python 3.12 such a thread cannot be told from others.
+ * sub-interpreter. Before Python 3.12 such a thread cannot be distinguished.
  */
 static bool is_in_main_interpreter(struct message *reason)
 {

@@ -430,12 +430,12 @@ enum answer slave_get_state(struct slave *s, struct slave_state **state)
     return end_call(&v, s, GET_STATE);
 }
 
-/* False, with the reason told, if the state belongs to a Python that has ended. */
+/* False, with the reason given to the listener, if the state belongs to a Python that has ended. */
 static bool lives(const struct slave *s, const struct slave_state *state)
 {
     if (state->life == s->life)
         return true;
-    s->listener.hear(s->listener.owner, STATUS_ERROR, NULL,
+    s->listener.receive(s->listener.owner, STATUS_ERROR, NULL,
                      "the state is gone with the Python that held it, which has ended");
     return false;
 }

@@ -27,9 +27,9 @@ enum answer {
 /* Type of a variable, a letter of the description's type. */
 enum kind { REAL = 'R', INTEGER = 'I', BOOLEAN = 'B', STRING = 'S' };
 
-/* Who hears the slave's messages. `category` is NULL where the status says it. */
+/* Receives the slave's messages. `category` is NULL where the status says it. */
 struct listener {
-    void (*hear)(void *owner, enum status status, const char *category, const char *text);
+    void (*receive)(void *owner, enum status status, const char *category, const char *text);
     void *owner;
 };
 
@@ -39,7 +39,7 @@ struct slave_state;
 /*
  * Make the slave from the script in the folder `resources`; Python must be ready.
  *
- * Returns NULL, with the reason told to the listener, if that fails.
+ * Returns NULL, with the reason given to the listener, if that fails.
  */
 struct slave *slave_create(const char *resources, const char *name, bool visible,
                            const struct listener *listener);

@@ -10,7 +10,7 @@ enum answer visit_begin(struct visit *v, const struct listener *listener, long l
     enum entry entry = python_enter(life, &v->stay, &reason);
     if (entry == ENTERED)
         return DONE;
-    listener->hear(listener->owner, STATUS_ERROR, NULL, reason.text);
+    listener->receive(listener->owner, STATUS_ERROR, NULL, reason.text);
     return entry == ENDED ? LOST : REFUSED;
 }
 
@@ -20,12 +20,12 @@ void visit_end(struct visit *v)
     while (v->first) {
         struct note *note = v->first;
         v->first = note->next;
-        v->listener->hear(v->listener->owner, note->status, note->category, note->text);
+        v->listener->receive(v->listener->owner, note->status, note->category, note->text);
         free(note->category);
         free(note->text);
         free(note);
     }
-    /* the Python of the host shall hear of its Ctrl-C; its logger, which has run by now, need not */
+    /* the Python of the host shall get its Ctrl-C; its logger, which has run by now, need not */
     if (v->interrupted)
         py.PyErr_SetInterrupt();
 }

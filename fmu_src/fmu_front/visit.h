@@ -21,7 +21,7 @@ struct visit {
 
 /* Begin a visit to the Python of the number `life`; the answer is DONE if it has begun. */
 enum answer visit_begin(struct visit *v, const struct listener *listener, long life);
-/* End it, tell the listener the notes, and pass on an interrupt to the Python of the host. */
+/* End it, give the notes to the listener, and pass on an interrupt to the Python of the host. */
 void visit_end(struct visit *v);
 
 /* Keep a message for the listener; `category` may be NULL. */

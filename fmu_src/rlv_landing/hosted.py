@@ -60,7 +60,7 @@ class HostedLanding:
         if not abs(start_time) <= LATEST_START:
             raise LandingError(
                 f"start time = {start_time:g} s is outside [-{LATEST_START:g}, {LATEST_START:g}] "
-                "s, where doubles tell times of less than 2 us apart; start nearer to 0 s"
+                "s, where doubles distinguish times 2 us apart; start nearer to 0 s"
             )
         self.start_time, self._rtol = start_time, rtol
         self._landing = None

@@ -14,7 +14,7 @@ from .errors import LandingError
 from .inputs.ground_way import Way, way_faults
 from .interruptible import view
 
-# a count that doubles tell from the next one
+# a count that doubles distinguish from the next one
 LARGEST_COUNT = 2.0**53
 # steps or probes: no landing counts so many at rest
 MOST_STILL = 1e6

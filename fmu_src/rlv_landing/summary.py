@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .history import History
-from .validation.measures import first_push, leg_work
+from .validation.measures import DamperWork, first_push, leg_work
 
 UNFINISHED = {
     "in compression": "largest stroke, efficiency and energies are not known",
@@ -42,32 +42,8 @@ def summarise(history: History) -> dict[str, Any]:
     top = history.extreme("body.top_axial_acceleration")
     result["top_axial_acceleration_max"] = top.maximum
     result["top_axial_acceleration_max_time"] = top.maximum_time
-    legs: list[dict[str, Any]] = []
     work = leg_work(history)
-    for leg in history.legs:
-        force = history.extreme(f"leg[{leg}].main_strut.force")
-        stroke = history.extreme(f"leg[{leg}].main_strut.stroke")
-        auxiliary = history.extreme(f"leg[{leg}].auxiliary_strut.force")
-        first, done = first_push(history, leg), work.get(leg)
-        legs.append(
-            {
-                "leg": leg,
-                "contact_time": None if first is None else float(t[first]),
-                "main_strut_force_min": force.minimum,
-                "main_strut_force_min_time": force.minimum_time,
-                "main_strut_stroke_max": stroke.maximum,
-                "main_strut_stroke_max_time": stroke.maximum_time,
-                "auxiliary_strut_force_min": auxiliary.minimum,
-                "auxiliary_strut_force_min_time": auxiliary.minimum_time,
-                "auxiliary_strut_force_max": auxiliary.maximum,
-                "auxiliary_strut_force_max_time": auxiliary.maximum_time,
-                **_contact_force(history, leg),
-                "main_strut_first_stroke": "not compressed" if done is None else done.state,
-                "main_strut_absorbed": None if done is None else done.absorbed,
-                "main_strut_dissipated": None if done is None else done.dissipated,
-                "main_strut_efficiency": None if done is None else done.efficiency,
-            }
-        )
+    legs = [_leg_summary(history, leg, work.get(leg)) for leg in history.legs]
     result["legs"] = legs
     if history.parameters is not None:
         limit = history.parameters.main_strut.stroke_max
@@ -75,6 +51,31 @@ def summarise(history: History) -> dict[str, Any]:
             leg["leg"] for leg in legs if leg["main_strut_stroke_max"] > limit
         ]
     return result
+
+
+def _leg_summary(history: History, leg: int, work: DamperWork | None) -> dict[str, Any]:
+    """The items of a leg; `work` is None for one that was not compressed."""
+    force = history.extreme(f"leg[{leg}].main_strut.force")
+    stroke = history.extreme(f"leg[{leg}].main_strut.stroke")
+    auxiliary = history.extreme(f"leg[{leg}].auxiliary_strut.force")
+    first = first_push(history, leg)
+    return {
+        "leg": leg,
+        "contact_time": None if first is None else float(history.time[first]),
+        "main_strut_force_min": force.minimum,
+        "main_strut_force_min_time": force.minimum_time,
+        "main_strut_stroke_max": stroke.maximum,
+        "main_strut_stroke_max_time": stroke.maximum_time,
+        "auxiliary_strut_force_min": auxiliary.minimum,
+        "auxiliary_strut_force_min_time": auxiliary.minimum_time,
+        "auxiliary_strut_force_max": auxiliary.maximum,
+        "auxiliary_strut_force_max_time": auxiliary.maximum_time,
+        **_contact_force(history, leg),
+        "main_strut_first_stroke": "not compressed" if work is None else work.state,
+        "main_strut_absorbed": None if work is None else work.absorbed,
+        "main_strut_dissipated": None if work is None else work.dissipated,
+        "main_strut_efficiency": None if work is None else work.efficiency,
+    }
 
 
 def _has(history: History, name: str) -> bool:

@@ -139,7 +139,7 @@ def test_steps_of_a_load_take_no_memory_and_too_many_are_refused(command, fmu3, 
 def test_a_rate_that_fmi_3_cannot_tell_is_refused(fmu3):
     with (
         FmuRunner(fmu3, {}) as runner,
-        pytest.raises(LandingError, match="cannot tell; set it in steps"),
+        pytest.raises(LandingError, match="cannot carry; set it in steps"),
     ):
         runner.set_inputs({"external.force_x": 1.0}, {"external.force_x": 2.0})
 

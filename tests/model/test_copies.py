@@ -50,9 +50,9 @@ def test_a_copy_of_a_landing_that_ended_has_ended(how):
     landing = Landing(Parameters().with_values({LIMIT: 300.0}))
     with pytest.raises(StepLimitError) as ended:
         landing.advance_to(1.0)
-    with pytest.raises(StepLimitError) as told:
+    with pytest.raises(StepLimitError) as raised:
         COPIES[how](landing).step(1e-3)
-    assert str(told.value) == str(ended.value)
+    assert str(raised.value) == str(ended.value)
 
 
 @pytest.mark.parametrize("how", COPIES)

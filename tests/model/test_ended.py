@@ -96,9 +96,9 @@ def test_a_state_from_before_the_end_goes_on_to_the_same_end(make):
     assert landing.state() == late
     other = make()
     other.restore(late)
-    with pytest.raises(IntegrationError) as told:
+    with pytest.raises(IntegrationError) as raised:
         other.step(1e-3)
-    assert str(told.value) == str(ended.value)
+    assert str(raised.value) == str(ended.value)
 
 
 def test_the_limit_is_a_parameter_and_holds_any_landing_on_average():

@@ -40,12 +40,12 @@ def test_extremes_are_those_of_samples_that_are_a_microsecond_apart(mode, method
     for name in OUTPUT_NAMES:
         if name == BALANCE:
             continue
-        samples, told = history[name], history.extremes[name]
+        samples, extreme = history[name], history.extremes[name]
         # in a step with a kink, the interpolant of an energy that only grows errs by a microjoule
         floor = 1e-6 if name.startswith("energy.") else 0.0
         slack = 1e-3 * max(abs(samples.min()), abs(samples.max())) + floor
-        assert told.minimum == approx(samples.min(), abs=slack), name
-        assert told.maximum == approx(samples.max(), abs=slack), name
+        assert extreme.minimum == approx(samples.min(), abs=slack), name
+        assert extreme.maximum == approx(samples.max(), abs=slack), name
 
 
 def test_peaks_are_those_of_a_landing_at_the_tightest_tolerance(mode):
@@ -94,12 +94,12 @@ def test_extremes_hold_every_value_that_is_read_on_the_way(mode):
     for name, low, high in zip(OUTPUT_NAMES, rows.min(axis=0), rows.max(axis=0)):
         if name == BALANCE:
             continue
-        told = landing.extremes()[name]
+        extreme = landing.extremes()[name]
         slack = 1e-3 * max(abs(low), abs(high))
-        assert told.minimum <= low + slack, name
-        assert told.maximum >= high - slack, name
-        assert min(told.minimum_time, told.maximum_time) >= 0.0
-        assert max(told.minimum_time, told.maximum_time) <= landing.time
+        assert extreme.minimum <= low + slack, name
+        assert extreme.maximum >= high - slack, name
+        assert min(extreme.minimum_time, extreme.maximum_time) >= 0.0
+        assert max(extreme.minimum_time, extreme.maximum_time) <= landing.time
 
 
 def test_a_restored_state_goes_on_with_the_same_extremes(mode):
@@ -129,8 +129,8 @@ def test_extremes_go_on_over_a_jump_of_an_input(mode):
 def test_the_start_is_as_the_inputs_before_it_make_it():
     landing = Landing()
     landing.set_inputs({"external.force_x": 1780.0})
-    told = landing.extremes()["body.ax"]
-    assert told.minimum == told.maximum == landing.get("body.ax") > 9.0
+    extreme = landing.extremes()["body.ax"]
+    assert extreme.minimum == extreme.maximum == landing.get("body.ax") > 9.0
     landing.reset()
     assert landing.extremes()["body.ax"].maximum < 0.1
 

@@ -49,7 +49,7 @@ def test_a_pipe_is_read_each_time_anew_unless_its_text_is_kept(pipe, capsys):
     assert capsys.readouterr().err == ""
 
 
-def test_rows_come_from_a_pipe_and_a_wrong_encoding_of_it_is_told(pipe):
+def test_rows_come_from_a_pipe_and_a_wrong_encoding_of_it_is_reported(pipe):
     write_later(pipe, "a,b\n1,2\n")
     assert list(read_csv(pipe, "table")) == [(1, ["a", "b"]), (2, ["1", "2"])]
     threading.Thread(target=lambda: pipe.write_bytes(b"a,\xff\n"), daemon=True).start()
@@ -57,8 +57,8 @@ def test_rows_come_from_a_pipe_and_a_wrong_encoding_of_it_is_told(pipe):
         list(read_csv(pipe, "table"))
 
 
-def test_a_wait_for_a_writer_is_told_once(pipe, monkeypatch, capsys):
-    monkeypatch.setattr(pipes, "PATIENCE", 0.01)
+def test_a_wait_for_a_writer_is_reported_once(pipe, monkeypatch, capsys):
+    monkeypatch.setattr(pipes, "SILENT_SECONDS", 0.01)
     told, told_of = threading.Event(), []
     monkeypatch.setattr(pipes, "print", lambda *a, **_: (told_of.append(a[0]), told.set()), False)
     write_later(pipe, PIPE_TEXT, told.wait)
@@ -68,7 +68,7 @@ def test_a_wait_for_a_writer_is_told_once(pipe, monkeypatch, capsys):
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_signals_end_the_wait_even_where_their_handler_only_notes_them(pipe, monkeypatch, number):
-    monkeypatch.setattr(pipes, "PATIENCE", 0.01)
+    monkeypatch.setattr(pipes, "SILENT_SECONDS", 0.01)
     monkeypatch.setattr(pipes, "print", lambda *_, **__: os.kill(os.getpid(), number), False)
     noted: list[int] = []
     before = signal.signal(number, lambda n, _: noted.append(n))
@@ -83,7 +83,7 @@ def test_signals_end_the_wait_even_where_their_handler_only_notes_them(pipe, mon
 
 
 def test_ctrl_c_ends_a_command_that_waits_with_130(pipe):
-    code = "from rlv_landing.text import pipes; pipes.PATIENCE = 0.1\n"
+    code = "from rlv_landing.text import pipes; pipes.SILENT_SECONDS = 0.1\n"
     code += "from rlv_landing.cli import main; raise SystemExit(main())"
     run = subprocess.Popen(
         [sys.executable, "-c", code, "simulate", "--parameters", str(pipe)],

@@ -85,7 +85,7 @@ def _compile(source: Path, target: Target, work: Path) -> bytes:
     command = [*compiler.command, *compiler.flags, *COMPILE_ARGS]
     options = [*ZIG_ARGS, f"-DPy_LIMITED_API={LIMITED_API}", "-fvisibility=hidden", "-Werror"]
     text, thing = str(source.relative_to(work / "core")), str(made / f"{MODULE}.o")
-    _must(
+    _check_compiled(
         run([*command, *options, "-I", str(headers), "-c", text, "-o", thing], work / "core"),
         target,
     )
@@ -94,11 +94,11 @@ def _compile(source: Path, target: Target, work: Path) -> bytes:
         libraries = [str(made / "python3.lib")]
         write_import_library(Path(libraries[0]), of_python(undefined(Path(thing).read_bytes())))
     link = [*command, "-shared", "-s", *LINK_ARGS[target.system], thing, *libraries]
-    _must(run([*link, "-o", target.core], made), target)
+    _check_compiled(run([*link, "-o", target.core], made), target)
     return (made / target.core).read_bytes()
 
 
-def _must(done: CompletedProcess[str], target: Target) -> None:
+def _check_compiled(done: CompletedProcess[str], target: Target) -> None:
     """Check that a compiler has done its work."""
     if done.returncode != 0:
         raise SystemExit(f"error: the core does not compile for {target.name}:\n{done.stderr}")

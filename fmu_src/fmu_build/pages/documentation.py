@@ -93,7 +93,6 @@ def render(files: Path, description: Element, wanted: Wanted) -> str:
     assert simulation is not None
     named = flat_name if wanted.flat_names else str
     fmi = int(description.attrib["fmiVersion"][0])
-    of_legs = OF_LEGS[fmi].replace("leg[1]", named("leg[1]"))
     return environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
         version=__version__,
         wanted=wanted,
@@ -117,34 +116,50 @@ def render(files: Path, description: Element, wanted: Wanted) -> str:
             )
         ),
         pythonfmu=distribution("pythonfmu").version,
-        tables=[
-            (
-                "parameters",
-                "Parameters",
-                "fixed; set them before or in initialization mode",
-                rows(starts_of(wanted.parameters)),
-            ),
-            ("inputs", "Inputs", "continuous; 0 by default", rows(INPUT_QUANTITIES)),
-            (
-                "outputs",
-                "Outputs",
-                f"calculated; {of_legs}, numbered as drawn",
-                rows(of_one_leg(OUTPUT_QUANTITIES), fmi),
-            ),
-            (
-                "statistics",
-                "Statistics",
-                "local; counts of the integrator, and whether the core is compiled",
-                rows(STATISTIC_QUANTITIES),
-            ),
-            (
-                "peaks",
-                "Peaks",
-                f"local; extremes since the start, between steps too; {of_legs}",
-                rows(of_one_leg(PEAK_QUANTITIES, "peak."), fmi),
-            ),
-        ],
+        tables=tables(wanted.parameters, fmi, named("leg[1]")),
     )
+
+
+# identifier, heading, note and rows of a table of variables
+Table = tuple[str, str, str, list[dict[str, str]]]
+
+
+def tables(parameters: Parameters, fmi: int, first_leg: str) -> list[Table]:
+    """The tables of variables.
+
+    Args:
+        parameters: The vehicle, whose values are the start values.
+        fmi: The version of FMI.
+        first_leg: The name of leg 1 in names of variables.
+    """
+    of_legs = OF_LEGS[fmi].replace("leg[1]", first_leg)
+    return [
+        (
+            "parameters",
+            "Parameters",
+            "fixed; set them before or in initialization mode",
+            rows(starts_of(parameters)),
+        ),
+        ("inputs", "Inputs", "continuous; 0 by default", rows(INPUT_QUANTITIES)),
+        (
+            "outputs",
+            "Outputs",
+            f"calculated; {of_legs}, numbered as drawn",
+            rows(of_one_leg(OUTPUT_QUANTITIES), fmi),
+        ),
+        (
+            "statistics",
+            "Statistics",
+            "local; counts of the integrator, and whether the core is compiled",
+            rows(STATISTIC_QUANTITIES),
+        ),
+        (
+            "peaks",
+            "Peaks",
+            f"local; extremes since the start, between steps too; {of_legs}",
+            rows(of_one_leg(PEAK_QUANTITIES, "peak."), fmi),
+        ),
+    ]
 
 
 def starts_of(parameters: Parameters) -> list[Quantity]:

@@ -56,7 +56,7 @@ class Commands(Group):
         return None
 
 
-# what a newcomer who names no command is told
+# what is printed where no command is named
 FIRST = """\
 rlv-landing simulate --plot landing.png     land the paper's drop test: forces, strokes, outcome
 rlv-landing new my_vehicle --like hopper    the files of a vehicle of your own, and what to do next

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ from .plots import COLOURS, save_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 MORE_COLOURS = (*COLOURS, "#7a4fa3", "#b8860b", "#3d3d3d")
 # more families than colours begin them anew in the next style
@@ -34,65 +36,22 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
     """
     import matplotlib as mpl
     from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
 
     panels = _panels(envelope)
     columns = min(len(panels), 3)
     rows = -(-len(panels) // columns)
     figure = Figure(figsize=(1.5 + 4.6 * columns, 1.6 + 4.2 * rows), layout="constrained")
-    conditions = list(
-        dict.fromkeys(
-            r.condition for f in envelope.families for line in f.lines for r in stretches(line)
-        )
-    )
-    markers = {condition: MARKERS[k % len(MARKERS)] for k, condition in enumerate(conditions)}
     axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).flatten()
-    named: dict[str, Line2D] = {}
+    markers = _markers(envelope)
+    styles: dict[str, dict[str, Any]] = {}
     for ax, (title, families) in zip(axes, panels.items()):
         for k, family in enumerate(families):
-            colour = MORE_COLOURS[k % len(MORE_COLOURS)]
-            # a boundary that others cover shows beside them
-            later = len(families) - 1
-            width = LINE + min(WIDER, WIDEST / max(later, 1)) * (later - k)
-            drawn: dict[str, Any] = {
-                "color": colour,
-                "linewidth": width,
-                "linestyle": STYLES[k // len(MORE_COLOURS) % len(STYLES)],
-            }
-            named[_name(family)] = Line2D([], [], **drawn)
-            _draw(ax, envelope, family, markers, drawn)
+            styles[_name(family)] = _line_style(k, len(families))
+            _draw(ax, envelope, family, markers, styles[_name(family)])
         ax.set_title(title, loc="left", fontsize="medium")
         ax.grid(visible=True, linewidth=0.3)
-    for ax in axes[len(panels) :]:
-        ax.set_visible(False)
-    for ax in axes[max(0, len(panels) - columns) : len(panels)]:
-        ax.set_xlabel(_label(envelope.study.x.quantity))
-        # below some of them is a panel that is not drawn
-        ax.tick_params(labelbottom=True)
-    for ax in axes[::columns]:
-        ax.set_ylabel(_label(envelope.study.y.quantity))
-    for condition, marker in markers.items():
-        named[condition] = Line2D([], [], color="#666666", marker=marker, linestyle="none")
-    for text, face in (("a landing that is lost", "#666666"), ("one that is not", "none")):
-        named[text] = Line2D(
-            [],
-            [],
-            color="#666666",
-            marker="o",
-            markersize=3,
-            markerfacecolor=face,
-            linestyle="none",
-        )
-    across = 1 if columns == 1 else 2
-    figure.legend(
-        named.values(),
-        named.keys(),
-        loc="outside lower center",
-        frameon=False,
-        fontsize="small",
-        ncols=across,
-    )
-    figure.set_figheight(figure.get_figheight() + LEGEND_LINE * -(-len(named) // across))
+    _name_axes(list(axes), len(panels), columns, envelope)
+    _add_legend(figure, styles, markers, 1 if columns == 1 else 2)
     title = (
         f"lost: {lost_text(envelope.study)}\n{envelope.landings} landings "
         f"(a uniform grid: {envelope.uniform})"
@@ -108,6 +67,61 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
             pad_inches=0.1,
             metadata={"Date": None} if Path(path).suffix == ".svg" else None,
         )
+
+
+def _markers(envelope: Envelope) -> dict[str, str]:
+    """A marker for each critical condition."""
+    conditions = dict.fromkeys(
+        r.condition for f in envelope.families for line in f.lines for r in stretches(line)
+    )
+    return {condition: MARKERS[k % len(MARKERS)] for k, condition in enumerate(conditions)}
+
+
+def _line_style(k: int, count: int) -> dict[str, Any]:
+    """Matplotlib's keywords for the boundary `k` of the `count` in a panel.
+
+    The earlier lines are wider, so that those that others cover show beside them.
+    """
+    later = count - 1
+    return {
+        "color": MORE_COLOURS[k % len(MORE_COLOURS)],
+        "linewidth": LINE + min(WIDER, WIDEST / max(later, 1)) * (later - k),
+        "linestyle": STYLES[k // len(MORE_COLOURS) % len(STYLES)],
+    }
+
+
+def _name_axes(axes: Sequence[Axes], drawn: int, columns: int, envelope: Envelope) -> None:
+    """Label the outer axes of the `drawn` panels, and hide those that are not drawn."""
+    for ax in axes[drawn:]:
+        ax.set_visible(False)
+    for ax in axes[max(0, drawn - columns) : drawn]:
+        ax.set_xlabel(_label(envelope.study.x.quantity))
+        # below some of them is a panel that is not drawn
+        ax.tick_params(labelbottom=True)
+    for ax in axes[::columns]:
+        ax.set_ylabel(_label(envelope.study.y.quantity))
+
+
+def _add_legend(
+    figure: Figure, styles: dict[str, dict[str, Any]], markers: dict[str, str], across: int
+) -> None:
+    """Name lines, markers and dots in `across` columns below the panels; the figure grows."""
+    from matplotlib.lines import Line2D
+
+    grey: dict[str, Any] = {"color": "#666666", "linestyle": "none"}
+    named = {name: Line2D([], [], **style) for name, style in styles.items()}
+    named |= {name: Line2D([], [], marker=marker, **grey) for name, marker in markers.items()}
+    for text, face in (("a landing that is lost", "#666666"), ("one that is not", "none")):
+        named[text] = Line2D([], [], marker="o", markersize=3, markerfacecolor=face, **grey)
+    figure.legend(
+        named.values(),
+        named.keys(),
+        loc="outside lower center",
+        frameon=False,
+        fontsize="small",
+        ncols=across,
+    )
+    figure.set_figheight(figure.get_figheight() + LEGEND_LINE * -(-len(named) // across))
 
 
 def _panels(envelope: Envelope) -> dict[str, list[Family]]:

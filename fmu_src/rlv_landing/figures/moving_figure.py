@@ -48,7 +48,7 @@ class MovingFigure:
         groups = groups_of(parameters.drop.mode)
         self._colours = {leg: colour for g, colour in zip(groups, COLOURS) for leg, _ in g.legs}
         grid = self.figure.add_gridspec(len(CURVES), 2, width_ratios=(1.0, 1.15))
-        # Any: matplotlib's types do not tell axes in space from others
+        # Any: matplotlib's types do not distinguish axes in space
         self._vehicle: Any = self.figure.add_subplot(
             grid[:, 0], **({"projection": "3d", "computed_zorder": False} if self._solid else {})
         )

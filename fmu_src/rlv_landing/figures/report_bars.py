@@ -26,50 +26,42 @@ def measures_figure(found: Validation) -> Figure:
     grid = figure.add_gridspec(rows, 2, width_ratios=(2, 1))
     labels = [f"{mode}\nleg {leg}" for mode, work in found.work.items() for leg in work]
     work = [w for by_leg in found.work.values() for w in by_leg.values()]
-    x = np.arange(len(work))
+    energies = {
+        "absorbed until the largest stroke": [_bar(w.absorbed) for w in work],
+        "dissipated by the end of the rebound": [_bar(w.dissipated) for w in work],
+    }
     ax = figure.add_subplot(grid[0, 0])
-    ax.bar(
-        x - 0.2,
-        [_bar(w.absorbed) for w in work],
-        0.38,
-        color=COLOURS[0],
-        label="absorbed until the largest stroke",
-    )
-    ax.bar(
-        x + 0.2,
-        [_bar(w.dissipated) for w in work],
-        0.38,
-        color=COLOURS[1],
-        label="dissipated by the end of the rebound",
-    )
-    _set_up_bars(ax, x, labels, "energy [J]")
-    ax.legend(frameon=False, fontsize=9)
+    _draw_pairs(ax, energies, labels, "energy [J]")
     ax.margins(y=0.25)
     ax = figure.add_subplot(grid[0, 1])
+    x = np.arange(len(work))
     ax.bar(x, [_bar(w.efficiency) for w in work], 0.6, color=COLOURS[2])
     _set_up_bars(ax, x, labels, "buffering efficiency")
     ax.set_ylim(0.0, 1.0)
     if found.curves:
-        ax = figure.add_subplot(grid[1, :])
-        x = np.arange(len(found.curves))
-        ax.bar(
-            x - 0.2, [100 * c.rrms for c in found.curves], 0.38, color=COLOURS[0], label="as it is"
-        )
-        ax.bar(
-            x + 0.2,
-            [100 * c.rrms_sensors for c in found.curves],
-            0.38,
-            color=COLOURS[1],
-            label="through the sensor chain",
-        )
-        _set_up_bars(
-            ax,
-            x,
-            [f"{c.mode}\n{c.column}".replace("_strut.", "\n") for c in found.curves],
-            "RRMS [%]",
-        )
-        ax.legend(frameon=False, fontsize=9)
+        deviations = {
+            "as it is": [100 * c.rrms for c in found.curves],
+            "through the sensor chain": [100 * c.rrms_sensors for c in found.curves],
+        }
+        names = [f"{c.mode}\n{c.column}".replace("_strut.", "\n") for c in found.curves]
+        _draw_pairs(figure.add_subplot(grid[1, :]), deviations, names, "RRMS [%]")
     return figure
+
+
+def _draw_pairs(ax: Any, pairs: dict[str, list[float]], labels: list[str], y: str) -> None:
+    """Draw two bars beside each other at each label.
+
+    Args:
+        ax: The axes.
+        pairs: The heights of the left and of the right bars, by their names in the legend.
+        labels: The labels of the pairs.
+        y: The label of the vertical axis.
+    """
+    x = np.arange(len(labels))
+    for side, colour, (name, heights) in zip((-0.2, 0.2), COLOURS, pairs.items()):
+        ax.bar(x + side, heights, 0.38, color=colour, label=name)
+    _set_up_bars(ax, x, labels, y)
+    ax.legend(frameon=False, fontsize=9)
 
 
 def _bar(value: float | None) -> float:
@@ -91,32 +83,14 @@ def error_figure(found: Validation) -> Figure:
     for level, shade in ((20, "#f3f6f8"), (10, "#e6edf1"), (5, "#d5e1e8")):
         ax.axvspan(-level, level, color=shade, linewidth=0)
     ax.axvline(0.0, color="#999999", linewidth=0.6)
-    ax.hlines(y, 0.0, _shown([c.error for c in comparisons]), color=COLOURS[0], linewidth=1.0)
-    ax.plot(
-        _shown([c.error for c in comparisons]),
-        y,
-        "o",
-        color=COLOURS[0],
-        markersize=5,
-        label="ours - simulation",
-    )
-    ax.plot(
-        _shown([c.error_test for c in comparisons]),
-        y,
-        "x",
-        color=TEST,
-        markersize=5,
-        label="ours - test",
-    )
-    ax.plot(
-        _shown([c.scalar.paper_error_test for c in comparisons]),
-        y,
-        "s",
-        color=PAPER,
-        markerfacecolor="none",
-        markersize=4,
-        label="the paper's simulation - test",
-    )
+    ours = _shown([c.error for c in comparisons])
+    test = _shown([c.error_test for c in comparisons])
+    paper = _shown([c.scalar.paper_error_test for c in comparisons])
+    ax.hlines(y, 0.0, ours, color=COLOURS[0], linewidth=1.0)
+    ax.plot(ours, y, "o", color=COLOURS[0], markersize=5, label="ours - simulation")
+    ax.plot(test, y, "x", color=TEST, markersize=5, label="ours - test")
+    hollow: dict[str, Any] = {"color": PAPER, "markerfacecolor": "none", "markersize": 4}
+    ax.plot(paper, y, "s", label="the paper's simulation - test", **hollow)
     ax.set_yticks(y, [c.scalar.id for c in comparisons], fontsize=8)
     ax.set_ylim(y[-1] - 0.8, 0.8)
     ax.set_xlim(-105.0, 105.0)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..workers import default_workers
-from .counting.descent import KICKS, count_round
+from .counting.descent import SPREADS, count_round
 from .counting.programme import programmes
 from .free_numbers import folded
 from .global_search import GlobalSearch
@@ -203,8 +203,8 @@ class Search:
             if self.best.rounds % 2 == 0:
                 programmes(self.objective.soft_count, evaluate, start)
             else:
-                kick, seed = KICKS[descents % len(KICKS)], (self.seed, self.best.rounds)
-                count_round(self.objective.soft_count, evaluate, start, seed, kick)
+                spread, seed = SPREADS[descents % len(SPREADS)], (self.seed, self.best.rounds)
+                count_round(self.objective.soft_count, evaluate, start, seed, spread)
             self.best.rounds += 1
             self.save()
 

@@ -131,5 +131,5 @@ class Objective:
 
 
 def cauchy_loss(misfits: NDArray[np.float64]) -> float:
-    """The sum of ln(1 + misfit^2): a few misfits that nothing can mend do not spoil the rest."""
+    """The sum of ln(1 + misfit^2): a few misfits that stay large do not dominate."""
     return float(np.log1p(misfits**2).sum())

@@ -138,10 +138,10 @@ class DrivenInputs:
         for i, i_rate, way in zip(self._positions, self._interface.position_rates, self._ways):
             name, rate = names[i], names[i_rate]
             if name in values:
-                told, with_rate = u[i], rate in values or name in rates
-                if told == way.told and with_rate and u[i_rate] != 0.0:
+                last_set, with_rate = u[i], rate in values or name in rates
+                if last_set == way.last_set and with_rate and u[i_rate] != 0.0:
                     u[i] = present[0][i]
-                way = way._replace(told=told)
+                way = way._replace(last_set=last_set)
             if u[i] != present[0][i] and way.since != t:
                 way = way._replace(since=t, interval=next_interval(way.interval, t - way.since))
             ways.append(way)

@@ -16,7 +16,7 @@ class Way(NamedTuple):
     """The way of the ground to the position [m, rad] that was set last. Times are in s."""
 
     goal: float  # position as it was set, at the solver's t_input
-    told: float  # the last value that was set
+    last_set: float
     since: float  # time at which the goal was last set to another place
     interval: float  # time between such settings; 0 before the first
     end: float  # time at which the ground is at the goal

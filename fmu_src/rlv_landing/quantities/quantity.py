@@ -8,7 +8,7 @@ from math import inf
 from typing import Literal
 
 Source = Literal["paper", "derived", "closure", "identified", "user"]
-# what tells the quantities of one leg from those of another
+# what distinguishes the quantities of one leg from those of another
 LEG_INDEX = re.compile(r"(?<![^.])leg\[\d+\]")
 
 

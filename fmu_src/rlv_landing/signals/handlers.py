@@ -47,7 +47,7 @@ class Handlers:
         self._before: dict[int, Any] = {}
 
     def set(self) -> bool:
-        """Set the handlers, in the main thread; whether they stand."""
+        """Set the handlers, in the main thread; whether they are set."""
         if not _in_main_thread():
             return False
         for number in ENDING:

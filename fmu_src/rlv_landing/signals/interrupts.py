@@ -37,7 +37,8 @@ class Interrupt(KeyboardInterrupt):
 class Interrupts:
     """Raises `Interrupt` at the first of the signals that end a command, once, while it is open.
 
-    One that comes before is raised by `open`; one that comes later takes its way after `fall`.
+    One that comes before is raised by `open`; one that comes later is sent again by
+    `restore_handlers`.
     """
 
     def __init__(self) -> None:
@@ -47,7 +48,7 @@ class Interrupts:
         self._handlers = Handlers(self._on_signal)
         self._alarm: Any = None
 
-    def stand(self) -> None:
+    def set_handlers(self) -> None:
         """Set the handlers, in the main thread; signals are noted."""
         if self._handlers.set() and TIMED:
             self._alarm = signal.signal(signal.SIGALRM, self._on_alarm)
@@ -64,7 +65,7 @@ class Interrupts:
         if self.number and not self.answered:
             raise Interrupt(self)
 
-    def fall(self) -> None:
+    def restore_handlers(self) -> None:
         """Set the handlers that were before; a signal that nothing has answered follows."""
         self._open = False
         if self._alarm is not None:
@@ -105,8 +106,8 @@ def _importing(frame: FrameType | None) -> bool:
     return False
 
 
-# what stands in this process
-_standing: Interrupts | None = None
+# the one whose handlers are set in this process
+_current: Interrupts | None = None
 
 
 def answer() -> int:
@@ -115,8 +116,8 @@ def answer() -> int:
     To be called in each `except KeyboardInterrupt` that ends a command.
     """
     number = 0
-    if _standing is not None:
-        _standing.answered, number = True, _standing.number
+    if _current is not None:
+        _current.answered, number = True, _current.number
     # a handler within may have had it
     return 128 + (number or last_signal() or signal.SIGINT)
 
@@ -124,22 +125,22 @@ def answer() -> int:
 @contextmanager
 def interrupts() -> Iterator[Interrupts]:
     """The signals that end a command raise KeyboardInterrupt in the body."""
-    global _standing
+    global _current
     here = Interrupts()
-    before, hook = _standing, sys.unraisablehook
+    before, hook = _current, sys.unraisablehook
 
     def keep_silent(lost: Any) -> None:
         # it is raised again
         if not isinstance(lost.exc_value, Interrupt):
             hook(lost)
 
-    _standing, sys.unraisablehook = here, keep_silent
-    here.stand()
+    _current, sys.unraisablehook = here, keep_silent
+    here.set_handlers()
     try:
         yield here
     finally:
-        here.fall()
-        _standing, sys.unraisablehook = before, hook
+        here.restore_handlers()
+        _current, sys.unraisablehook = before, hook
 
 
 @contextmanager

@@ -121,14 +121,14 @@ def judged(
         "slid": max((float(s[-1]) for s in slips if len(s)), default=0.0),
         "joint_clearance": _joint_clearance(history, joints),
     }
+    first_slide = min(_first_beyond(s, slide, len(history)) for s in slips)
     name: Name
     if toppled:
         name, time = "toppled", end
     elif bottomed:
         name, time = "bottomed out", bottomed[0][0]
-    elif any(len(s) and s.max() > slide for s in slips):
-        first = min(_first_beyond(s, slide, len(history)) for s in slips)
-        name, time = "slid", float(history.time[first])
+    elif first_slide < len(history):
+        name, time = "slid", float(history.time[first_slide])
     elif phase[-1] == SETTLED:
         name, time = "settled", float(history.time[_first_of_last_period(phase, SETTLED)])
     else:

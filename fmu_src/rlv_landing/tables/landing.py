@@ -142,21 +142,33 @@ def summary_table(history: History, title: str, outcome: str = "") -> str:
         ),
     )
     for leg in s["legs"]:
-        table.add_row(
-            str(leg["leg"]),
-            number(leg["contact_time"], "s"),
-            f"{leg['main_strut_force_min'] / 1e3:.2f}",
-            f"{leg['main_strut_force_min_time']:.3f}",
-            f"{leg['main_strut_stroke_max'] * 1e3:.2f}",
-            f"{leg['main_strut_stroke_max_time']:.3f}",
-            f"{leg['auxiliary_strut_force_min'] / 1e3:.2f} ... "
-            f"{leg['auxiliary_strut_force_max'] / 1e3:+.2f}",
-            f"{leg['contact_force_max'] / 1e3:.2f}",
-            f"{leg['contact_force_max_time']:.3f}",
-            decimals(leg["main_strut_absorbed"], 1),
-            decimals(leg["main_strut_dissipated"], 1),
-            decimals(leg["main_strut_efficiency"], 3),
-        )
+        table.add_row(*_leg_row(leg))
+    notes = [*unfinished(s), FIRST_STROKE, peaks_note(history)]
+    return render(table, 190) + "\n".join([*_outcome_lines(s, outcome), *notes]) + "\n"
+
+
+def _leg_row(leg: Mapping[str, Any]) -> tuple[str, ...]:
+    """The cells of a leg in the table of peaks."""
+    low, high = leg["auxiliary_strut_force_min"], leg["auxiliary_strut_force_max"]
+    return (
+        str(leg["leg"]),
+        number(leg["contact_time"], "s"),
+        f"{leg['main_strut_force_min'] / 1e3:.2f}",
+        f"{leg['main_strut_force_min_time']:.3f}",
+        f"{leg['main_strut_stroke_max'] * 1e3:.2f}",
+        f"{leg['main_strut_stroke_max_time']:.3f}",
+        f"{low / 1e3:.2f} ... {high / 1e3:+.2f}",
+        f"{leg['contact_force_max'] / 1e3:.2f}",
+        f"{leg['contact_force_max_time']:.3f}",
+        decimals(leg["main_strut_absorbed"], 1),
+        decimals(leg["main_strut_dissipated"], 1),
+        decimals(leg["main_strut_efficiency"], 3),
+    )
+
+
+def _outcome_lines(summary: Mapping[str, Any], outcome: str) -> list[str]:
+    """How a landing ended, as lines; `outcome` is taken where the summary has none."""
+    s = summary
     ended = (
         f"after {s['end_time']:.3f} s: {s.get('outcome', outcome) or 'outcome not known'}; "
         f"top acceleration up to {s['top_axial_acceleration_max']:.2f} m/s2 "
@@ -175,8 +187,7 @@ def summary_table(history: History, title: str, outcome: str = "") -> str:
             f"BOTTOMED OUT: {dampers_of(s['bottomed_out'])} met "
             f"{'its' if len(s['bottomed_out']) == 1 else 'their'} compression stop"
         )
-    notes = [*unfinished(s), FIRST_STROKE, peaks_note(history)]
-    return render(table, 190) + "\n".join([*lines, *notes]) + "\n"
+    return lines
 
 
 def parameter_table(parameters: Parameters) -> str:

@@ -178,7 +178,7 @@ def writing(path: Path, remedy: str = "name another") -> Iterator[None]:
 class FolderLock:
     """The lock of a folder, by its file `.lock`, held until `release` or the end of the process.
 
-    A killed process holds it no longer.
+    A killed process does not hold it.
 
     Args:
         folder: The folder, which is made.
@@ -220,7 +220,7 @@ class FolderLock:
             raise
 
     def release(self) -> None:
-        """Give the folder free."""
+        """Release the lock."""
         if self._file >= 0:
             os.close(self._file)
             self._file = -1

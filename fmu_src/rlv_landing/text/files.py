@@ -139,7 +139,7 @@ def read_record(path: Path) -> dict[str, Any]:
 def check_sum(record: Mapping[str, Any]) -> int:
     """The CRC-32 of a record without its `check`, whatever the order of its keys.
 
-    A digit that is changed makes another number, which may be as good; the sum tells.
+    A changed digit makes another number, which may be as plausible; the sum shows the change.
     """
     kept = {key: value for key, value in record.items() if key != "check"}
     return zlib.crc32(json.dumps(kept, sort_keys=True).encode())
@@ -172,7 +172,7 @@ def parse_document(text: str, name: str) -> dict[str, Any]:
     if max(part.count(".") for part in re.split(r"[\n,=\[\]{}#]", plain)) > DEEPEST:
         raise LandingError(f"{name}: TOML syntax: a key has more than {DEEPEST} parts")
     try:
-        # a number that a float cannot tell from 0 is refused
+        # a number that a float cannot distinguish from 0 is refused
         document = tomllib.loads(text, parse_float=_toml_float)
     except LandingError as e:
         raise LandingError(f"{name}: {e}") from None

@@ -1,4 +1,4 @@
-"""Input files that may be pipes or terminals, as `<(command)` gives: a wait for them is told.
+"""Input files that may be pipes or terminals, as `<(command)` gives: a wait for them is reported.
 
 A pipe whose writer does not come, or writes nothing, would hold a command for ever without a word.
 """
@@ -18,8 +18,8 @@ from typing import BinaryIO, NoReturn
 
 from ..signals.handlers import Handlers
 
-# after this time [s] without a byte the user is told
-PATIENCE = 2.0
+# after this time [s] without a byte the wait is reported
+SILENT_SECONDS = 2.0
 
 
 def open_input(path: Path) -> BinaryIO:
@@ -56,7 +56,7 @@ class _Waiting(io.RawIOBase):
     def __init__(self, handle: int, path: Path) -> None:
         self._handle = handle
         self._path = path
-        self._told = False
+        self._reported = False
 
     def readable(self) -> bool:
         return True
@@ -73,8 +73,8 @@ class _Waiting(io.RawIOBase):
         poll = select.poll()
         poll.register(self._handle, select.POLLIN)
         with _interruptible():
-            if not self._told and not poll.poll(1000.0 * PATIENCE):
-                self._told = True
+            if not self._reported and not poll.poll(1000.0 * SILENT_SECONDS):
+                self._reported = True
                 print(
                     f"waiting for {self._path}, to which nothing is written yet; Ctrl-C ends this",
                     file=sys.stderr,

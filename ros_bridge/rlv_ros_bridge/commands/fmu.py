@@ -197,7 +197,7 @@ def simulate(
     """Land one of our FMUs once through FMPy; print outcome and peaks.
 
     The result is that of `rlv-landing simulate` with the same parameters and inputs. An FMU of FMI
-    3.0 is told linear loads in steps of at most 1 ms.
+    3.0 gets linear loads in steps of at most 1 ms.
 
     \b
     Examples:
@@ -242,7 +242,7 @@ def _landed(file: Path, options: dict[str, Any]) -> tuple[History, str]:
     if description.fmiVersion == "3.0" and (names := sloped(inputs)):
         print_warning(
             f"FMI 3.0 has no rates of inputs; {', '.join(names)} is set in steps of at most 1 ms, "
-            "at the mean of each; an FMU of FMI 2.0 is told the slope"
+            "at the mean of each; an FMU of FMI 2.0 gets the slope"
         )
     until = options["until"]
     if until is None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -24,6 +25,10 @@ from rlv_landing.text.durable import writing
 from rlv_landing.text.files import shown_name
 
 from ..logs.libraries import require_log_readers
+
+if TYPE_CHECKING:
+    from ..logs.instants import RowChoice
+    from ..logs.reader import LogReader
 
 EXIT_DIFFERS = 1
 EXIT_CUT = 3
@@ -45,8 +50,8 @@ def log() -> None:
 def info(log: Path, *, as_json: bool, check: bool) -> None:
     """Show the contents of a log: topics, parameters, outcome and peaks of the landing.
 
-    The log's summary and its record of the landing tell them. A log without, which is cut or of
-    another program, is read through, as is one with --check. LOG may be cut, or damaged.
+    They come from the log's summary and its record of the landing. A log that lacks them, cut or of
+    another program, is read through, as is every log with --check. LOG may be cut, or damaged.
 
     \b
     Examples:
@@ -178,11 +183,32 @@ def export(
     Exit codes: 0 written, 2 bad input, 3 written but the log is cut or damaged.
     """
     require_log_readers()
-    from ..fmu.peaks import known_extremes
     from ..logs.bag_reader import open_log
-    from ..logs.export import ENDINGS, Written, write_parts
-    from ..logs.history import HistoryParts, drawn_history, with_parts
     from ..logs.instants import RowChoice
+
+    _check_outputs(output, plot, topics, force=force)
+    reader = open_log(log)
+    notes: list[str] = []
+    if output is not None:
+        notes = _export_rows(reader, output, split_names(topics), RowChoice(**span))
+    if plot is not None:
+        notes = _export_picture(reader, plot, shown_name(log), RowChoice(**span))
+    for note in notes:
+        click.echo(one_line(note), err=True)
+    if reader.cut:
+        warn_incomplete_and_exit(log, reader.damage)
+
+
+def _check_outputs(
+    output: Path | None, plot: Path | None, topics: tuple[str, ...], *, force: bool
+) -> None:
+    """Check that there is something to write, and that it can be written.
+
+    Raises:
+        LandingError: There is nothing, an ending is wrong, a file exists and `force` is not given,
+            or the picture lacks topics.
+    """
+    from ..logs.export import ENDINGS
 
     if output is None and plot is None:
         raise LandingError(
@@ -194,33 +220,40 @@ def export(
     check_writable(plot, ".png", force=force)
     if plot is not None and topics:
         raise LandingError("--plot needs every topic; leave --topics out")
-    reader = open_log(log)
-    choice = RowChoice(**span)
-    notes: list[str] = []
-    if output is not None:
 
-        def write(parts: HistoryParts) -> tuple[Written, list[str]]:
-            peaks = parts.peaks()
-            return write_parts(
-                parts, output, known_extremes(peaks) if peaks else None
-            ), parts.notes()
 
-        done, notes = with_parts(reader, split_names(topics), choice, write)
-        click.echo(
-            f"{output}: {done.rows} instants from {done.first:g} s to {done.last:g} s, "
-            f"{done.columns} columns"
-        )
-    if plot is not None:
-        from rlv_landing.figures.plots import COLUMNS, save_overview
+def _export_rows(
+    reader: LogReader, output: Path, topics: list[str], choice: RowChoice
+) -> list[str]:
+    """Write the rows of a log to a file; notes on what was left out."""
+    from ..fmu.peaks import known_extremes
+    from ..logs.export import Written, write_parts
+    from ..logs.history import HistoryParts, with_parts
 
-        history, notes = drawn_history(reader, choice, COLUMNS)
-        with writing(plot):
-            save_overview(history, plot, shown_name(log))
-        click.echo(f"picture: {plot}")
-    for note in notes:
-        click.echo(one_line(note), err=True)
-    if reader.cut:
-        warn_incomplete_and_exit(log, reader.damage)
+    def write(parts: HistoryParts) -> tuple[Written, list[str]]:
+        peaks = parts.peaks()
+        extremes = known_extremes(peaks) if peaks else None
+        return write_parts(parts, output, extremes), parts.notes()
+
+    done, notes = with_parts(reader, topics, choice, write)
+    click.echo(
+        f"{output}: {done.rows} instants from {done.first:g} s to {done.last:g} s, "
+        f"{done.columns} columns"
+    )
+    return notes
+
+
+def _export_picture(reader: LogReader, plot: Path, title: str, choice: RowChoice) -> list[str]:
+    """Draw the overview of a log's landing to a file; notes on what was left out."""
+    from rlv_landing.figures.plots import COLUMNS, save_overview
+
+    from ..logs.history import drawn_history
+
+    history, notes = drawn_history(reader, choice, COLUMNS)
+    with writing(plot):
+        save_overview(history, plot, title)
+    click.echo(f"picture: {plot}")
+    return notes
 
 
 def split_names(texts: tuple[str, ...]) -> list[str]:

@@ -96,7 +96,7 @@ from ..ros.arguments import ROS_COMMAND_SETTINGS, split_ros_args
     "--start-delay",
     type=Number("s"),
     metavar="SECONDS",
-    help="Wait for so long after that; /clock stands meanwhile. Default: 0.",
+    help="Wait for so long after that; /clock is held meanwhile. Default: 0.",
 )
 @click.option(
     "--managed",

@@ -91,7 +91,7 @@ from .log import split_names, warn_incomplete_and_exit
     default=0.0,
     show_default=True,
     metavar="SECONDS",
-    help="Wait for so long after that; /clock stands meanwhile.",
+    help="Wait for so long after that; /clock is held meanwhile.",
 )
 @click.argument("ros_args", nargs=-1, type=click.UNPROCESSED)
 def replay(log: Path, topics: tuple[str, ...], ros_args: tuple[str, ...], **options: Any) -> None:

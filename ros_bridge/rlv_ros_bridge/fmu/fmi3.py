@@ -89,7 +89,7 @@ def with_ground_rates(values: Mapping[str, float], rates: Mapping[str, float]) -
             found[RATE_INPUTS[name]] = rate
         elif rate != 0.0:
             raise LandingError(
-                f"{name} has a rate of {rate:g} per second, which FMI 3.0 cannot tell; set it in "
+                f"{name} has a rate of {rate:g} per second, which FMI 3.0 cannot carry; set it in "
                 "steps, or build the FMU for FMI 2.0"
             )
     return found

@@ -143,7 +143,7 @@ def sloped(settings: Sequence[Setting]) -> list[str]:
 
 
 def in_steps(settings: Sequence[Setting], step: float, until: float) -> Iterator[Setting]:
-    """What is set where the rates of `sloped` inputs cannot be told: their means in each step.
+    """What is set where `sloped` inputs cannot have rates: their means in each step.
 
     Args:
         settings: What is set, in the order of time.

@@ -20,7 +20,7 @@ from .runner import FmuRunner
 
 # a step with all outputs takes at least so long [s]
 SECONDS_PER_SAMPLE = 15e-6
-# the longest step in which a linear load is constant, where its rate cannot be told [s]
+# the longest step in which a linear load is constant, where it cannot have a rate [s]
 LONGEST_STEP = 1e-3
 
 
@@ -35,8 +35,8 @@ def land_fmu(
     """Land an FMU; return its outputs every `every` [s], and its true peaks.
 
     The communication points are the samples, and the times at which inputs are set between them.
-    Results do not depend on the samples. Linear loads on an FMU of FMI 3.0, which cannot be told
-    their rates, are set at their means in steps of at most 1 ms.
+    Results do not depend on the samples. Linear loads on an FMU of FMI 3.0, which has no
+    rates, are set at their means in steps of at most 1 ms.
 
     Args:
         path: The FMU.

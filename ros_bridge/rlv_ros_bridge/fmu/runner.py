@@ -249,7 +249,7 @@ class FmuRunner:
             rates: their rates, per second; the others are constant.
 
         Raises:
-            LandingError: an unknown name, a rate that the FMU's version of FMI cannot tell, or the
+            LandingError: an unknown name, a rate that the FMU's version of FMI cannot carry, or the
                 FMU refuses a value.
         """
         for name in (*inputs, *(rates or {})):

@@ -120,7 +120,7 @@ def _stamp(message: LogMessage, decode: Decoder) -> int:
     if len(data) < STAMP_BYTES:
         decode(message)
         raise LandingError(f"a message of {message.topic} is too short for a header")
-    # The encapsulation's second byte tells the byte order.
+    # The encapsulation's second byte is the byte order.
     form = "<iI" if data[1] & 1 else ">iI"
     seconds, nanoseconds = struct.unpack_from(form, data, ENCAPSULATION)
     return int(seconds) * NANOSECONDS + int(nanoseconds)

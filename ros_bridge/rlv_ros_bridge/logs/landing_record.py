@@ -1,7 +1,7 @@
 """A log's record of its landing's summary, so that nobody reads the messages for it.
 
 It is a metadata record at the log's end. `landing` is a JSON object: what `rlv_landing.summary`
-tells of the landing's messages, with the outcome, and `acceleration_peak` for each leg. SI units.
+says of the landing's messages, with the outcome, and `acceleration_peak` for each leg. SI units.
 """
 
 from __future__ import annotations

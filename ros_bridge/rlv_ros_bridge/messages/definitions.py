@@ -37,7 +37,7 @@ class Definition:
     Args:
         name: `pkg/msg/Type`.
         text: its `.msg` text and those of its parts, in the form of MCAP's `ros2msg` schema.
-        type_hash: `RIHS01_...`; empty where the package does not tell it.
+        type_hash: `RIHS01_...`; empty where the package does not have it.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""The table of which output of the model stands in which field of which message: `FIELDS`.
+"""`FIELDS`, the table of the outputs that the fields of messages carry.
 
 Messages are filled and packed by it (`samples.py`) and read back (`columns.py`), and `log verify`
 compares logs with it (`expected_fields`). A line here adds an output to a message. Needs no ROS 2.
@@ -137,7 +137,7 @@ def _imu(
     )
 
 
-# Columns of logs stand in this order. Odometry repeats what other topics carry, so it is not read
+# Columns of logs are in this order. Odometry repeats what other topics carry, so it is not read
 # back. Its twist is in the body's frame, by nav_msgs/Odometry's definition.
 FIELDS: tuple[Field, ...] = (
     Field(STRUTS, _elements("position"), strut_outputs("stroke")),

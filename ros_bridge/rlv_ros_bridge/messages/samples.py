@@ -100,7 +100,7 @@ class SampleBytes:
         vehicle: what they tell beside the outputs.
         prefixes: by topic, what comes before its message in what `pack` gives; see `MessageLayout`.
 
-    `vehicle` is as given. `topics` are in the order of the messages; `slices` tell where each one's
+    `vehicle` is as given. `topics` are in the order of the messages; `slices` are where each one's
     message is in what `pack` gives.
     """
 

@@ -1,6 +1,6 @@
 """The topics of a landing: their names, types and periods.
 
-Which field of a message carries which output is told by the table in `fields.py`.
+The table in `fields.py` says which field of a message carries which output.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ from rlv_landing.errors import LandingError
 NANOSECONDS = 1_000_000_000
 # A stamp that no number of a message looks like.
 SENTINEL_STAMP = 305_419_896 * NANOSECONDS + 591_751_049
-# CDR: four bytes of encapsulation, which tell the byte order, then the fields; a float64 begins at
+# CDR: four bytes of encapsulation, which give the byte order, then the fields; a float64 begins at
 # a multiple of eight from there.
 ENCAPSULATION = 4
 # A message's stamp: seconds, nanoseconds. What follows a prefix: sequence number, stamp twice [ns].
@@ -60,7 +60,7 @@ class MessageLayout:
             follow a sequence number (uint32) and the stamp [ns] (uint64) twice, and then the
             message: a record of MCAP.
 
-    `slices` tell where each message is in what `pack` gives, without its prefix.
+    `slices` are where each message is in what `pack` gives, without its prefix.
 
     Raises:
         LandingError: the messages are not in little-endian plain CDR, which is what Fast DDS and

@@ -42,7 +42,7 @@ class DiagnosticsMessage:
 
     Args:
         name: full name of the node.
-        mode: landing mode, which stands in the hardware id.
+        mode: landing mode, which is part of the hardware id.
     """
 
     def __init__(self, name: str, mode: str) -> None:

@@ -124,10 +124,10 @@ class LandingRun:
         self._start_clock = packer.pack(1, [0.0] * len(OUTPUT_NAMES))[packer.slices[0]]
 
     def publish_start_clock(self) -> None:
-        """Publishes `/clock`, if the node does, as it stands until the landing starts.
+        """Publishes `/clock`, if the node does, with its value until the landing starts.
 
-        It is 1 ns, and so it is at sample 0: to ROS a clock at 0 has not started, and who waits for
-        it, as a recorder in simulation time, would miss the landing.
+        That is 1 ns, also at sample 0: to ROS a clock at 0 has not started, and what waits for it,
+        such as a recorder in simulation time, would miss the landing.
         """
         clock = self._publishing.publishers.get(topics.CLOCK)
         if clock is not None:

@@ -59,7 +59,7 @@ class LandingThread:
             self._on_error(as_landing_error(e))
 
     def _wait_for_start(self, s: Settings) -> None:
-        """Waits for subscribers, and then for `start_delay`; meanwhile `/clock` stands.
+        """Waits for subscribers, and then for `start_delay`; meanwhile `/clock` is held.
 
         Raises:
             LandingError: there are not enough subscribers in time.
@@ -82,7 +82,7 @@ class LandingThread:
 
 
 def as_landing_error(error: Exception) -> LandingError:
-    """An error as one that is told in one line; another than ours with its type."""
+    """An error as one that fits in one line; another than ours with its type."""
     if isinstance(error, LandingError):
         return error
     return LandingError(f"{type(error).__name__}: {reason_of(error)}")

@@ -122,7 +122,7 @@ SETTINGS: dict[str, Setting] = {
     "wait_timeout": Setting(30.0, "longest wait for them [s]", 0.0, 86400.0, unit="s"),
     "start_delay": Setting(
         0.0,
-        "wall time [s] for which the landing waits after that, while /clock stands",
+        "wall time [s] for which the landing waits after that, while /clock is held",
         0.0,
         86400.0,
         unit="s",

@@ -176,7 +176,7 @@ class ReplayNode(Node):
         )
 
     def _wait_for_start(self) -> None:
-        """Waits for subscribers, and then for `start_delay`; meanwhile `/clock` stands.
+        """Waits for subscribers, and then for `start_delay`; meanwhile `/clock` is held.
 
         Raises:
             LandingError: there are not enough subscribers in time.

@@ -42,7 +42,7 @@ class Restamper:
         It is unchanged where its type has neither a header nor a list of what has headers.
         """
         if topic in self._stamped and len(data) >= ENCAPSULATION + 8:
-            # The encapsulation's second byte tells the byte order; the stamp comes right after it.
+            # The encapsulation's second byte is the byte order; the stamp comes right after it.
             form = "<iI" if data[1] & 1 else ">iI"
             seconds, nanoseconds = struct.unpack_from(form, data, ENCAPSULATION)
             stamp = divmod(seconds * NANOSECONDS + nanoseconds + self._shift, NANOSECONDS)

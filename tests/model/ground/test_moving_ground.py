@@ -203,8 +203,8 @@ def test_the_ground_moves_to_a_position_linearly_on_top_of_its_rates(position, r
     inputs = DrivenInputs(solver)
     start = dt = 4e-3
     advance(solver, start)
-    told = dict(zip(("ground.heave", "ground.tilt"), position))
-    inputs.set(start, {**told, **dict(zip(("ground.heave_rate", "ground.tilt_rate"), rates))}, {})
+    goals = dict(zip(("ground.heave", "ground.tilt"), position))
+    inputs.set(start, {**goals, **dict(zip(("ground.heave_rate", "ground.tilt_rate"), rates))}, {})
     inputs.begin_step(start, start + dt)
     advance(solver, start + dt)
     solver.inputs_at(start + part * dt)

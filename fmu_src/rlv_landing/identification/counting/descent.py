@@ -2,7 +2,7 @@
 
 The count of scalars within 5, 10 and 20 % has steps, not slopes. Counted softly (`SoftCount`) it
 has both. The softness falls from about the bounds' own size to a small part of it; so the soft
-count becomes the hard one, and scalars that nothing can mend are left alone. Iteratively reweighted
+count becomes the hard one, and scalars that no step improves are left alone. Iteratively reweighted
 least squares make it small, with Levenberg-Marquardt's damping and the cube's faces by an active
 set. A step costs one landing for each free number and a few for the dampings, tried side by side.
 """
@@ -17,8 +17,8 @@ from .differences import Evaluate, Vector, differences
 from .soft_count import SoftCount
 
 SOFTNESSES = (0.6, 0.4, 0.25, 0.15, 0.1, 0.05)
-# standard deviations of the rounds' first steps, on the unit cube
-KICKS = (0.0, 0.02, 0.04, 0.02, 0.08)
+# standard deviations of the rounds' random first steps, on the unit cube
+SPREADS = (0.0, 0.02, 0.04, 0.02, 0.08)
 DAMPINGS = tuple(10.0 ** (0.5 * k) for k in range(-3, 8))
 # difference for the Jacobian, and largest step, on the unit cube
 DIFFERENCE, LARGEST_STEP = 4e-3, 0.2
@@ -35,7 +35,7 @@ def count_round(
     evaluate: Evaluate,
     start: Sequence[float],
     seed: Sequence[int],
-    kick: float,
+    spread: float,
 ) -> None:
     """One round of the search: falling softness, and at each as many steps as help.
 
@@ -43,12 +43,12 @@ def count_round(
         soft_count: What is made small.
         evaluate: Gets all points that are tried, and keeps the best.
         start: The point at which the round begins, on the unit cube.
-        seed: Seed of the kick.
-        kick: Standard deviation of the normal deviate by which the start is moved, on the cube.
+        seed: Seed of the random first step.
+        spread: Its standard deviation along each number, on the cube; 0 for no such step.
     """
     z = np.asarray(start, dtype=float)
-    if kick > 0.0:
-        moved = z + np.random.default_rng(seed).normal(0.0, kick, len(z))
+    if spread > 0.0:
+        moved = z + np.random.default_rng(seed).normal(0.0, spread, len(z))
         z = np.clip(moved, MARGIN, 1.0 - MARGIN)
     (misfits,) = evaluate([z.tolist()])
     for softness in SOFTNESSES:

@@ -1,4 +1,4 @@
-"""Linear programmes in turn that mend the bounds that are missed by little.
+"""A series of linear programmes, whose steps meet bounds that are missed by little.
 
 Near a point the misfits are linear. A step that makes the weighted sum of the excesses over all
 bounds small is a linear programme. Such sums are made small by few large excesses and many that
@@ -22,7 +22,7 @@ BENDS = (0.3, 0.1, 0.04)
 INSIDE = 1.5e-3
 # largest steps along each number, on the unit cube, tried side by side
 REGIONS = (0.1, 0.04, 0.016, 0.006)
-# cost of a step by one along a number, so that numbers which mend nothing stay
+# cost of a step by one along a number, so that numbers which improve nothing stay
 STEP_PRICE = 0.02
 DIFFERENCES = (4e-3, 2e-3)
 # slopes of more error than this across the cube are those of an event that comes or goes

@@ -144,15 +144,7 @@ def read_factor(entry: Mapping[str, Any]) -> Factor:
             f"{where}: unit = {unit!r} must be a text, "
             f'for example unit = "{q.display_unit or q.unit}"'
         )
-    distribution = entry.get("distribution", "choice" if "values" in entry else "uniform")
-    if not isinstance(distribution, str) or distribution not in DISTRIBUTIONS:
-        raise unknown(f"distribution of {where}", distribution, DISTRIBUTIONS)
-    for key in entry:
-        if key not in ("name", "unit", "distribution", *DISTRIBUTIONS[distribution]):
-            raise LandingError(
-                f"{where}: {key} does not belong to {distribution}, "
-                f"which takes {', '.join(DISTRIBUTIONS[distribution])}"
-            )
+    distribution = _distribution(entry, where)
     if q.choices and distribution != "choice":
         raise LandingError(f"{where} is one of {', '.join(q.choices)}; give values = [...]")
     if not q.choices:
@@ -181,6 +173,20 @@ def read_factor(entry: Mapping[str, Any]) -> Factor:
         high = numbers.needed("high", distribution)
     _check_range(q, low, high, distribution)
     return Factor(q, unit, distribution, low, high, mean, deviation, count)
+
+
+def _distribution(entry: Mapping[str, Any], where: str) -> str:
+    """The distribution of a `[[factor]]` table, none of whose keys belongs to another."""
+    distribution = entry.get("distribution", "choice" if "values" in entry else "uniform")
+    if not isinstance(distribution, str) or distribution not in DISTRIBUTIONS:
+        raise unknown(f"distribution of {where}", distribution, DISTRIBUTIONS)
+    for key in entry:
+        if key not in ("name", "unit", "distribution", *DISTRIBUTIONS[distribution]):
+            raise LandingError(
+                f"{where}: {key} does not belong to {distribution}, "
+                f"which takes {', '.join(DISTRIBUTIONS[distribution])}"
+            )
+    return distribution
 
 
 class _Numbers:

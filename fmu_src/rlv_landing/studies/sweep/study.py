@@ -156,6 +156,7 @@ def read_study(path: Path) -> Study:
 
 
 def _study(document: dict[str, Any], path: Path, text: str) -> Study:
+    """The study of a file's `document` and `text`."""
     toml_keys.refuse_unknown(document, TABLES, "table")
     keys = toml_keys.table(document, "study")
     toml_keys.refuse_unknown(keys, KEYS, "key of [study]")
@@ -167,9 +168,7 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
     fixed = toml_keys.values(toml_keys.table(document, "set"), VARIABLES, "quantity in [set]")
     factors = tuple(read_factor(entry) for entry in toml_keys.tables(document, "factor"))
     given = [*fixed, *(f.name for f in factors)]
-    for name in given:
-        if given.count(name) > 1:
-            raise LandingError(f"{name} is given twice, in [set] or as a [[factor]]; leave one")
+    _check_given_once(given)
     table = _states(keys, method, path, given)
     if table is None and not factors:
         raise LandingError(
@@ -182,18 +181,8 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
     parameters = _parameters(keys, path, fixed)
     numbers = {name: toml_keys.number(keys, q) for name, q in NUMBERS.items()}
     until = toml_keys.number(keys, UNTIL) if "until" in keys else None
-    longest = LONGEST_WAIT if until is None else until
-    if numbers["every"] > longest:
-        raise LandingError(
-            f"every = {numbers['every']:g} s is above until = {longest:g} s; "
-            "no landing would have a second sample"
-        )
-    limits = {
-        name: float(v)
-        for name, v in toml_keys.values(
-            toml_keys.table(document, "limits"), LIMITS, "limit"
-        ).items()
-    }
+    _check_samples_apart(numbers["every"], until)
+    limits = toml_keys.values(toml_keys.table(document, "limits"), LIMITS, "limit")
     name = toml_keys.text(keys, "name", path.stem)
     if Path(name).name != name:
         raise LandingError(f"name = {name!r} names a folder; take one without '/'")
@@ -205,7 +194,7 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
         parameters=parameters,
         modes=_modes(keys, parameters, {*given, *(table.columns if table is not None else ())}),
         responses=expand(toml_keys.texts(keys, "responses")),
-        limits=limits,
+        limits={name: float(v) for name, v in limits.items()},
         fixed=fixed,
         factors=factors,
         table=table,
@@ -213,6 +202,22 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
         until=until,
         **numbers,
     )
+
+
+def _check_given_once(given: list[str]) -> None:
+    for name in given:
+        if given.count(name) > 1:
+            raise LandingError(f"{name} is given twice, in [set] or as a [[factor]]; leave one")
+
+
+def _check_samples_apart(every: float, until: float | None) -> None:
+    """Check that a landing that ends at `until` [s] has two samples that are `every` [s] apart."""
+    longest = LONGEST_WAIT if until is None else until
+    if every > longest:
+        raise LandingError(
+            f"every = {every:g} s is above until = {longest:g} s; "
+            "no landing would have a second sample"
+        )
 
 
 def _states(

@@ -176,7 +176,7 @@ def _from_lz4(data: bytes, size: int) -> bytes:
     from lz4.frame import LZ4FrameDecompressor
 
     reader = LZ4FrameDecompressor()
-    # One byte more than it says tells one that says too little.
+    # One byte more than it claims: so a chunk that claims too little is found.
     found = bytes(reader.decompress(data, max_length=size + 1))
     return found if reader.eof else b""
 

@@ -33,7 +33,7 @@ from .search import find_chunk
 # The library name in the header of our logs. They hold all checksums, and all messages in
 # compressed chunks.
 LIBRARY = "rlv-landing"
-# Defects of a file that are told one by one.
+# Defects of a file that are listed one by one.
 MOST_TOLD = 100
 # Bytes of the footer, head included, that the summary's checksum covers.
 FOOTER_BYTES_IN_CRC = 16
@@ -110,7 +110,7 @@ class RecordStream:
                     return
 
     def _note(self, damage: str) -> None:
-        """Notes a defect; of very many only the first are told one by one."""
+        """Notes a defect; of very many only the first are listed one by one."""
         self._defects += 1
         if self._defects <= MOST_TOLD:
             self.damage.append(damage)

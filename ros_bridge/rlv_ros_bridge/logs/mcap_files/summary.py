@@ -64,7 +64,7 @@ class ChunkPlace:
 
 @dataclass
 class Summary:
-    """What a file tells without its messages being read.
+    """What is known of a file without reading its messages.
 
     `definitions` are its schemas and channels, `others` its metadata and attachments, in the file's
     order. `statistics` is MCAP's record. `ours`: it is a log of this program, all of whose parts
@@ -98,8 +98,8 @@ class Summary:
 def read_summary(path: Path) -> Summary | None:
     """The summary of the file at `path`; None where it has none that is whole and right.
 
-    So it is of a file that is cut, whose bytes were moved, or whose writer gave no checksum. That
-    no byte of its messages was changed only reading them tells.
+    A file that is cut, whose bytes were moved, or whose writer gave no checksum has none. Whether a
+    byte of its messages was changed, only reading them shows.
     """
     with path.open("rb") as file:
         size = file.seek(0, 2)
