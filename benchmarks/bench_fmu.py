@@ -29,6 +29,7 @@ from typing import Any
 import fmpy
 from fmpy.fmi2 import FMU2Slave
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 from rows import FMU, append_rows, start
 
@@ -160,7 +161,7 @@ def cost_table(best: dict[str, dict[str, float]], load: float) -> Table:
         ("step_get", "fmi2DoStep and all Real outputs in one call", 1e6, "us"),
     ):
         table.add_row(
-            f"{what} [{unit}]",
+            escape(f"{what} [{unit}]"),
             f"{scale * ours[key]:.1f}",
             f"{scale * empty[key]:.1f}",
             f"{ours[key] / empty[key]:.1f}",

@@ -1,4 +1,4 @@
-"""Snippets, commands and links of the README work as they stand."""
+"""Snippets, commands and links of the README, and snippets of docs/fmu.md, work as they stand."""
 
 import re
 import subprocess
@@ -14,12 +14,13 @@ ROOT = Path(__file__).resolve().parent.parent
 # commands that are groups of commands
 GROUPS = ("log", "fmu")
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-SNIPPETS = re.findall(r"```python\n(.*?)```", README, re.S)
+PAGES = README + (ROOT / "docs" / "fmu.md").read_text(encoding="utf-8")
+SNIPPETS = re.findall(r"```python\n(.*?)```", PAGES, re.S)
 COMMANDS = re.findall(r"\.venv/bin/rlv-landing ([^\n#]+)", README)
 
 
-@pytest.mark.parametrize("snippet", SNIPPETS, ids=lambda s: s.split("\n", 1)[0])
-def test_python_snippets_run(snippet, fmu):
+@pytest.mark.parametrize("snippet", SNIPPETS, ids=range(len(SNIPPETS)))
+def test_python_snippets_run(snippet, fmu, fmu3):
     subprocess.run(
         [sys.executable, "-c", snippet], cwd=ROOT, check=True, capture_output=True, timeout=120
     )

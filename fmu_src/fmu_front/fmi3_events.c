@@ -109,7 +109,7 @@ static double end_of(double time, double step)
     /* volatile: the sum must not be moved out of the two calls */
     const volatile double start = time;
     volatile double end;
-    fenv_t floats;
+    struct floats floats;
     floats_take(&floats);
     end = start + step;
     floats_give_back(&floats);

@@ -96,7 +96,7 @@ static bool start_by_flags(const char *home, struct message *reason)
  */
 static bool start_python(const char *home, struct message *reason)
 {
-    fenv_t floats;
+    struct floats floats;
     floats_take(&floats);
     save_locale();
     bool started = process_symbol("PyInitConfig_Create") ? start_by_config(home, reason)

@@ -87,15 +87,67 @@ static bool is_in_main_interpreter(struct message *reason)
     return false;
 }
 
-void floats_take(fenv_t *host)
+#ifdef __x86_64__
+enum { SSE_DEFAULT = 0x1f80, X87_DEFAULT = 0x37f, X87_EXCEPTIONS = 0xff };
+
+static unsigned short x87_status(void)
 {
-    fegetenv(host);
+    unsigned short status;
+    __asm__ volatile("fnstsw %0" : "=am"(status));
+    return status & X87_EXCEPTIONS;
+}
+
+static bool take_sse(struct floats *host)
+{
+    unsigned short control;
+    __asm__ volatile("fnstcw %0" : "=m"(control));
+    if (control != X87_DEFAULT)
+        return false;
+    host->x87_status = x87_status();
+    host->sse = __builtin_ia32_stmxcsr();
+    __builtin_ia32_ldmxcsr(SSE_DEFAULT);
+    return true;
+}
+
+static void give_sse_back(const struct floats *host)
+{
+    if (x87_status() != host->x87_status) { /* long doubles have been computed with in between */
+        unsigned words[7]; /* control, status, tag and four of the last instruction */
+        __asm__ volatile("fnstenv %0" : "=m"(words));
+        words[0] = (words[0] & ~0xffffu) | X87_DEFAULT;
+        words[1] = (words[1] & ~(unsigned)X87_EXCEPTIONS) | host->x87_status;
+        __asm__ volatile("fldenv %0" : : "m"(words));
+    }
+    __builtin_ia32_ldmxcsr(host->sse);
+}
+#else
+static bool take_sse(struct floats *host)
+{
+    (void)host;
+    return false;
+}
+
+static void give_sse_back(const struct floats *host)
+{
+    (void)host;
+}
+#endif
+
+void floats_take(struct floats *host)
+{
+    host->sse_only = take_sse(host);
+    if (host->sse_only)
+        return;
+    fegetenv(&host->all);
     fesetenv(FE_DFL_ENV);
 }
 
-void floats_give_back(const fenv_t *host)
+void floats_give_back(const struct floats *host)
 {
-    fesetenv(host);
+    if (host->sse_only)
+        give_sse_back(host);
+    else
+        fesetenv(&host->all);
 }
 
 enum entry python_enter(long life, struct stay *stay, struct message *reason)

@@ -185,6 +185,12 @@ def _commands(group: click.Group) -> Iterator[click.Command]:
             yield command
 
 
+def test_output_has_its_short_form_in_every_command():
+    found = [p for c in _commands(cli) for p in c.params if "--output" in p.opts]
+    assert len(found) > 3
+    assert all("-o" in p.opts for p in found)
+
+
 def test_help_prints_no_open_range():
     texts = {c.name: c.get_help(click.Context(c)) for c in _commands(cli)}
     assert {"envelope", "node", "export"} <= set(texts)

@@ -37,6 +37,7 @@ def landing_options(files: str) -> Option:
             help="Time between samples [s].",
         ),
         click.option(
+            "-o",
             "--output",
             metavar=files,
             type=click.Path(path_type=Path),

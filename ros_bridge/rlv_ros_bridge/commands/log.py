@@ -110,6 +110,7 @@ def verify(log: Path, fmu: Path | None, *, as_json: bool) -> None:
 @log.command(context_settings=WIDE)
 @LOG
 @click.option(
+    "-o",
     "--output",
     type=click.Path(path_type=Path),
     metavar="FOLDER",

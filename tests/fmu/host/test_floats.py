@@ -9,6 +9,8 @@ from __future__ import annotations
 import subprocess
 import sys
 
+import pytest
+
 from rlv_landing import Landing
 
 STEPS_OF_FMI_3 = """
@@ -47,7 +49,8 @@ def statuses(lines: list[str]) -> list[str]:
     return [line for line in lines if line.isdigit()]
 
 
-def test_traps_end_no_host_and_its_rounding_changes_no_digit(host, unpacked, description):
+@pytest.mark.parametrize("units", [[], ["sse"]], ids=["all", "sse"])
+def test_traps_end_no_host_and_its_rounding_changes_no_digit(host, unpacked, description, units):
     references = {v.name: v.valueReference for v in description.modelVariables}
     done = subprocess.run(
         [
@@ -57,6 +60,7 @@ def test_traps_end_no_host_and_its_rounding_changes_no_digit(host, unpacked, des
             description.guid,
             str(references["external.force_x"]),
             str(references["body.x"]),
+            *units,
         ],
         capture_output=True,
         text=True,
