@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -56,16 +56,22 @@ def messages_of(file: Path) -> list[tuple[str, int, int, bytes]]:
         return [(channel.topic, m.log_time, m.sequence, m.data) for _, channel, m in found]
 
 
-def rewrite(source: Path, folder: Path, change: Change = lambda record: record) -> Path:
+def rewrite(
+    source: Path,
+    folder: Path,
+    change: Change = lambda record: record,
+    without: Container[str] = (),
+) -> Path:
     """A complete log: `source` with `change` applied to messages, attachments and metadata.
 
-    A record for which `change` returns None is left out.
+    A record for which `change` returns None is left out, and topics that are to be `without`.
     """
     folder.mkdir()
     target = folder / f"{folder.name}_0.mcap"
     schemas: dict[int, int] = {0: 0}
     channels: dict[int, int] = {}
     topics: dict[int, str] = {}
+    skipped: set[int] = set()
     with source.open("rb") as f, target.open("wb") as out:
         writer = Writer(out, chunk_size=50_000, enable_data_crcs=True)
         for record in StreamReader(f).records:
@@ -75,6 +81,8 @@ def rewrite(source: Path, folder: Path, change: Change = lambda record: record) 
                 schemas[record.id] = writer.register_schema(
                     record.name, record.encoding, record.data
                 )
+            elif isinstance(record, Channel) and record.topic in without:
+                skipped.add(record.id)
             elif isinstance(record, Channel) and record.id not in channels:
                 topics[record.id] = record.topic
                 channels[record.id] = writer.register_channel(
@@ -83,7 +91,7 @@ def rewrite(source: Path, folder: Path, change: Change = lambda record: record) 
                     schemas[record.schema_id],
                     record.metadata,
                 )
-            elif isinstance(record, Message):
+            elif isinstance(record, Message) and record.channel_id not in skipped:
                 message = change((topics[record.channel_id], record))
                 if message is not None:
                     m = message[1]

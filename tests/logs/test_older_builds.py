@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from zipfile import ZipFile
 
 import pytest
+from geometry_msgs.msg import WrenchStamped
+from log_tools import rewrite
+from rclpy.serialization import deserialize_message, serialize_message
 
 from rlv_landing.errors import LandingError
 from rlv_landing.parameters import PARAMETER_QUANTITIES
@@ -13,6 +18,7 @@ from rlv_ros_bridge.fmu.builds import build_metadata
 from rlv_ros_bridge.fmu.runner import FmuRunner
 from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.logs.verification.verify import verify
+from rlv_ros_bridge.messages.topics import CONTACTS, IMU, TOP_IMU, resolve
 
 OF_LATER_VERSIONS = (
     "energy.friction",
@@ -80,3 +86,28 @@ def test_the_digest_of_a_build_is_of_all_its_model_files_also_of_older_ones(
             archive.writestr(f"resources/rlv_landing_0_1_0/{file}", text)
         digests.add(build_metadata(tmp_path / "model.fmu")["model"])
     assert len(digests) == 2
+
+
+def test_an_older_log_without_inertial_sensors_and_with_other_frames_is_its_run(
+    one_log: Path, tmp_path: Path
+) -> None:
+    (file,) = one_log.glob("*.mcap")
+    reader = LogReader(one_log)
+    # topics and namespace are known from the messages on
+    assert sum(1 for _ in reader.messages()) > 0
+    absent = {resolve(reader.namespace, topic.name) for topic in (IMU, TOP_IMU)}
+    contact = resolve(reader.namespace, CONTACTS[0].name)
+    assert absent <= {channel.topic for channel in reader.channels.values()}
+
+    def older(record: Any) -> Any:
+        if not isinstance(record, tuple) or record[0] != contact:
+            return record
+        message = deserialize_message(record[1].data, WrenchStamped)
+        message.header.frame_id = "map"
+        return contact, replace(record[1], data=serialize_message(message))
+
+    found = verify(LogReader(rewrite(file, tmp_path / "older", older, absent)))
+    assert (found.same, found.other_bits, found.older) == (True, 0, True)
+    assert "its names of frames are not compared" in found.text()
+    complete = LogReader(rewrite(file, tmp_path / "other", older))
+    assert verify(complete).first is not None

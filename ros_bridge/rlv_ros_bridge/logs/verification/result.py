@@ -40,7 +40,8 @@ class Verification:
     the log's record of them has. `lost` of the instants are in gaps that the log tells of.
     `other_bits` values are not the same bits. `largest` is the largest difference as a share of
     its field's largest value. `not_exact` says why the bits need not be the same, or is empty.
-    `first` is the first difference beyond `tolerance`. `end` and `stop_time` are in s.
+    `first` is the first difference beyond `tolerance`. `end` and `stop_time` are in s. `older` says
+    that the log is of a version without inertial sensors, whose names of frames are not compared.
     """
 
     path: str
@@ -58,6 +59,7 @@ class Verification:
     end: float = 0.0
     stop_time: float = 0.0
     cut: bool = False
+    older: bool = False
 
     @property
     def same(self) -> bool:
@@ -93,6 +95,11 @@ class Verification:
             )
         else:
             lines.append("same      bit for bit")
+        if self.older:
+            lines.append(
+                "note      the log is of a version without imu and top/imu; "
+                "its names of frames are not compared"
+            )
         if self.not_exact:
             lines.append(f"note      the bits need not be the same: {self.not_exact}")
         return legible_lines(lines)
