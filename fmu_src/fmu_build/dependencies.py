@@ -29,11 +29,12 @@ VY = FLIGHT | {"drop.vertical_velocity", "ground.gravity"}
 HEIGHT = VY | {"ground.slope", "drop.mode"}
 CHARGE = frozenset(
     f"main_strut.{what}"
-    for what in ("charge_pressure", "ambient_pressure", "area_upper", "area_lower")
+    for what in ("kind", "charge_pressure", "ambient_pressure", "area_upper", "area_lower")
 )
+PRESSURE = frozenset({"main_strut.kind", "main_strut.charge_pressure"})
 VOLUMES = frozenset(
     f"main_strut.{what}"
-    for what in ("volume_upper", "volume_lower", "charge_pressure", "ambient_pressure")
+    for what in ("kind", "volume_upper", "volume_lower", "charge_pressure", "ambient_pressure")
 )
 LIQUID = VOLUMES | {
     f"main_strut.{what}"
@@ -86,8 +87,8 @@ PARAMETERS: dict[str, frozenset[str]] = {
     "status.phase": MARGIN,
     "status.stability_margin": MARGIN,
     "main_strut.force": CHARGE,
-    "main_strut.pressure_upper": frozenset({"main_strut.charge_pressure"}),
-    "main_strut.pressure_lower": frozenset({"main_strut.charge_pressure"}),
+    "main_strut.pressure_upper": PRESSURE,
+    "main_strut.pressure_lower": PRESSURE,
     "main_strut.liquid_mass": LIQUID | {"main_strut.fluid_density"},
     "footpad.x": VX | {"drop.mode"},
     "footpad.y": HEIGHT,

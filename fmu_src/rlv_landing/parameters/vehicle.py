@@ -42,7 +42,7 @@ class Vehicle:
     ] = 4.0
     leg_azimuth: Annotated[
         float,
-        "azimuth of leg 1 from the body's x towards z; the others follow evenly; mode = space",
+        "azimuth of the first leg, from body x towards z; the others follow evenly; mode = space",
         real("rad", -3.2, 3.2, display_unit="deg"),
     ] = 3.141592653589793
     inertia_roll: Annotated[

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from math import pi, sqrt
 
 from ..parameters import Parameters
 from .damper import AMBIENT, BULK_MODULUS, BULK_SLOPE, CHARGE, DENSITY, Damper, size_damper
@@ -49,6 +49,17 @@ def _vehicle(needs: Needs) -> Rules:
             "derived: the body's upper end",
         ),
         "vehicle.transverse_load_at": ("footpad", "closure: conserves energy"),
+        "vehicle.legs": (4.0, "closure: four legs"),
+        "vehicle.leg_azimuth": (pi, "closure: leg 1 behind"),
+        "vehicle.inertia_roll": (0.0, "derived: that about z"),
+        "vehicle.inertia_yaw": (
+            needs.mass * r**2 / 2.0,
+            "derived: uniform cylinder of the body's radius",
+        ),
+        **{
+            f"vehicle.{name}": (0.0, "closure: symmetric body")
+            for name in ("inertia_xy", "inertia_xz", "inertia_yz", "cg_offset_x", "cg_offset_z")
+        },
     }
 
 
@@ -58,6 +69,7 @@ def _main_strut(needs: Needs, leg: LegGeometry, damper: Damper) -> Rules:
     sized = "derived: sized for sink speed and load factor"
     layout = "derived: footpad, span and clearance"
     return {
+        "main_strut.kind": ("liquid-spring", "closure: the damper that is sized"),
         "main_strut.joint_radius": (leg.joint_radius, layout),
         "main_strut.joint_depth": (leg.main_depth, layout),
         "main_strut.length": (leg.main_length, layout),
@@ -92,6 +104,8 @@ def _main_strut(needs: Needs, leg: LegGeometry, damper: Damper) -> Rules:
             "closure: the allowed force at 2 % of the stroke",
         ),
         "main_strut.stop_damping": (0.5 / speed, "closure: half more at the first stroke's speed"),
+        "main_strut.stiffness": (0.0, "closure: not of a liquid spring"),
+        "main_strut.damping": (0.0, "closure: not of a liquid spring"),
     }
 
 
@@ -123,6 +137,7 @@ def _ground(needs: Needs) -> Rules:
     plain = "closure: firm ground"
     return {
         "ground.slope": (0.0, USER),
+        "ground.slope_direction": (0.0, "closure: along x"),
         "ground.gravity": (needs.gravity, USER),
         "ground.stiffness": (stiffness, "closure: 0.1 % of the span at full load"),
         "ground.exponent": (1.0, plain),
@@ -155,4 +170,8 @@ def _drop(needs: Needs) -> Rules:
         "drop.pitch_rate": (0.0, USER),
         "drop.horizontal_velocity": (0.0, USER),
         "drop.vertical_velocity": (-needs.sink_speed, USER),
+        **{
+            f"drop.{name}": (0.0, "closure: a symmetric landing")
+            for name in ("heading", "roll", "roll_rate", "yaw_rate", "lateral_velocity")
+        },
     }

@@ -13,7 +13,14 @@ from lxml import etree
 
 from rlv_landing import Landing, Parameters, load_preset
 from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.quantities import INPUT_QUANTITIES, MODES, OUTPUT_NAMES, OUTPUT_QUANTITIES
+from rlv_landing.parameters.space import ONLY_IN_SPACE
+from rlv_landing.parameters.table import GROUPS
+from rlv_landing.quantities import INPUT_QUANTITIES, MODES, OUTPUT_NAMES, OUTPUT_QUANTITIES, SPACE
+
+# parameters that a symmetric landing refuses, or does not depend on
+ONLY_SPACE = {
+    f"{group}.{name}" for group, owner in GROUPS.items() for name in ONLY_IN_SPACE.get(owner, ())
+}
 
 FIGURES = "yue2022-figures"
 SCALE = {q.name: q.nominal if q.kind == "real" else 1.0 for q in OUTPUT_QUANTITIES}
@@ -93,7 +100,9 @@ def others(name: str, value: float | str) -> list[float | str]:
     """Values of a parameter near `value`, or its other choices."""
     q = PARAMETER_QUANTITIES[name]
     if isinstance(value, str):
-        return [c for c in q.choices if c != value]
+        return [c for c in q.choices if c not in (value, SPACE)]
+    if name in ONLY_SPACE:
+        return []
     near = [value * 1.01 + (1e-4 if value == 0.0 else 0.0), value * 0.99]
     return [v for v in near if q.lo <= v <= q.hi]
 

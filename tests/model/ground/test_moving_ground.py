@@ -16,7 +16,7 @@ from rlv_landing import Landing, load_preset
 from rlv_landing.assembly import new_solver
 from rlv_landing.inputs.driven import DrivenInputs
 from rlv_landing.interruptible import advance
-from rlv_landing.quantities import INPUT_NAMES
+from rlv_landing.quantities import INPUT_NAMES, interface_of
 
 FIGURES = "yue2022-figures"
 LEGS = (1, 2, 3, 4)
@@ -200,7 +200,7 @@ def test_the_ground_reaches_a_position_that_was_set_one_step_later(positions, ra
 )
 def test_the_ground_moves_to_a_position_linearly_on_top_of_its_rates(position, rates, part):
     solver = new_solver(load_preset(FIGURES).with_values(FLYING), 1e-5)
-    inputs = DrivenInputs(solver)
+    inputs = DrivenInputs(solver, interface_of("2-2"))
     start = dt = 4e-3
     advance(solver, start)
     goals = dict(zip(("ground.heave", "ground.tilt"), position))

@@ -210,7 +210,7 @@ AXES = {
         ),
         (
             {"x": {**AXES["x"], "name": "drop.mode"}},
-            r"drop\.mode is one of 2-2, 1-2-1 and cannot be an axis; make it a family",
+            r"drop\.mode is one of 2-2, 1-2-1, space and cannot be an axis; make it a family",
         ),
         (
             {"x": {**AXES["x"], "low": 6}},

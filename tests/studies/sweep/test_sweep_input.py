@@ -64,7 +64,7 @@ ROW = "1,0,0,-1\n"
         ),
         (
             LHS + '[[factor]]\nname = "drop.mode"\nlow = 0\nhigh = 1\n',
-            "is one of 2-2, 1-2-1; give values",
+            "is one of 2-2, 1-2-1, space; give values",
         ),
         (LHS + "[[factor]]\nlow = 0\n", "a [[factor]] has no name"),
         (LHS + RANGE + RANGE, "drop.tilt is given twice"),
