@@ -166,7 +166,7 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
     return (fmi2Status)instance_read(c, &GetReal, REAL, vr, nvr, value);
 }
 
-/* Read numbers to the instance's room; NULL after an error. */
+/* Read numbers into the instance's buffer (instance_room); NULL after an error. */
 static const double *read_to_room(struct instance *c, const struct function *f, enum kind kind,
                                   const fmi2ValueReference vr[], size_t n, const void *value,
                                   fmi2Status *status)
@@ -286,7 +286,7 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     return refuse(c, &GetDirectionalDerivative, "this FMU has no directional derivatives");
 }
 
-/* Enter a status function: Discard if it does not answer this `kind` of status. */
+/* Begin a fmi2Get...Status function: Discard if it does not return this `kind` of status. */
 static fmi2Status enter_status(struct instance *c, const struct function *f, fmi2StatusKind kind,
                                bool answers, const void *value)
 {

@@ -5,14 +5,17 @@
 #include "fmi3Functions.h"
 #include "instance.h"
 
-/* The phases of FMI 3.0. ANY_MODE: its functions may be called in any that the host knows of. */
+/*
+ * Sets of phases of FMI 3.0, in which variables may be set, may be read, and in which functions may
+ * be called that are allowed in every mode but Intermediate Update Mode.
+ */
 enum {
     SETTABLE = BEFORE_STEPS | STEPPING | EVENT_MODE | UPDATING,
     READABLE = ANY | EVENT_MODE | UPDATING,
     ANY_MODE = ANY | EVENT_MODE
 };
 
-/* The host's callbacks and wishes. */
+/* The host's callbacks, and whether it allows early return. */
 struct fmi3_host {
     fmi3InstanceEnvironment environment;
     fmi3LogMessageCallback log;
@@ -24,7 +27,7 @@ struct fmi3_host {
 bool fmi3_check_intermediate(const struct instance *c, const struct function *f,
                              const fmi3ValueReference vr[], size_t n);
 
-/* Refuse a call for values of a type that no variable has, but for those of no variable. */
+/* Refuse to get or set values of a type that no variable has; a call for no variables is OK. */
 fmi3Status fmi3_refuse_type(struct instance *c, const char *name, const fmi3ValueReference vr[],
                             size_t n, size_t n_values);
 

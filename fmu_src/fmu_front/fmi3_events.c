@@ -1,4 +1,4 @@
-/* Steps of FMI 3.0: event mode, early return, intermediate update. */
+/* fmi3DoStep with events: Event Mode, early return, Intermediate Update Mode. */
 #include "fmi3.h"
 #include "python.h"
 
@@ -15,7 +15,7 @@
 FUNCTIONS(FUNCTION)
 #undef FUNCTION
 
-/* The longest part of a step after which a host that gave a callback is asked for inputs [s]. */
+/* Longest time between two calls of intermediateUpdate within a step [s]. */
 static const double LONGEST_PART = 1e-3;
 
 fmi3Status fmi3EnterEventMode(fmi3Instance instance)
@@ -65,7 +65,7 @@ fmi3Status fmi3EnterStepMode(fmi3Instance instance)
     return fmi3OK;
 }
 
-/* Ask the host for inputs; returns where to leave the step, `end` at the latest [s]. */
+/* Call intermediateUpdate; returns where the step shall end, `end` at the latest [s]. */
 static double update(struct instance *c, const struct fmi3_host *host, double end)
 {
     fmi3Boolean early = fmi3False;
@@ -73,7 +73,7 @@ static double update(struct instance *c, const struct fmi3_host *host, double en
     c->phase = UPDATING;
     host->update(host->environment, c->last_time, fmi3True, fmi3True, fmi3True, host->early_return,
                  &early, &early_time);
-    if (c->phase == UPDATING) /* else a call of the host's has ended the slave */
+    if (c->phase == UPDATING) /* else a function that the host called has ended the slave */
         c->phase = STEPPING;
     if (!early || !host->early_return)
         return end;
@@ -81,8 +81,8 @@ static double update(struct instance *c, const struct fmi3_host *host, double en
 }
 
 /*
- * Where to leave what is left of a step to ask the host: after the longest part, or, of less than
- * two of these, in the middle.
+ * Time of the next call of intermediateUpdate in a step from `time` to `end`: after the longest
+ * part, or, where less than two of these are left, in the middle.
  */
 static double next_stop(const struct fmi3_host *host, double time, double end)
 {
@@ -90,11 +90,11 @@ static double next_stop(const struct fmi3_host *host, double time, double end)
     if (!host->update || left <= LONGEST_PART * (1.0 + 1e-9))
         return end;
     const double stop = time + (left < 2.0 * LONGEST_PART ? 0.5 * left : LONGEST_PART);
-    return stop > time ? stop : end; /* at times whose rounding is longer than a part */
+    return stop > time ? stop : end; /* at large times a part may round to nothing */
 }
 
-/* The status of a step that was refused at `time`, after a part of it. */
-static enum status leave_amid(const struct instance *c, enum status status, double time)
+/* The status of a step whose first parts are done and whose part at `time` was refused. */
+static enum status partly_done(const struct instance *c, enum status status, double time)
 {
     /* Discard would say that nothing has changed */
     if (status == STATUS_DISCARD)
@@ -103,7 +103,7 @@ static enum status leave_amid(const struct instance *c, enum status status, doub
     return STATUS_ERROR;
 }
 
-/* The end of a step, which need not be finite, whatever traps the host has set. */
+/* time + step, which may overflow: computed without the host's floating-point traps. */
 static double end_of(double time, double step)
 {
     /* volatile: the sum must not be moved out of the two calls */
@@ -116,7 +116,7 @@ static double end_of(double time, double step)
     return end;
 }
 
-/* Step to `step_end`, or to where an event or the host ends it; `*event`: there was one. */
+/* Step to `step_end`, or to where an event or the host ends the step; `*event`: there was one. */
 static enum status step_in_parts(struct instance *c, double time, double step, double step_end,
                                  fmi3Boolean *event)
 {
@@ -131,7 +131,7 @@ static enum status step_in_parts(struct instance *c, double time, double step, d
         enum status status = instance_step_part(c, &DoStep, time, step_end,
                                                 next_stop(host, time, end), to_event, &found);
         if (status >= STATUS_DISCARD)
-            return time > start ? leave_amid(c, status, time) : status;
+            return time > start ? partly_done(c, status, time) : status;
         if (status > worst)
             worst = status;
         time = c->last_time;

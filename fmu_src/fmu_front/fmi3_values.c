@@ -176,7 +176,7 @@ fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference valueReferenc
                                     nValues);
 }
 
-/* Read numbers to the instance's room; NULL after an error, or if there are none. */
+/* Read numbers into the instance's buffer (instance_room); NULL after an error, or if none. */
 static const double *read_to_room(struct instance *c, const struct function *f, enum kind kind,
                                   const fmi3ValueReference vr[], size_t n, const void *values,
                                   size_t n_values, fmi3Status *status)
@@ -234,7 +234,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference valueReferenc
                                       values);
 }
 
-/* Write values of another type of C than double. */
+/* Defines a setter for values whose type in C is not double. */
 #define SET(Name, kind, type) \
     fmi3Status fmi3Set##Name(fmi3Instance c, const fmi3ValueReference valueReferences[], \
                              size_t nValueReferences, const type values[], size_t nValues) \

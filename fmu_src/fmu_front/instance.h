@@ -17,8 +17,9 @@
 enum { RATES = 2000000 };
 
 /*
- * The phase of an instance. SLAVE_LOST: an internal error has ended the slave; reset or free.
- * EVENT_MODE and UPDATING, a callback within a step, are FMI 3.0's.
+ * The phase of an instance: a state of FMI's state machine for co-simulation. STEPPING is Step
+ * Mode. EVENT_MODE and UPDATING (Intermediate Update Mode) are FMI 3.0's. SLAVE_LOST: an internal
+ * error has ended the slave; reset or free.
  */
 enum phase {
     INSTANTIATED = 1,

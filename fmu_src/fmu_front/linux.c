@@ -15,7 +15,7 @@ const char *const INSTALLED_PYTHON_SOURCE = "python3 on PATH:";
 
 bool usual_python(int oldest, int newest, char path[PATH_SIZE])
 {
-    (void)oldest, (void)newest, (void)path; /* the loader looks in all of them */
+    (void)oldest, (void)newest, (void)path; /* the loader searches all usual places by itself */
     return false;
 }
 

@@ -18,8 +18,8 @@ static const char *const FRAMEWORKS[] = {
 };
 
 /*
- * First of all installed_python takes these: without developer tools, /usr/bin/python3 is a program
- * that offers to install them.
+ * installed_python tries these before the python3 on PATH: without developer tools,
+ * /usr/bin/python3 is a program that offers to install them.
  */
 bool usual_python(int oldest, int newest, char path[PATH_SIZE])
 {

@@ -44,7 +44,7 @@ bool environment_path(const char *name, char value[PATH_SIZE]);
  */
 bool installed_python(int oldest, int newest, char path[PATH_SIZE]);
 #ifndef _WIN32
-/* The same of what is in this system's usual places, a part of installed_python. */
+/* The same for the folders where this system usually has it; installed_python calls this first. */
 bool usual_python(int oldest, int newest, char path[PATH_SIZE]);
 #endif
 /*

@@ -143,7 +143,7 @@ void floats_give_back(const struct floats *host);
 enum entry python_enter(long life, struct stay *stay, struct message *reason);
 void python_leave(const struct stay *stay);
 
-/* The number of the running Python's life; another one after it was ended and started again. Call
+/* A number that identifies the running Python: another one after Py_Finalize and a new start. Call
  * it with Python's lock. */
 long python_life(void);
 

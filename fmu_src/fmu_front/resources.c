@@ -46,7 +46,7 @@ static bool try_folder(const char *path, char folder[PATH_SIZE])
     return false;
 }
 
-/* The same for a path that may lack its first slash, or on Windows have some before the drive. */
+/* As try_folder, for a URI's path: its first slash may be missing, or precede a Windows drive. */
 static bool try_path(const char *path, char folder[PATH_SIZE])
 {
     if (try_folder(path, folder))

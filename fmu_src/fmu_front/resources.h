@@ -13,7 +13,7 @@
  */
 bool resources_of_uri(const char *uri, char folder[PATH_SIZE]);
 
-/* Write the folder that belongs to this library's place in the FMU. Returns false if it is none. */
+/* Write the resources of the FMU that holds this library. Returns false if they are not there. */
 bool resources_of_library(char folder[PATH_SIZE]);
 
 #endif

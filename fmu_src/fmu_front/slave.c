@@ -1,4 +1,4 @@
-/* The slave: its methods, called with C values. */
+/* The slave: calls of its Python methods, with values of C. */
 #include "slave.h"
 #include "variables.h"
 #include "visit.h"
@@ -41,7 +41,7 @@ static const char *const METHOD_NAMES[] = {
 
 struct slave {
     struct listener listener;
-    long life; /* of the Python that its objects belong to */
+    long life; /* python_life of the Python that its objects belong to */
     PyObject *methods[METHOD_COUNT];
     PyObject *strings; /* the list of strings that was read last */
 };
@@ -69,7 +69,7 @@ static void note_log_message(struct visit *v, PyObject *message)
         release(made[i]);
 }
 
-/* Take the messages that the slave has logged. */
+/* Move the messages that the slave has logged to the visit's list. */
 static void take_messages(struct visit *v, struct slave *s)
 {
     PyObject *queue = py.PyObject_CallObject(s->methods[GET_LOG_QUEUE], NULL);
@@ -92,7 +92,7 @@ static PyObject *call(struct slave *s, enum method method, PyObject *arguments)
     return result;
 }
 
-/* Take the messages of a call that raised an exception or did not; end the visit. */
+/* After a call: keep its exception, if there is one, and the slave's messages; end the visit. */
 static enum answer end_call(struct visit *v, struct slave *s, enum method method)
 {
     enum answer answer = DONE;
@@ -125,7 +125,7 @@ static const char *own_key(const char *what, char key[KEY_SIZE])
     return key;
 }
 
-/* The function of create_slave.py (borrowed), compiled once in each Python. */
+/* The function of create_slave.py (a borrowed reference), compiled once in each interpreter. */
 static PyObject *creator(void)
 {
     char key[KEY_SIZE];
@@ -168,10 +168,10 @@ static void release_methods(struct slave *s)
 }
 
 /*
- * True if a compiled core of this FMU was loaded in an earlier life of Python, and so cannot be
- * loaded again: its module is gone, and the library would return it.
+ * True if the compiled core of this FMU was loaded by a Python that was finalised since. It cannot
+ * be loaded again: its module is gone, and the library, which stays loaded, would return it.
  */
-static bool core_is_spent(const char *resources)
+static bool compiled_core_is_lost(const char *resources)
 {
     char key[KEY_SIZE];
     PyObject *kept = py.PyInterpreterState_GetDict(py.PyInterpreterState_Get());
@@ -200,7 +200,7 @@ struct slave *slave_create(const char *resources, const char *name, bool visible
     if (create) {
         PyObject *arguments = py.Py_BuildValue(
             "(NssNN)", py.PyUnicode_DecodeFSDefault(resources), SLAVE_MODULE, name,
-            py.PyBool_FromLong(visible), py.PyBool_FromLong(core_is_spent(resources)));
+            py.PyBool_FromLong(visible), py.PyBool_FromLong(compiled_core_is_lost(resources)));
         object = arguments ? py.PyObject_CallObject(create, arguments) : NULL;
         release(arguments);
     }
@@ -223,7 +223,7 @@ void slave_free(struct slave *s)
 {
     struct stay stay;
     struct message reason = {""};
-    /* what an ended Python has left is gone with it */
+    /* the objects of a Python that was finalised are gone with it */
     if (python_enter(s->life, &stay, &reason) == ENTERED) {
         release(s->strings);
         release_methods(s);
@@ -430,8 +430,8 @@ enum answer slave_get_state(struct slave *s, struct slave_state **state)
     return end_call(&v, s, GET_STATE);
 }
 
-/* False, with the reason given to the listener, if the state belongs to a Python that has ended. */
-static bool lives(const struct slave *s, const struct slave_state *state)
+/* False, with the reason given to the listener, if the state's Python was finalised. */
+static bool has_its_python(const struct slave *s, const struct slave_state *state)
 {
     if (state->life == s->life)
         return true;
@@ -443,7 +443,7 @@ static bool lives(const struct slave *s, const struct slave_state *state)
 enum answer slave_set_state(struct slave *s, const struct slave_state *state)
 {
     struct visit v;
-    if (!lives(s, state))
+    if (!has_its_python(s, state))
         return REFUSED;
     enum answer entry = visit_begin(&v, &s->listener, s->life);
     if (entry != DONE)
@@ -458,7 +458,7 @@ enum answer slave_state_bytes(struct slave *s, struct slave_state *state, const 
     struct visit v;
     char *start = NULL;
     Py_ssize_t length = 0;
-    if (!lives(s, state))
+    if (!has_its_python(s, state))
         return REFUSED;
     enum answer entry = visit_begin(&v, &s->listener, s->life);
     if (entry != DONE)

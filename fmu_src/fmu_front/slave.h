@@ -4,8 +4,8 @@
  * Only slave.c and visit.c, with python.c and libpython.c, call Python. The class is one of
  * pythonfmu's `Fmi2Slave`; its methods are called as pythonfmu's own binary calls them. Two more
  * are called if they are there: `get_outputs()` gives all numeric outputs, in the order of the
- * description; `do_part(time, step, stop, to_event)` leaves a step at `stop`, or at an event, and
- * gives the time reached and whether there is an event.
+ * description; `do_part(time, step, stop, to_event)` ends a step early, at `stop` or at an event,
+ * and gives the time reached and whether there is an event.
  */
 #ifndef SLAVE_H
 #define SLAVE_H
@@ -17,7 +17,7 @@
 /* The numbers are FMI's. */
 enum status { STATUS_OK, STATUS_WARNING, STATUS_DISCARD, STATUS_ERROR };
 
-/* What a call of the slave has come to. */
+/* The result of a call to the slave. */
 enum answer {
     DONE,
     REFUSED, /* nothing has changed; of a step: the slave returned False */
@@ -49,14 +49,14 @@ enum answer slave_setup(struct slave *s, double start, const double *stop, const
 enum answer slave_enter_initialization(struct slave *s);
 enum answer slave_exit_initialization(struct slave *s);
 enum answer slave_step(struct slave *s, double time, double step);
-/* A part of a step: where to leave it, and where it was left. */
+/* A part of a communication step: where it shall end, and where it has ended. */
 struct part {
-    double stop; /* infinite for the step's end */
-    bool to_event;
+    double stop; /* end of the part; infinite: that of the step */
+    bool to_event; /* end it at the first event before `stop` */
     double reached; /* `stop`, or the time of an event before */
     bool event;
 };
-/* Make a part of a step; a slave that has no parts makes the whole step. */
+/* Do a part of a step; a slave without `do_part` does the whole step. */
 enum answer slave_step_part(struct slave *s, double time, double step, struct part *part);
 enum answer slave_terminate(struct slave *s);
 

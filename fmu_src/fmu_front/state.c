@@ -1,5 +1,5 @@
 /*
- * States: get, set, free, serialise, deserialise.
+ * FMU states (FMUstate of FMI 2.0, FMUState of 3.0): get, set, free, serialise, deserialise.
  *
  * Bytes that are not a complete state of this build of the FMU are refused.
  */
@@ -33,7 +33,7 @@ struct header {
 static const char MAGIC[] = "RlvState";
 static struct state *states;
 
-/* Add a state of `owner` to the list; it takes `slave`, which may be NULL, and is NULL then. */
+/* Add a state of `owner` to the list. It takes over `slave`; NULL if that is NULL or on failure. */
 static struct state *add_state(struct instance *owner, struct slave_state *slave, uint32_t phase,
                                double last_time)
 {
@@ -122,7 +122,7 @@ enum status instance_set_state(struct instance *c, const struct function *f, voi
     const struct state *from = state;
     enum status status = leave_call(c, slave_set_state(c->slave, from->slave));
     if (status < STATUS_ERROR) {
-        /* a host that handles no events has no such mode */
+        /* a host that handles no events has no Event Mode: Step Mode instead */
         c->phase = from->phase == EVENT_MODE && !c->host.event_mode ? STEPPING
                                                                     : (enum phase)from->phase;
         c->last_time = from->last_time;

@@ -1,14 +1,14 @@
-/* The functions of states, which differ between the versions of FMI in names and types only. */
+/* The functions for FMU states; the versions of FMI differ in their names and types only. */
 #ifndef STATE_FUNCTIONS_H
 #define STATE_FUNCTIONS_H
 
 #include "instance.h"
 
 /*
- * All six, for a version.
+ * Defines all six functions for one version of FMI, `fmi` being fmi2 or fmi3.
  *
- * Instance, State, Deserialize: how it writes these parts of its names. The file that uses it has a
- * struct function for each, of the name without the version.
+ * Instance, State, Deserialize: the version's spelling of these parts of its names. The file that
+ * uses the macro has a struct function for each, of the name without the version.
  */
 #define STATE_FUNCTIONS(fmi, Instance, State, Deserialize) \
     fmi##Status fmi##Get##State(fmi##Instance c, fmi##State *state) \

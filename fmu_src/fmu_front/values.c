@@ -52,7 +52,7 @@ static bool enter_read(struct instance *c, const struct function *f, enum kind k
                        check_references(c, f, kind, true, vr, n)));
 }
 
-/* Read all numeric outputs that are of the kind, or, with 0, of any. */
+/* Read all numeric outputs of the kind, or, if that is 0, of every kind, to the cache. */
 static enum answer read_outputs(struct instance *c, int kind)
 {
     uint32_t vr[VARIABLE_COUNT];
@@ -92,7 +92,7 @@ static enum status update_outputs(struct instance *c)
     return status;
 }
 
-/* Read the variables that are no numeric outputs from the slave; `count` of the `n` are none. */
+/* Read from the slave those `count` of the `n` variables that are no numeric outputs. */
 static enum status read_others(struct instance *c, const struct function *f, enum kind kind,
                                const uint32_t vr[], size_t n, size_t count, double value[])
 {
@@ -174,8 +174,8 @@ static bool check_all_settable(const struct instance *c, const struct function *
 }
 
 /*
- * Enter a setter of the kind. The slave checks numbers against their bounds when it uses them;
- * texts must be UTF-8 before they reach Python.
+ * Check a call that sets variables of the kind. Bounds of numbers are not checked here: the slave
+ * does so when it uses them. Texts must be UTF-8 before they reach Python.
  */
 static bool enter_write(struct instance *c, const struct function *f, enum kind kind,
                         const uint32_t vr[], size_t n, const void *value)

@@ -1,4 +1,4 @@
-/* A visit to Python: with its lock, and with messages that wait until it is released. */
+/* A visit to Python: calls made under its lock (GIL), whose messages are sent after its release. */
 #ifndef VISIT_H
 #define VISIT_H
 
@@ -19,9 +19,9 @@ struct visit {
     bool interrupted;
 };
 
-/* Begin a visit to the Python of the number `life`; the answer is DONE if it has begun. */
+/* Begin a visit to the Python whose python_life is `life` (0: any); DONE if it has begun. */
 enum answer visit_begin(struct visit *v, const struct listener *listener, long life);
-/* End it, give the notes to the listener, and pass on an interrupt to the Python of the host. */
+/* End it: give the notes to the listener, and pass on Ctrl-C to the Python of the host. */
 void visit_end(struct visit *v);
 
 /* Keep a message for the listener; `category` may be NULL. */
@@ -29,7 +29,7 @@ void add_note(struct visit *v, enum status status, const char *category, const c
 /* Note the exception that `where` has raised, and clear it. */
 void note_exception(struct visit *v, const char *where);
 
-/* Give up a reference that may be NULL. */
+/* Py_DecRef of an object that may be NULL. */
 void release(PyObject *object);
 /* The text of `object`, which may be NULL; `*holder` keeps it and is to be released. */
 const char *text_of(PyObject *object, PyObject **holder);

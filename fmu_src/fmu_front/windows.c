@@ -13,7 +13,7 @@ const char *const PYTHON_LIBRARY = "python3%d.dll";
 const char *const STANDARD_LIBRARIES[] = {"%s/Lib/os.py", "%s/python3%d.zip", NULL};
 const char *const INSTALLED_PYTHON_SOURCE = "registry (PythonCore):";
 
-static HMODULE python; /* the library whose symbols posix.c makes global */
+static HMODULE python; /* the Python library; on Linux and macOS its symbols are global instead */
 
 static bool to_wide(const char *path, wchar_t wide[PATH_SIZE])
 {

@@ -1,4 +1,4 @@
-"""Small logs made to take much memory or time, and the commands run on them with what they took.
+"""Hostile logs: small files that would take much memory or time, and the commands run on them.
 
 As a program it runs commands of the bridge in one process, one after the other, and prints for each
 its exit code and processor time, and at the end the most memory that the process has had.
@@ -80,17 +80,17 @@ def zstd(data: bytes, size: int | None = None) -> Chunk:
 
 
 def zstd_of_gigabytes(path: Path) -> Path:
-    """A chunk that says truly that it is large."""
+    """A chunk that unpacks to hundreds of megabytes, as it states."""
     return file_of(path, CLOCK, zstd(message(260 * MEGABYTE)))
 
 
 def zstd_that_lies(path: Path) -> Path:
-    """A chunk that says 1000 bytes."""
+    """A chunk of zstd that unpacks to more than its stated size of 1000 bytes."""
     return file_of(path, CLOCK, zstd(message(260 * MEGABYTE), 1000))
 
 
 def lz4_that_lies(path: Path) -> Path:
-    """A chunk that says 100 bytes."""
+    """A chunk of lz4 that unpacks to more than its stated size of 100 bytes."""
     packed = lz4.frame.compress(bytes(200 * MEGABYTE), store_size=False)
     return file_of(path, CLOCK, Chunk("lz4", packed, 0, 0, 0, 100))
 
@@ -249,7 +249,7 @@ def false_definition(path: Path) -> Path:
 
 
 def terminal_texts(path: Path) -> Path:
-    """Every text in it commands a terminal."""
+    """Every text in it holds control sequences for a terminal."""
     metadata = {"rlv_landing": {"mode": TERMINAL, "preset": TERMINAL, f"version_{TERMINAL}": "1"}}
     return landing_log(path, name=TERMINAL, metadata=metadata)
 
@@ -300,7 +300,7 @@ def most_memory() -> int:
 
 
 def main(lines: list[list[str]]) -> None:
-    """Run commands, and print what they took."""
+    """Run commands, and print their exit codes, processor times and memory."""
     from rlv_landing.cli.group import run
     from rlv_ros_bridge.commands.group import main as group
 

@@ -94,7 +94,7 @@ def test_in_a_cavity_flow_energy_is_the_integral_of_volume_over_pressure(z, c):
 
 
 @given(constants)
-def test_state_and_pressure_part_with_one_slope(c):
+def test_a_chambers_functions_are_continuous_at_the_onset_of_cavitation(c):
     below, above = (fluid(CAVITY_PRESSURE * (1.0 + d), *c, PA) for d in (-1e-9, 1e-9))
     assert below == approx(above, rel=1e-6)
     assert fluid(CAVITY_PRESSURE, *c, PA).P == CAVITY_PRESSURE

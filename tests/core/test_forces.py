@@ -125,7 +125,7 @@ def test_a_chamber_never_vanishes_and_its_area_is_its_slope(V0, area, travel):
     states,
     st.one_of(st.floats(-0.5, -1e-7), st.floats(1e-7, 0.5), st.floats(-1e-4, 1e-4)),
 )
-def test_an_excess_is_taken_off_wherever_it_is(z1, z2, part):
+def test_an_excess_of_liquid_mass_is_removed_with_and_without_cavitation(z1, z2, part):
     """Of the liquid's mass: up to a half too much or too little, next to a cavity or in it."""
     radius, height = P.Lc + 0.95, P.Ld - 0.63
     leg = LegState(radius, height, 0.0, 0.0, z1, z2, 1e-4, 2e-4)
@@ -156,7 +156,7 @@ def test_orifice_slope_is_the_flows_derivative(dP):
 
 
 @given(st.floats(0.0, 0.03), st.floats(2e3, 1e7), st.sampled_from((1.0, -1.0)))
-def test_chambers_even_out_at_the_told_rates(s, pressure, x):
+def test_the_pressure_difference_of_chambers_decays_at_the_rates_of_the_stiff_pair(s, pressure, x):
     """At rest and nearly even, P1' = a1 x and P2' = -a2 x with x = P2 - P1 [Pa]."""
     given = liquid_spring(s, 0.0, pressure, pressure + x, P)
     assert given.dz1 == approx(given.a1 * x, rel=1e-6)

@@ -1,6 +1,6 @@
 """How the core is loaded.
 
-What is missing or interrupted there is an error; absence or age of the compiled core is told.
+What is missing or interrupted there is an error; absence or age of the compiled core is reported.
 """
 
 from __future__ import annotations

@@ -49,10 +49,10 @@ def test_accounts_are_what_the_energies_name():
 
 
 def test_phases_are_described_in_their_order():
-    told = next(q for q in STATUS_QUANTITIES if q.name == "status.phase")
-    assert (told.lo, told.hi) == (min(Phase), max(Phase))
+    described = next(q for q in STATUS_QUANTITIES if q.name == "status.phase")
+    assert (described.lo, described.hi) == (min(Phase), max(Phase))
     for phase in Phase:
-        assert f"{phase.value} {phase.name.lower()}" in told.meaning
+        assert f"{phase.value} {phase.name.lower()}" in described.meaning
     assert len(OUTCOMES) == len(Phase)
 
 

@@ -1,4 +1,4 @@
-"""A system at rest sleeps where its rest is, and nowhere else."""
+"""A system at rest sleeps at its equilibrium; one that moves, creeps or decays does not."""
 
 from array import array
 
@@ -59,7 +59,7 @@ def hung(method, system, *y):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_a_system_at_rest_sleeps_where_its_rest_is(method):
+def test_a_system_at_rest_sleeps_at_its_equilibrium(method):
     solver = hung(method, Hung(), 1e-3)
     solver.u[0] = 2e-4
     solver.restart(0.0)
@@ -102,7 +102,7 @@ def test_a_jump_of_an_input_wakes_it_and_it_moves_as_one_that_never_slept(method
 
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("creep", [1e-11, 1e-8])
-def test_what_creeps_never_sleeps(method, creep):
+def test_a_system_that_creeps_never_sleeps(method, creep):
     solver = hung(method, Hung(creep), 1e-3)
     assert solver.advance(20.0)
     assert not solver.asleep
@@ -110,7 +110,7 @@ def test_what_creeps_never_sleeps(method, creep):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_what_still_decays_slowly_sleeps_only_when_nothing_of_it_is_left(method):
+def test_a_system_that_decays_slowly_sleeps_only_when_nothing_is_left_to_decay(method):
     """With a time constant of 2 s, a millimetre takes more than 18 s to come below the bound."""
     solver = hung(method, Hung(slow=0.5), 0.0, 0.0, 0.0, 1e-3)
     assert solver.advance(18.0)
@@ -119,7 +119,7 @@ def test_what_still_decays_slowly_sleeps_only_when_nothing_of_it_is_left(method)
     assert solver.asleep
 
 
-def test_a_system_that_knows_no_rest_never_sleeps():
+def test_a_system_that_declares_no_rest_never_sleeps():
     class Restless(Hung):
         def may_rest(self, u, rates, outputs):
             return System.may_rest(self, u, rates, outputs)
@@ -145,6 +145,6 @@ def test_linear_equations_are_solved(numbers):
     assert a @ np.array(x) == approx(b, abs=1e-6)
 
 
-def test_a_singular_matrix_is_told():
+def test_a_singular_matrix_is_reported():
     assert not solve(array("d", [1.0, 2.0, 2.0, 4.0]), array("d", [1.0, 1.0]), 2)
     assert not solve(array("d", [float("nan")]), array("d", [1.0]), 1)

@@ -26,14 +26,14 @@ class Relaxing(System):
     The pair's difference decays at 3 `decay` [1/s]; its first state is driven as x is.
     """
 
-    def __init__(self, decay, told):
+    def __init__(self, decay, declared):
         super().__init__(
             doubles(1.0, 1.0, 1.0, 1.0),
             doubles(0.0, 0.0, 0.0, 0.0),
             carried=0,
             inputs=1,
             row=2,
-            stiff_pairs=int(told),
+            stiff_pairs=int(declared),
         )
         self.decay = decay
 
@@ -66,8 +66,8 @@ class Stopped(System):
         y[0] = min(y[0], self.limit)
 
 
-class Gathering(System):
-    """A state that gathers what comes in bursts far shorter than the steps, beside one at rest."""
+class Pulsed(System):
+    """A state whose rate is pulses far shorter than the steps, beside a state at rest."""
 
     def __init__(self, rising):
         super().__init__(
@@ -94,9 +94,9 @@ def started(method, system, rtol, *y):
 
 
 @pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("told", [True, False])
-def test_a_system_with_a_decaying_pair_is_solved(method, told):
-    solver = started(method, Relaxing(50.0, told), 1e-8, 1.0, 0.0, 1.0, 3.0)
+@pytest.mark.parametrize("declared", [True, False])
+def test_a_system_with_a_decaying_pair_is_solved(method, declared):
+    solver = started(method, Relaxing(50.0, declared), 1e-8, 1.0, 0.0, 1.0, 3.0)
     assert solver.advance(0.5)
     end = doubles(0.0, 0.0, 0.0, 0.0)
     solver.interpolate(0.5, end)
@@ -106,17 +106,17 @@ def test_a_system_with_a_decaying_pair_is_solved(method, told):
     assert end[3] - end[2] == approx(2.0 * exp(-75.0), abs=1e-7)
 
 
-def test_a_pair_that_is_told_of_does_not_hold_the_step_however_stiff():
+def test_a_declared_stiff_pair_does_not_limit_the_step_however_stiff():
     steps = {}
-    for told in (True, False):
-        solver = started(Exponential, Relaxing(2e5, told), 1e-4, 1.0, 0.0, 1.0, 3.0)
+    for declared in (True, False):
+        solver = started(Exponential, Relaxing(2e5, declared), 1e-4, 1.0, 0.0, 1.0, 3.0)
         assert solver.advance(0.02)
-        steps[told] = solver.steps
+        steps[declared] = solver.steps
     assert steps[True] < 0.05 * steps[False]
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_a_state_is_brought_back_at_the_end_of_every_step(method):
+def test_a_state_past_its_bound_is_brought_back_at_the_end_of_every_step(method):
     solver = started(method, Stopped(0.01), 1e-6, 0.0)
     while solver.t < 0.05:
         assert solver.advance(solver.t + 1e-6)
@@ -159,11 +159,11 @@ def largest_fall(solver, until):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_what_never_falls_does_not_fall_inside_a_step_either(method):
-    assert largest_fall(started(method, Gathering(rising=1), 1e-5, 0.0, 0.0), 0.1) <= 1e-17
+def test_a_state_that_never_falls_does_not_fall_inside_a_step(method):
+    assert largest_fall(started(method, Pulsed(rising=1), 1e-5, 0.0, 0.0), 0.1) <= 1e-17
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_what_may_fall_does_where_a_step_misses_what_happens(method):
-    """So that the steps above are long enough to fall in."""
-    assert largest_fall(started(method, Gathering(rising=0), 1e-5, 0.0, 0.0), 0.1) > 1e-6
+def test_without_that_rule_the_same_state_falls_inside_a_step(method):
+    """So that the test above is of steps long enough to show a fall."""
+    assert largest_fall(started(method, Pulsed(rising=0), 1e-5, 0.0, 0.0), 0.1) > 1e-6

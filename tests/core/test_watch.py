@@ -1,4 +1,4 @@
-"""Extremes are kept at the steps' ends and looked for between them."""
+"""Extremes of outputs: kept at the ends of internal steps, and searched on the interpolant."""
 
 from array import array
 from math import cos, hypot, inf, pi, sin
@@ -76,7 +76,7 @@ def test_a_peak_with_a_kink_between_steps_is_found(method):
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_a_level_is_told_from_the_time_when_it_was_reached(method):
+def test_the_time_of_an_extreme_that_lasts_is_when_it_was_reached(method):
     solver = swinging(method)
     solver.advance(0.004)
     low, low_time, high, high_time = found(solver, 0.004)[STAIRS]
@@ -87,7 +87,7 @@ def test_a_level_is_told_from_the_time_when_it_was_reached(method):
 
 @pytest.mark.parametrize("method", METHODS)
 @given(stops=st.lists(st.floats(1e-6, 0.02), max_size=12))
-def test_extremes_do_not_depend_on_the_times_by_which_one_gets_there(method, stops):
+def test_extremes_do_not_depend_on_the_communication_steps(method, stops):
     straight, wandering = swinging(method, rtol=1e-5), swinging(method, rtol=1e-5)
     straight.advance(0.02)
     for t in sorted(stops):
@@ -98,7 +98,7 @@ def test_extremes_do_not_depend_on_the_times_by_which_one_gets_there(method, sto
 
 
 @given(st.floats(1e-4, 0.02), st.floats(1e-4, 0.02))
-def test_extremes_hold_what_the_path_is_at_any_time_up_to_now_and_nothing_ahead(t, until):
+def test_extremes_enclose_all_values_up_to_the_present_time_and_none_after_it(t, until):
     assume(t <= until)
     solver = swinging(Exponential, rtol=1e-6)
     solver.advance(until)
@@ -121,8 +121,8 @@ def test_the_extremes_of_a_span_begin_with_it():
     assert found(solver, end)[X][0] == -1.0
 
 
-def test_what_an_input_that_jumps_cuts_off_was_never_there():
-    """The steps reach ahead of the cut; the path goes on otherwise."""
+def test_extremes_leave_out_the_part_of_a_step_after_a_jump_of_an_input():
+    """The internal step reaches past the jump, after which the motion is another one."""
     solver = swinging(Exponential)
     cut = 0.7 * pi / FREQUENCY
     solver.advance(cut)
@@ -166,7 +166,9 @@ def test_the_parabola_passes_through_its_points_and_is_nowhere_higher_than_at_it
 
 
 @given(bends(), st.floats(0.0, 1e3), st.floats(0.0, 1.0), values)
-def test_a_look_narrows_the_bend_and_keeps_the_highest_in_its_middle(b, surprise, above, v):
+def test_each_sample_narrows_the_interval_and_the_highest_stays_in_the_middle(
+    b, surprise, above, v
+):
     t = where_to_look(b, b.v1 - above, abs(b.v1), surprise)
     if t == -inf:
         return

@@ -189,7 +189,7 @@ def test_a_vehicle_that_stands_goes_with_the_deck(fmus):
     assert normal_forces(end).sum(axis=0) == approx(np.full(standing.sum(), WEIGHT), rel=0.05)
 
 
-def test_thrust_and_tail_off_do_the_work_that_the_energy_books_say(fmus):
+def test_thrust_and_tail_off_do_the_work_that_the_energy_outputs_say(fmus):
     """Force times way of every step, force held: that is `energy.work_external`.
 
     In the flight, impulse less weight is momentum.

@@ -39,12 +39,12 @@ FREE = ",".join(TRUTH)
 OBJECTIVE = Objective(FreeNumbers(load_preset(FIGURES)), paper_targets())
 COUNT = OBJECTIVE.soft_count
 N = len(OBJECTIVE.targets)
-SENSE = np.zeros(2 * len(CONDITIONS))
+PLAUSIBLE = np.zeros(2 * len(CONDITIONS))
 # errors that are well inside or well outside every bound, where the soft count must be the hard one
 CLEAR = st.sampled_from((0.0, 0.01, 0.03, 0.07, 0.14, 0.3, 1.0))
 
 
-def misses(errors: list[float] | np.ndarray, departures: np.ndarray = SENSE) -> float:
+def misses(errors: list[float] | np.ndarray, departures: np.ndarray = PLAUSIBLE) -> float:
     return OBJECTIVE.missed(np.concatenate([np.asarray(errors) / TOLERANCE, departures]))
 
 
@@ -62,10 +62,10 @@ def test_soft_misses_are_the_hard_ones_where_no_error_is_near_a_bound(errors):
 @given(
     st.lists(st.floats(-1.0, 1.0), min_size=N, max_size=N),
     st.sampled_from(SOFTNESSES),
-    st.integers(0, N + len(SENSE) - 1),
+    st.integers(0, N + len(PLAUSIBLE) - 1),
 )
 def test_weights_have_the_slope_of_the_misses(errors, softness, which):
-    misfits = np.concatenate([np.array(errors) / TOLERANCE, np.full(len(SENSE), 0.3)])
+    misfits = np.concatenate([np.array(errors) / TOLERANCE, np.full(len(PLAUSIBLE), 0.3)])
     assume(abs(misfits[which]) > 0.01)
     higher, lower = misfits.copy(), misfits.copy()
     higher[which] += 1e-5
@@ -101,9 +101,9 @@ def test_a_larger_error_never_counts_less(errors, which, factor):
     assert misses(larger) >= misses(errors) - 1e-12
 
 
-@given(st.integers(0, len(SENSE) - 1), st.floats(0.01, 5.0))
-def test_a_departure_from_sense_costs_more_than_the_scalar_it_may_win(which, departure):
-    departed = SENSE.copy()
+@given(st.integers(0, len(PLAUSIBLE) - 1), st.floats(0.01, 5.0))
+def test_a_missed_plausibility_condition_costs_more_than_the_scalar_it_may_win(which, departure):
+    departed = PLAUSIBLE.copy()
     departed[which] = departure
     assert misses(np.zeros(N), departed) - misses(np.zeros(N)) == approx(30.0 * departure)
 

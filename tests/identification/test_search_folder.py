@@ -1,4 +1,4 @@
-"""The files of an identification: a search goes on from them; files that do not fit are refused."""
+"""The files of an identification: a search resumes from them; files that do not fit are refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Logs made to fill memory, to take for ever or to command a terminal: each command bears them."""
+"""Hostile logs, which would fill memory, take for ever or send control sequences to a terminal."""
 
 from __future__ import annotations
 
@@ -46,7 +46,9 @@ def took(lines: list[list[str]], largest: int) -> None:
     assert "Traceback" not in done.stderr
 
 
-def test_every_command_bears_every_bomb(tmp_path: Path) -> None:
+def test_every_command_takes_or_refuses_every_hostile_log_in_bounded_memory_and_time(
+    tmp_path: Path,
+) -> None:
     lines, largest = [], 0
     for bomb in bombs.BOMBS:
         folder = tmp_path / bomb.__name__
@@ -59,7 +61,9 @@ def test_every_command_bears_every_bomb(tmp_path: Path) -> None:
 
 @pytest.mark.torture
 @pytest.mark.parametrize("bomb", bombs.BOMBS, ids=lambda bomb: bomb.__name__)
-def test_each_command_bears_each_bomb_alone(bomb: Callable[[Path], Path], tmp_path: Path) -> None:
+def test_each_command_takes_or_refuses_each_hostile_log_alone(
+    bomb: Callable[[Path], Path], tmp_path: Path
+) -> None:
     log = bomb(tmp_path / "log.mcap")
     for line in bombs.commands(log, tmp_path):
         took([line], log.stat().st_size)

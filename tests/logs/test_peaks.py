@@ -116,7 +116,7 @@ def test_info_by_the_summary_tells_what_reading_all_messages_tells(
     assert not log_info(LogReader(file), check=True).complete
 
 
-def test_a_record_of_another_layout_is_not_believed(one_log: Path) -> None:
+def test_a_record_of_another_layout_is_ignored(one_log: Path) -> None:
     texts = read(one_log).landing
     landing = json.loads(texts[LANDING])
     assert read_landing(texts) == landing

@@ -1,4 +1,4 @@
-"""A slow disk: the landing goes on, or waits; what is lost is counted and in the log."""
+"""A slow disk: the landing continues or waits; lost messages are counted, and noted in the log."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def test_messages_that_do_not_fit_are_left_out_and_the_log_says_so(
     assert all(a[1] < b[0] for a, b in pairwise(spans))
 
 
-def test_who_must_wait_loses_nothing_and_the_wait_is_told(
+def test_a_recorder_that_waits_for_the_disk_loses_nothing_and_reports_the_wait(
     tmp_path: Path, disk: threading.Event, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(f"{QUEUE}.WAITING_BYTES", 3000)
@@ -113,7 +113,7 @@ def test_who_must_wait_loses_nothing_and_the_wait_is_told(
 
 
 @pytest.mark.parametrize("must_wait", [True, False])
-def test_an_error_of_the_thread_ends_recording_and_nothing_waits_for_it(
+def test_an_error_of_the_writing_thread_ends_recording_and_nothing_waits_for_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, must_wait: bool
 ) -> None:
     monkeypatch.setattr(f"{QUEUE}.WAITING_BYTES", 1000)
@@ -146,7 +146,7 @@ def ended_by(end: Callable[[Recorder], object], folder: Path) -> bool:
     return not thread.is_alive()
 
 
-def test_the_thread_ends_however_recording_does(tmp_path: Path) -> None:
+def test_the_writing_thread_ends_however_recording_ends(tmp_path: Path) -> None:
     for number, end in enumerate((Recorder.close, Recorder.discard, lambda recorder: None)):
         assert ended_by(end, tmp_path / str(number)), end
 
@@ -168,7 +168,7 @@ def test_a_forked_process_adds_nothing_to_the_log(tmp_path: Path) -> None:
     assert len(messages_of(recorder.path)) == 41
 
 
-def test_an_item_larger_than_the_limit_may_wait_alone() -> None:
+def test_an_item_larger_than_the_queue_is_queued_alone() -> None:
     written: list[int] = []
     thread = WritingThread(written.append, 10)
     for k in range(3):

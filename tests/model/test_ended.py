@@ -1,4 +1,4 @@
-"""A landing that cannot go on says so by name and costs no more than allowed; Ctrl-C ends it."""
+"""A landing that the solver cannot continue ends with a named fault, within the limit of steps."""
 
 import threading
 from math import inf, nan
@@ -208,7 +208,7 @@ def test_a_state_with_a_number_that_none_has_is_refused_and_nothing_changes(fiel
     st.lists(st.tuples(st.integers(0, len(HEADER) + 60), st.floats()), min_size=1, max_size=4),
 )
 def test_no_state_hangs_a_landing(spoilt):
-    """Whatever it holds, it is refused, or the landing goes on or ends by name."""
+    """Any altered state is refused, or the landing continues or ends with a named fault."""
     landing = limited(1000.0)
     landing.advance_to(0.02)
     state = landing.state()
@@ -233,7 +233,7 @@ def test_the_limit_is_listed_as_other_parameters_are():
 @pytest.mark.parametrize("part", range(5))
 @pytest.mark.parametrize("value", [-1e300, 1e300])
 def test_an_interpolant_that_no_landing_has_is_refused(part, value):
-    """From within such a step a landing would go on with the shortest steps to its limit."""
+    """From within such a step a landing would continue with the shortest steps to its limit."""
     landing = Landing()
     landing.advance_to(0.2)
     before, solver = landing.state(), landing._solver

@@ -75,7 +75,7 @@ def test_samples_a_millisecond_apart_miss_peaks_of_the_ground_force():
 
 @settings(max_examples=10, deadline=None)
 @given(seed=st.integers(0, 10**6), mode=st.sampled_from(["2-2", "1-2-1"]))
-def test_extremes_do_not_depend_on_the_steps_by_which_one_gets_there(seed, mode):
+def test_extremes_do_not_depend_on_the_communication_steps(seed, mode):
     rng = random.Random(seed)
     straight, wandering = Landing(mode=mode), Landing(mode=mode)
     straight.advance_to(0.3)
@@ -126,7 +126,7 @@ def test_extremes_go_on_over_a_jump_of_an_input(mode):
     assert after["leg[1].main_strut.force"].minimum == before["leg[1].main_strut.force"].minimum
 
 
-def test_the_start_is_as_the_inputs_before_it_make_it():
+def test_extremes_at_the_start_are_those_under_the_inputs_set_before_it():
     landing = Landing()
     landing.set_inputs({"external.force_x": 1780.0})
     extreme = landing.extremes()["body.ax"]

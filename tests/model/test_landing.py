@@ -19,7 +19,7 @@ FIGURES = "yue2022-figures"
 
 @settings(max_examples=15, deadline=None)
 @given(seed=st.integers(0, 10**6), mode=st.sampled_from(["2-2", "1-2-1"]))
-def test_results_do_not_depend_on_the_steps_by_which_one_gets_there(seed, mode):
+def test_results_do_not_depend_on_the_communication_steps(seed, mode):
     rng = random.Random(seed)
     straight, wandering = Landing(mode=mode), Landing(mode=mode)
     straight.advance_to(0.3)

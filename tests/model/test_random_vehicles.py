@@ -116,7 +116,7 @@ def test_a_landing_with_a_cavity_has_one():
 
 
 def test_no_pressure_rises_unseen_inside_a_step():
-    """A stiff pair of pressures evens out there, and the interpolant may go on as it began."""
+    """A stiff pair of pressures becomes equal there, and the interpolant may overshoot."""
     landing, most = Landing(some_vehicle(random.Random(1012)), rtol=1e-4), 0.0
     for k in range(200):
         landing.advance_to(0.279 + 1e-5 * k)

@@ -114,8 +114,8 @@ def test_a_parked_vehicle_takes_nothing_from_the_slope_it_stands_on(mode):
     ],
     ids=["side load", "stiff seals", "light feet"],
 )
-def test_what_trembles_at_a_loose_tolerance_comes_to_rest_too(mode, values, side, rtol):
-    """However its accelerations tremble: else it would neither be called settled nor sleep."""
+def test_a_vehicle_that_oscillates_by_a_loose_tolerance_comes_to_rest_too(mode, values, side, rtol):
+    """However its accelerations oscillate: else it would neither be called settled nor sleep."""
     upright = {"drop.horizontal_velocity": 0.0, "drop.tilt": values.get("ground.slope", 0.0)}
     landing = Landing(load_preset(FIGURES, mode).with_values({**upright, **values}), rtol=rtol)
     landing.set_inputs({"external.force_x": side * 9.81 * 194.8})

@@ -110,7 +110,7 @@ def test_a_moving_deck_lets_nothing_sleep(rested):
     assert landing.statistics["asleep"] == 0
 
 
-def test_sleep_does_not_depend_on_the_steps_by_which_one_gets_there(mode, rested):
+def test_sleep_does_not_depend_on_the_communication_steps(mode, rested):
     rng, wandering = random.Random(7), Landing(load_preset(FIGURES), mode)
     while wandering.time < LONG:
         wandering.advance_to(min(LONG, wandering.time + 10.0 ** rng.uniform(-4, 0)))

@@ -135,7 +135,7 @@ def test_a_signal_in_mid_landing_leaves_a_complete_log(
 
 
 def wall(out: str) -> float:
-    """The wall time of a landing that the node tells of."""
+    """The wall time of a landing that the node reports."""
     return float(re.search(r"s in ([0-9.]+) s", out)[1])  # type: ignore[index]
 
 

@@ -7,7 +7,7 @@ import pytest
 
 
 def interrupted_after(seconds, work):
-    """Call `work` with Ctrl-C pressed after some processor time, and again until it is felt.
+    """Call `work` with Ctrl-C pressed after some processor time, and again until it is raised.
 
     On a busy machine time passes while `work` has not begun; processor time does not.
     """
@@ -21,10 +21,10 @@ def interrupted_after(seconds, work):
         signal.signal(signal.SIGVTALRM, usual)
 
 
-def is_felt(work, delay):
-    """Whether Ctrl-C that is pressed `delay` [s] after the start of `work`, or at its end, is felt.
+def raises_keyboard_interrupt(work, delay):
+    """Whether Ctrl-C, `delay` [s] after the start of `work` or at its end, reaches the caller.
 
-    It is not if something between `work` and the caller drops the exception.
+    It does not if something between `work` and the caller drops the exception.
     """
     pressed = []
 

@@ -306,7 +306,7 @@ def test_the_node_lands_the_fmus_vehicle_unless_another_is_given(stage, paramete
         assert landed == own_vehicle(stage).with_values({"vehicle.mass": mass})
 
 
-def test_a_front_without_its_mark_is_refused(binary):
+def test_a_front_library_without_a_place_for_its_guid_is_refused(binary):
     from fmu_build.fronts import prebuilt
 
     with pytest.raises(SystemExit, match="has no place for an identity"):

@@ -152,7 +152,9 @@ def test_valgrind_finds_no_wrong_access(unpacked, host):
     assert_landed(done)
 
 
-def test_the_front_under_address_sanitizer_lands_without_a_word(unpacked, binary, header, tmp_path):
+def test_the_front_under_address_sanitizer_lands_without_a_report(
+    unpacked, binary, header, tmp_path
+):
     """Without the leaks of Python, which is never finalised."""
     from fmu_build.compilers import Compiler
 

@@ -108,7 +108,7 @@ def test_calls_without_an_instance_are_errors(make3):
     instance.slave.component = kept
 
 
-def test_nothing_at_all_may_be_set_and_got(make3):
+def test_getters_and_setters_take_no_variables_at_all(make3):
     instance = make3()
     for kind in ("Float32", "Float64", "Int8", "UInt64", "Int32", "Boolean", "String"):
         for call in ("Get", "Set"):

@@ -85,8 +85,8 @@ def test_another_process_goes_on_with_the_very_same_digits(instance, data, unpac
     assert done.stdout.split() == [instance.get(name).hex() for name in SEEN]
 
 
-def test_bytes_are_no_program(data):
-    """States are JSON: reading one runs nothing that a stranger may have put into it."""
+def test_a_serialised_state_is_json_and_holds_no_code(data):
+    """So that reading a state from an untrusted source runs nothing."""
     content = json.loads(data[HEADER.size :])
     assert content["parameters"] == {"ground.friction": 0.35}
     assert content["landing"][0] == pytest.approx(0.15)
@@ -175,7 +175,7 @@ def test_a_freed_state_is_gone_and_a_given_one_is_taken_anew(instance):
     assert instance.status("fmi2SetFMUstate", kept) == ERROR
 
 
-def test_bytes_need_room(instance):
+def test_a_buffer_too_small_for_a_serialised_state_is_an_error(instance):
     instance.start()
     state, size = instance.slave.getFMUState(), c_size_t()
     assert instance.status("fmi2SerializedFMUstateSize", state, byref(size)) == OK
@@ -187,7 +187,7 @@ def test_bytes_need_room(instance):
     assert instance.status("fmi2SerializeFMUstate", state, room, size.value) == OK
 
 
-def test_a_state_carries_where_the_instance_was_in_its_life(make):
+def test_a_state_holds_the_phase_of_the_instance(make):
     instance, other = make(), make()
     instance.slave.enterInitializationMode()
     early = instance.slave.serializeFMUstate(instance.slave.getFMUState())

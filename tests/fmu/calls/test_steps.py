@@ -110,7 +110,7 @@ def test_a_start_time_that_rounds_away_steps_is_an_error(instance, start):
 
 
 def test_a_step_beyond_the_longest_landing_is_refused(instance):
-    """It ends nothing: the landing goes on."""
+    """The instance stays usable, and the landing continues."""
     instance.start()
     for step in (1e9 + 1.0, 1e300):
         assert instance.step(0.0, step) == DISCARD

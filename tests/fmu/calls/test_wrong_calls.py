@@ -179,7 +179,7 @@ def test_arguments_that_cannot_be_are_errors_with_a_reason_and_change_nothing(in
     assert_lands_like_landing(instance)
 
 
-def test_nothing_at_all_may_be_set_and_got(instance):
+def test_getters_and_setters_take_no_variables_at_all(instance):
     for function in ("fmi2SetReal", "fmi2GetReal", "fmi2SetString", "fmi2GetBoolean"):
         assert instance.status(function, None, 0, None) == OK
 

@@ -150,7 +150,7 @@ def test_heave_alone_set_at_each_step_moves_a_parked_vehicle_without_force_peaks
 
 @pytest.mark.parametrize("again", [False, True])
 def test_heave_at_intervals_of_ten_steps_moves_a_parked_vehicle_without_force_peaks(make, again):
-    """Whether it is set at each step or once. A copy goes on from a state on the way."""
+    """Whether it is set at each step or once. A copy continues from a state during the motion."""
     instance, copy = make(), make()
     for each in (instance, copy):
         each.start()

@@ -215,7 +215,7 @@ def test_a_step_longer_than_the_interval_ends_at_the_position():
 
 @pytest.mark.parametrize("known", [False, True])
 @pytest.mark.parametrize("stand", [0.3, 2.0 * LONGEST_INTERVAL])
-def test_a_position_after_a_stand_is_reached_over_the_time_of_that(known, stand):
+def test_the_first_position_after_a_standstill_is_reached_over_the_time_of_that(known, stand):
     """At most over LONGEST_INTERVAL. The next one comes soon, and is reached as soon."""
     landing, here = high(), 0.0
     if known:
@@ -240,7 +240,7 @@ def test_a_position_after_a_stand_is_reached_over_the_time_of_that(known, stand)
 
 @pytest.mark.parametrize(("interval", "most"), [(200, 2.4), (50, 1.45)])
 @pytest.mark.parametrize("first", [0.0, 1e-9])
-def test_a_deck_of_seldom_positions_does_not_hammer(parked, interval, most, first):
+def test_a_deck_whose_positions_come_seldom_makes_no_force_peaks(parked, interval, most, first):
     """A host of 200 Hz gives positions at 1 Hz or 4 Hz, after `first` at two steps in a row."""
     landing, forces = parked("2-2"), []
     for k in range(2):
@@ -312,7 +312,7 @@ def test_a_motion_over_an_interval_does_not_depend_on_the_steps(cuts, landed):
 
 
 @pytest.mark.parametrize("steps", [0, 2, 3, 4, 6, 7, 8])
-def test_a_state_on_the_way_goes_on_with_the_same_digits(parked, mode, steps):
+def test_a_state_during_a_motion_of_the_ground_continues_with_the_same_digits(parked, mode, steps):
     """Before and after each way's end, at it, and with the next positions."""
     landing, other = parked(mode), Landing(parked(mode).parameters, rtol=1e-7)
     on_the_way(landing, PARKED)
@@ -328,7 +328,7 @@ def test_a_state_on_the_way_goes_on_with_the_same_digits(parked, mode, steps):
     assert other.state() == landing.state()
 
 
-def test_run_ends_the_ways_where_steps_do(parked, mode):
+def test_run_ends_motions_of_the_ground_where_steps_do(parked, mode):
     by_run, by_steps = parked(mode), parked(mode)
     for landing in (by_run, by_steps):
         on_the_way(landing, PARKED)
@@ -342,7 +342,7 @@ def test_run_ends_the_ways_where_steps_do(parked, mode):
     assert by_run.state() == by_steps.state()
 
 
-def test_a_refused_input_changes_no_way():
+def test_a_refused_input_changes_no_motion_of_the_ground():
     landing = flying()
     landing.step(10e-3)
     landing.set_inputs({"ground.heave": 0.01})

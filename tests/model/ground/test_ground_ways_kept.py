@@ -1,4 +1,4 @@
-"""A ground on its way to a new position: with sleep, Ctrl-C, states and copies."""
+"""A ground that moves to a new position (a `Way`): with sleep, Ctrl-C, states and copies."""
 
 import copy
 import threading
@@ -26,7 +26,7 @@ def rested(mode):
 
 
 @pytest.mark.parametrize("position", ["ground.heave", "ground.tilt"])
-def test_a_position_wakes_it_and_the_way_there_keeps_it_awake(rested, position):
+def test_a_ground_position_wakes_the_landing_and_the_motion_to_it_keeps_it_awake(rested, position):
     landing, before = copy.copy(rested), rested.get("body.y")
     landing.set_inputs({position: 1e-4})
     assert landing.statistics["asleep"] == 0
@@ -41,7 +41,7 @@ def test_a_position_wakes_it_and_the_way_there_keeps_it_awake(rested, position):
     assert again.statistics["asleep"] == 1
 
 
-def test_staircases_wake_it_at_each_step_and_it_sleeps_after_the_last(rested):
+def test_each_of_several_ground_positions_wakes_the_landing_and_it_sleeps_after_the_last(rested):
     landing = copy.copy(rested)
     for k in range(40):
         landing.set_inputs({"ground.heave": 1e-4 * (1 + k // 4)})
@@ -56,7 +56,8 @@ def test_staircases_wake_it_at_each_step_and_it_sleeps_after_the_last(rested):
     reason="signals reach the main thread",
 )
 @pytest.mark.parametrize("how", ["advance_to", "run"])
-def test_ctrl_c_on_the_way_does_not_move_the_ground(rested, how):
+def test_ctrl_c_during_the_motion_does_not_move_the_ground(rested, how):
+    copy.copy(rested).run(RESTED + 1e-3)  # imports what `run` needs before the interrupt comes
     landing, other, end = copy.copy(rested), copy.copy(rested), RESTED + 400.0
     for both in (landing, other):
         both.set_inputs({"ground.heave": 0.5, "ground.tilt": 0.01})
@@ -96,7 +97,7 @@ def on_the_way():
         ("end", 0.1, "that it had at 0.1 s"),
     ],
 )
-def test_a_way_that_no_landing_has_is_refused(which, field, value, message):
+def test_a_state_with_a_ground_motion_that_no_landing_has_is_refused(which, field, value, message):
     landing = on_the_way()
     before, spoiled = landing.state(), landing.state()
     spoiled[HEADER + which * len(Way._fields) + Way._fields.index(field)] = value
@@ -108,7 +109,7 @@ def test_a_way_that_no_landing_has_is_refused(which, field, value, message):
     assert landing.state() == before
 
 
-def test_a_way_goes_on_from_a_state_and_in_a_copy():
+def test_the_motion_of_the_ground_continues_from_a_state_and_in_a_copy():
     landing, other = on_the_way(), Landing()
     other.restore(landing.state())
     for both in (landing, other, third := copy.deepcopy(landing)):

@@ -172,7 +172,7 @@ def new_positions(most: float) -> st.SearchStrategy[float]:
     dt=st.sampled_from((1e-3, 3.7e-3)),
 )
 def test_the_ground_reaches_a_position_that_was_set_one_step_later(positions, rates, dt):
-    """It is there on top of its rates, and goes on at its rates.
+    """Its position is on top of the motion by its rates, and it continues at these.
 
     Each position differs from the one before, else the interval of positions is longer than a step.
     """

@@ -172,7 +172,8 @@ class Legged(System):
     def may_rest(self, u: Doubles, rates: Doubles, outputs: Doubles) -> bool:
         """Whether it stands and is slow, with loads and ground that do not change.
 
-        Its acceleration does not count: an explicit method trembles.
+        Its acceleration does not count: at rest an explicit method oscillates by a part of the
+        tolerance.
         """
         phase = status_outputs(outputs, self._energies + ENERGY_OUTPUTS).phase
         if is_phase(phase, Phase.FALLING) or is_phase(phase, Phase.TOPPLED):

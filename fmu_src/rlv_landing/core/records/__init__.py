@@ -1,6 +1,6 @@
-"""The only layout: what kernels take, give and keep, a record each.
+"""The layout of all data of the core: a record for each set of numbers that functions share.
 
-In the compiled core a record is a C struct made from the text here.
+In the compiled core a record is a C struct made from the text here; nothing else fixes an order.
 
 Frames. Inertial: x forward, y up, z to the right; the origin is that of the ground. Body: the same
 axes turned by the pitch, which is clockwise positive; the origin is the body's centre of gravity

@@ -14,22 +14,22 @@ class FluidState(NamedTuple):
 
 
 class Chamber(NamedTuple):
-    """A chamber's volume."""
+    """Volume of a damper chamber, and its slope."""
 
     V: float  # above 0 [m3]
-    area: float  # how fast it grows with the piston's motion away [m2]
+    area: float  # derivative of V by the piston's motion that enlarges it [m2]
 
 
 class StrutForce(NamedTuple):
     """The result of a main strut law.
 
-    A law without a passage, a seal or a stop gives 0 W for it, one without a liquid 0 kg.
+    A law without an orifice, a seal or a stop gives 0 W for it, one without a liquid 0 kg.
     """
 
     force: float  # [N] compression positive
     dz1: float  # rate of z1
     dz2: float  # rate of z2
-    orifice: float  # dissipated in the passage [W]
+    orifice: float  # dissipated in the orifice [W]
     seal: float  # dissipated by friction of the seal [W]
     stop: float  # dissipated by the end stops [W]
     held: float  # energy held by the strut's medium [J]
@@ -61,9 +61,9 @@ class AxialForce(NamedTuple):
 
 
 class Bearing(NamedTuple):
-    """Elongation by the faces of a joint with play that bear on one side."""
+    """The spring of a joint with play, at one end of the play."""
 
-    u: float  # elongation of what they press on [m]
+    u: float  # elongation of the spring that the faces there press on [m]
     slope: float  # its derivative by the joint's motion
 
 
@@ -96,11 +96,11 @@ class Friction(NamedTuple):
     """Friction along one direction."""
 
     force: float  # on the footpad [N]
-    rate: float  # of the displacement [m/s]
+    rate: float  # of the friction displacement [m/s]
 
 
 class FrictionBound(NamedTuple):
-    """A friction law's states where it lets them be."""
+    """A friction law's states q1, q2 brought back within its slip limit."""
 
     q1: float
     q2: float
@@ -117,7 +117,7 @@ class FrictionForce(NamedTuple):
 
 
 class GroundForce(NamedTuple):
-    """All that the ground does to a footpad, in the ground's axes."""
+    """Contact forces of the ground on a footpad, in the ground's axes, and their powers."""
 
     normal: float  # along n [N]
     f1: float  # along 1 [N]

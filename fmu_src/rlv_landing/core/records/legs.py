@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 
 class LegForces(NamedTuple):
-    """All that one leg does: forces, rates of its laws' states, and powers [W].
+    """Forces of one leg, rates of its laws' states, and powers [W].
 
     Strut forces are in the leg's plane, the ground's force is in the ground's axes.
     """

@@ -1,4 +1,4 @@
-"""The models: numbers that a landing does not change.
+"""Parameters of the body and of each leg, constant during a landing.
 
 They have the paper's symbols, whose meanings are in `rlv_landing.parameters`.
 """

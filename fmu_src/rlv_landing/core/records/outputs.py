@@ -1,4 +1,4 @@
-"""The outputs that a user sees, in the order of `rlv_landing.quantities`.
+"""The outputs of a landing, in the order of `rlv_landing.quantities`.
 
 Strut forces are negative in compression here.
 """
@@ -103,6 +103,6 @@ class LegOutputs(NamedTuple):
 
 
 class LegLoadOutputs(NamedTuple):
-    """The quantities that a leg has beside those of `LegOutputs` in a landing in space."""
+    """The quantities of one leg that follow those of `LegOutputs` in a landing in space."""
 
     transverse_force: float

@@ -1,4 +1,4 @@
-"""Records of the planar body: attitude, foot points, loads, accelerations and held energy."""
+"""Records of the planar body: attitude, footpads, loads and accelerations."""
 
 from typing import NamedTuple
 

@@ -1,10 +1,10 @@
-"""The spatial body's own: its state and inputs, and vectors."""
+"""Records of the spatial body (6 DOF): state, inputs, deck, footpads, loads, vectors."""
 
 from typing import NamedTuple
 
 
 class Vector(NamedTuple):
-    """A vector of space."""
+    """A vector with three components."""
 
     x: float
     y: float
@@ -29,7 +29,7 @@ class Rotation(NamedTuple):
 
 
 class SpatialState(NamedTuple):
-    """The body in space. As rates, the same a second."""
+    """The body in space. For derivatives, the same fields, each per second."""
 
     x: float  # CG, inertial [m]
     y: float  # [m]
@@ -48,7 +48,7 @@ class SpatialState(NamedTuple):
 
 
 class SpatialModel(NamedTuple):
-    """The body, and the ground at rest that it comes down on.
+    """Parameters of the body, and of the ground at rest.
 
     The CG is off the legs' axis by `cg_x`, `cg_z`. The inertia is that about the CG, body axes.
     """
@@ -65,7 +65,7 @@ class SpatialModel(NamedTuple):
     H: float  # of the top sensor above the CG, on the legs' axis [m]
     at_joint: float  # see BodyModel
     g: float
-    heading: float  # near which outputs have the heading [rad]
+    heading: float  # outputs give the heading within half a turn of it [rad]
     # the ground's axes 1, 2 and its normal n on a deck that is not turned
     down_x: float
     down_y: float
@@ -119,10 +119,10 @@ class DeckTurn(NamedTuple):
 
 
 class FootPlace(NamedTuple):
-    """A footpad in the body."""
+    """A footpad relative to the body."""
 
     from_cg: Vector  # body axes [m]
-    rate: Vector  # its rate there [m/s]
+    rate: Vector  # its velocity relative to the body, body axes [m/s]
 
 
 class SpatialLoads(NamedTuple):
@@ -131,7 +131,8 @@ class SpatialLoads(NamedTuple):
     radial: float  # all forces on the footpad but the transverse one along r [N]
     vertical: float  # along h [N]
     tangential: float  # along t [N]
-    # acceleration of the footpad at rest in its leg, but for those of the CG and of the spin
+    # part of the footpad's acceleration by the spin itself: without the parts by accelerations of
+    # the CG, of the spin, and of the footpad in its leg
     bias_r: float  # [m/s2]
     bias_h: float
     bias_t: float

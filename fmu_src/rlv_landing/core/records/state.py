@@ -1,4 +1,4 @@
-"""The state of a vehicle: the body, each leg group, then the accounts; and its inputs."""
+"""The state of a vehicle: the body, each leg group, then the energy accounts; and its inputs."""
 
 from enum import IntEnum
 from typing import NamedTuple
@@ -17,7 +17,7 @@ class Phase(IntEnum):
 
 
 class Fault(IntEnum):
-    """The reason why a solver cannot go on."""
+    """The reason why a solver cannot continue."""
 
     NONE = 0
     COLLAPSED = 1
@@ -25,7 +25,7 @@ class Fault(IntEnum):
 
 
 class BodyState(NamedTuple):
-    """The body in the inertial frame. As rates, the same a second."""
+    """The body in the inertial frame. For derivatives, the same fields, each per second."""
 
     x: float  # CG [m]
     y: float  # CG [m]
@@ -36,16 +36,16 @@ class BodyState(NamedTuple):
 
 
 class LegState(NamedTuple):
-    """One leg: its footpad in the leg's plane, and what its laws keep.
+    """One leg: its footpad in the leg's plane, and the states of its laws.
 
-    As rates, the same a second.
+    For derivatives, the same fields, each per second.
     """
 
     r: float  # [m]
     h: float  # [m]
     vr: float  # [m/s]
     vh: float  # [m/s]
-    # the main strut law's own; of a liquid spring its chambers' states [Pa], see `struts.fluid`
+    # states of the main strut law; of a liquid spring its chambers' states [Pa], see `struts.fluid`
     z1: float  # of the upper chamber
     z2: float  # of the lower chamber
     q1: float  # the friction law's displacement along 1 [m]
@@ -53,9 +53,9 @@ class LegState(NamedTuple):
 
 
 class Accounts(NamedTuple):
-    """Energy [J] dissipated so far, in six ways, and supplied so far, in three, by all legs.
+    """Energy accounts of all legs [J]: dissipated so far, six fields, and supplied so far, three.
 
-    As rates, powers [W].
+    For derivatives, powers [W].
     """
 
     orifice: float

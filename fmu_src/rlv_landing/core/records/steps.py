@@ -1,4 +1,4 @@
-"""Records of the solvers: stiff pairs of states, their weights, bends and crests of quantities."""
+"""Records of the solvers: stiff pairs of states, their weights, and samples near an extreme."""
 
 from typing import NamedTuple
 
@@ -32,7 +32,7 @@ class PhiWeights(NamedTuple):
 
 
 class Bend(NamedTuple):
-    """A quantity at three times one after the other."""
+    """Three successive samples of a quantity, between which its maximum is searched."""
 
     t0: float  # [s]
     v0: float
@@ -43,7 +43,7 @@ class Bend(NamedTuple):
 
 
 class Crest(NamedTuple):
-    """Time and value of a quantity's maximum."""
+    """Time and value of the maximum of the parabola through a `Bend`."""
 
     t: float  # [s]
     value: float

@@ -1,6 +1,6 @@
 """Dormand-Prince 5(4), the paper's ode45.
 
-It is explicit, and held by the stiffest chamber whatever the tolerance.
+It is explicit: the stiffest damper chamber limits its steps by stability, at any tolerance.
 
 Coefficients: Dormand and Prince (1980); the fourth-order interpolant: Hairer, Norsett and Wanner,
 Solving Ordinary Differential Equations I, II.6.
@@ -44,7 +44,7 @@ D5, D6, D7 = 701980252875.0 / 199316789632.0, -1453857185.0 / 822651844.0, 69997
 
 
 class DormandPrince(Solver):
-    """Six right-hand sides a step, fifth order, error of a fourth-order companion."""
+    """Six right-hand sides a step, fifth order, error by the embedded fourth-order method."""
 
     k5: Buffer
     k6: Buffer

@@ -1,6 +1,6 @@
-"""Runge-Kutta of fourth order in which stiff pairs of states even out exponentially.
+"""Exponential Runge-Kutta of fourth order for stiff pairs of states.
 
-No pair holds the step, however stiff. A system tells of pairs of states whose difference decays at
+No pair limits the step, however stiff. A system names pairs of states whose difference decays at
 lambda = a1 + a2, far faster than all else changes: the pressures in the chambers of a damper, which
 its orifice evens out at 1e4 to 1e5 1/s near zero flow, while all else in a landing changes at 1e3
 to 5e3 1/s. That part of the pair's rates, (a1 x, -a2 x) with x the growth of the difference since
@@ -10,9 +10,9 @@ Generalized integrating factor methods for stiff PDEs, Journal of Computational 
 here the stiff part is a matrix of rank one for each pair, so that its functions are scalars in
 closed form. Where nothing is stiff it is the classic scheme.
 
-The step's error is that against a third-order companion whose last stage is the right-hand side at
-the step's end, which is the next step's first. Both see the step's end only; a part of the
-difference to a second-order companion shows them a kink inside the step.
+The error estimate is the difference to an embedded third-order method whose last stage is the
+right-hand side at the step's end, which is the next step's first. Both see the step's end only. To
+detect a kink inside the step, a part of the difference to a second-order method is added.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ from .solver import Solver
 from .step_control import BETA
 
 THIRD, SIXTH = 1.0 / 3.0, 1.0 / 6.0
-# part of the difference to the second-order companion that counts
+# part of the difference to the second-order method that counts as error
 KINK = 0.3
-# rates that a step takes: at its start, at the stages 2 to 4, at its end
+# right-hand sides of a step: at its start, at the stages 2 to 4, at its end
 STAGES = 5
 
 
@@ -149,7 +149,7 @@ class Exponential(Solver):
         self._nonlinear_rate(4, s, k5)
 
     def _compare(self, h: float) -> None:
-        """The step's deviation from its companions."""
+        """The step's deviation from its embedded methods."""
         e, d, relative = data(self.deviation), data(self.driven), data(self.system.relative)
         k1, k2, k3, k4, k5 = (
             data(self.k1),

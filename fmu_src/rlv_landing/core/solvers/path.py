@@ -1,4 +1,4 @@
-"""The path of a system: its last two internal steps, and what is read along them.
+"""Dense output: the last two internal steps of a system, with state and outputs inside them.
 
 Interpolants: Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, II.6.
 """
@@ -19,7 +19,7 @@ class Path:
 
     The last step leads from `t_old` to `t` [s], that before it from `t_before` to `t_old`. `dense`
     [2 x 5 n] holds their interpolants, the last step's from `dense_at` on. `u` [inputs] holds the
-    inputs at `t_input`, which go on from there at `u_rate` [inputs].
+    inputs at `t_input`, which change from there at the rates `u_rate` [inputs].
     """
 
     system: System
@@ -91,7 +91,7 @@ class Path:
         return PARTS * self.n - self.dense_at
 
     def _stand_still(self, y: Doubles) -> None:
-        """Be at the state `y` at time `t`, with no step behind."""
+        """Make the interpolant the constant state `y`: no step was taken yet since time `t`."""
         self.dense_at = 0
         d = data(self.dense)
         for i in range(2 * PARTS * self.n):

@@ -1,4 +1,4 @@
-"""The functions of exponential time differencing, and Krogstad's weights made of them."""
+"""The phi functions of exponential integrators, and Krogstad's weights made of them."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
 """A system that has come to rest sleeps: time passes without steps until an input changes.
 
-An explicit method goes on at rest with the longest stable steps, a thousand a second, and its
-states tremble by a small part of the tolerance. Where the rest is, one implicit step tells that is
-longer than any motion that is left: backward Euler's, linear, of `FAR` seconds. It leads from the
-state y by the shift d, d/FAR - J d = f(y), to where all that decays has decayed. A creep shows in
-it as FAR times its speed.
+At rest an explicit method continues with the longest stable steps, a thousand a second, and its
+states oscillate about the equilibrium by a small part of the tolerance. The equilibrium is found by
+a probe: one linearised backward Euler step of `PROBE_STEP` seconds, longer than any motion that is
+left. It shifts the state y by d, d/PROBE_STEP - J d = f(y), to where all that decays has decayed. A
+creep shows in it as PROBE_STEP times its speed.
 """
 
 from __future__ import annotations
@@ -17,36 +17,36 @@ from ..linear import solve
 from ..memory import Buffer, Doubles, copy, data
 from .watch import Watch
 
-# [s]: to where a probe looks
-FAR = 1000.0
-# steps at rest between two probes, each of which costs as much as six; a prime, so that a tremble
-# that repeats itself is met in all its states
+# [s]: length of a probe's backward Euler step
+PROBE_STEP = 1000.0
+# steps at rest between two probes, each of which costs as much as six; a prime, so that probes meet
+# a periodic oscillation in all its phases
 STEPS_BETWEEN = 197
-# a rest is that of the state where it is no further away than this [m] times rtol, a fifth of what
-# the tolerance allows a position: the methods' tremble at rest is less, but for loose tolerances
-# and for seals, on which an explicit method's tremble may hold the strokes; where so many probes
-# found it no nearer, by a part of the least distance, the rest is five times as far as the
-# tolerance allows, at most
-TREMBLE, MOST_TREMBLE = 0.02, 0.5
+# [m], times rtol: the system rests if its equilibrium is no further away than the first, a fifth of
+# what the tolerance allows a position. The methods oscillate by less at rest, but for loose
+# tolerances and for seals, on which the oscillation of an explicit method may hold the strokes.
+# Therefore the second, five times what the tolerance allows, applies after NO_NEARER probes in a
+# row of which none found a distance below NEARER times the least so far
+NEAR, NEAR_AT_MOST = 0.02, 0.5
 NO_NEARER = 20
 NEARER = 0.99
-# [m]: no probe has found a rest yet
+# [m]: distance of the equilibrium before the first probe
 UNKNOWN = 1e9
-# [m]: and where from there nothing is left that moves further, after so many probes at most
-LEFT = 1e-9
+# [m]: probes are repeated until one moves the state no further, and so many times at most
+CONVERGED = 1e-9
 PROBES = 6
-# [s]: going to the rest may lose as much of what the system conserves as this time may
-JUMP = 1.0
-# part of a state's scale by which derivatives are taken
+# [s]: the move to the equilibrium may lose as much of what the system conserves as a step this long
+LOSS_TIME = 1.0
+# increment of the finite differences for J, as a part of a state's scale
 NUDGE = 1e-7
 
 
 class Rest(Watch):
     """A path that may come to rest.
 
-    `asleep` tells that the state is one of rest and stays, `nearest` how near the rest has been by
-    the probes [m], `still` how many probes in a row found it no nearer, NO_NEARER at most, `waited`
-    how many steps at rest came after the last probe.
+    `asleep` tells that the state is at rest and stays, `nearest` the least distance to the
+    equilibrium that a probe found [m], `still` how many probes in a row found none below it,
+    NO_NEARER at most, `waited` how many steps at rest came after the last probe.
     """
 
     rtol: float
@@ -77,9 +77,9 @@ class Rest(Watch):
         self._f1 = array("d", bytes(8 * n))
 
     def _found_rest(self, y: Doubles) -> bool:
-        """Whether the system rests near the state `y` at time `t`; then `_place` is that rest.
+        """Whether the system rests near the state `y` at time `t`, at the equilibrium `_place`.
 
-        What no state depends on stays as it is.
+        States that no other state depends on stay as they are.
         """
         if not self.system.may_rest(data(self.u), data(self.u_rate), data(self.last)):
             self._awake()
@@ -94,15 +94,15 @@ class Rest(Watch):
             return False
         look = data(self._look)
         self._outputs_at(self.t, place, look, 0)
-        if self.system.lost(data(self.last), look, JUMP) > 1.0:
+        if self.system.lost(data(self.last), look, LOSS_TIME) > 1.0:
             return False
         return self.system.rests(look)
 
     def _reach_rest(self, y: Doubles) -> bool:
-        """Bring the state `y` to its rest at the inputs at time `t`.
+        """Move the state `y` to the equilibrium at the inputs at time `t`.
 
         Returns:
-            False where there is no rest, or it is too far away.
+            False where there is no equilibrium, or it is too far away.
         """
         self._inputs_at(self.t)
         step = self._probe_step(y)
@@ -111,19 +111,19 @@ class Rest(Watch):
             self.still = 0
         else:
             self.still = min(self.still + 1, NO_NEARER)
-        near = self.rtol * (TREMBLE if self.still < NO_NEARER else MOST_TREMBLE)
+        near = self.rtol * (NEAR if self.still < NO_NEARER else NEAR_AT_MOST)
         way = step
         for _ in range(PROBES - 1):
             if not way <= near:
                 return False
-            if step <= LEFT:
+            if step <= CONVERGED:
                 return True
             step = self._probe_step(y)
             way += step
-        return way <= near and step <= LEFT
+        return way <= near and step <= CONVERGED
 
     def _probe_step(self, y: Doubles) -> float:
-        """Take a probe's step from the state `y`; return how far [m] it leads."""
+        """Move the state `y` by one probe; return how far [m] it moved."""
         f0, shift, a = data(self._f0), data(self._shift), data(self._matrix)
         m = self.system.controlled
         self.system.rhs(y, data(self.u_now), f0)
@@ -138,7 +138,7 @@ class Rest(Watch):
         return self.system.distance(shift)
 
     def _linearise(self, y: Doubles) -> None:
-        """Write 1/FAR - J at the state `y`, states in parts of their scales, to `_matrix`."""
+        """Write 1/PROBE_STEP - J at the state `y` to `_matrix`, states in parts of their scales."""
         f0, f1, nudged, a = data(self._f0), data(self._f1), data(self._nudged), data(self._matrix)
         m = self.system.controlled
         copy(y, nudged, self.n)
@@ -148,7 +148,7 @@ class Rest(Watch):
             nudged[j] = y[j]
             for i in range(m):
                 a[i * m + j] = -(f1[i] - f0[i]) / (NUDGE * self._scale(y, i))
-            a[j * m + j] += 1.0 / FAR
+            a[j * m + j] += 1.0 / PROBE_STEP
 
     def _scale(self, y: Doubles, i: int) -> float:
         """The size of state `i`, of which the tolerance is a part."""
@@ -156,7 +156,7 @@ class Rest(Watch):
         return size + fabs(y[i]) if self.system.relative[i] > 0.0 else size
 
     def _awake(self) -> None:
-        """Be in motion."""
+        """Mark the system as moving, and forget the probes so far."""
         self.asleep = False
         self.nearest = UNKNOWN
         self.still = 0

@@ -1,6 +1,6 @@
-"""One-step integration with dense output, with steps of its own whatever the communication step.
+"""Integration by a one-step method: step control, dense output, limits.
 
-The methods are subclasses.
+Internal steps do not depend on the communication step. The methods are subclasses.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .step_control import (
 )
 from .trial import Trial
 
-# tries of a step that a start or a jump of an input may take beside the limit
+# tries of a step that a start or a jump of an input may take without counting against the limit
 FREE_TRIES = 10.0
 
 
@@ -27,15 +27,15 @@ class Solver(Trial):
     """The state of one `System` in time: the present state, and the internal step ahead of it.
 
     `y` [n] is the state at `t` (s), the end of the last internal step; `advance` moves `t` to or
-    past a time, `interpolate` gives the state at any time inside the last step. `exponent` of the
-    step control is the method's.
+    past a time, `interpolate` gives the state at any time inside the last step. `exponent` is that
+    of the step control; each method sets it.
 
     `limit` is how many tries of a step a second may take: `spent` counts those beyond that rate,
     which may be as many as a second has. `fault` is a `Fault`: with one, no more steps are taken.
 
-    Forces that switch do so inside steps: the error control finds them. The system takes off at a
-    step's end what the step has gathered beyond where a state may be, which would be a first-order
-    error.
+    Forces switch inside steps: there is no event location, the error control shortens the step. A
+    step may carry a state past its bound, a friction displacement past the slip limit; that would
+    be a first-order error, so the system brings it back to the bound at the step's end.
     """
 
     exponent: float
@@ -76,7 +76,7 @@ class Solver(Trial):
     def cut(self, t: float) -> None:
         """End the path at time `t` [s], inside the last internal step.
 
-        The state there is written to `y`, from which `restart` goes on.
+        The state there is written to `y`, from which `restart` continues.
         """
         self._cut(t)
 
@@ -85,7 +85,7 @@ class Solver(Trial):
         self._interpolate(t, data(self.y))
 
     def restart(self, t: float) -> None:
-        """Go on from time `t` [s], the state in `y` and the inputs in `u`, with no step behind."""
+        """Continue from time `t` [s], the state in `y` and the inputs in `u`, as at a start."""
         self._restart(t)
 
     def _restart(self, t: float) -> None:
@@ -104,7 +104,7 @@ class Solver(Trial):
         self._awake()
 
     def recompute_derived(self) -> None:
-        """Work out again, after the stored numbers were overwritten, what is not stored."""
+        """Compute what a saved state does not hold, after what it holds was restored."""
         self._recompute_derived()
 
     def _recompute_derived(self) -> None:
@@ -121,7 +121,7 @@ class Solver(Trial):
         """Compute a step of `h` [s]: see `Trial` for what it writes."""
 
     def _accept(self, h: float) -> None:
-        """Make the step just computed the last one: take up its interpolant, move on."""
+        """Accept the step just computed: it becomes the last one, and `t` its end."""
         n = self.n
         y, end, k1, k_end = data(self.y), data(self.y_new), data(self.k1), data(self.k_end)
         self._next_row()
@@ -144,7 +144,7 @@ class Solver(Trial):
         return self._advance(t_end, inf)
 
     def advance_some(self, t_end: float, tries: int) -> bool:
-        """The same with at most so many `tries` of a step; False if it takes more, too."""
+        """As `advance`, with at most so many `tries` of a step; False if it takes more, too."""
         return self._advance(t_end, self.steps + self.rejected + tries)
 
     def _advance(self, t_end: float, last_try: float) -> bool:
@@ -161,7 +161,7 @@ class Solver(Trial):
         return True
 
     def _fall_asleep(self) -> None:
-        """Go to the rest of a system that has come to rest, and sleep."""
+        """If the system has come to rest, move its state to the equilibrium and sleep."""
         y, place = data(self.y), data(self._place)
         if self._found_rest(y):
             self._cut(self.t)
@@ -194,7 +194,7 @@ class Solver(Trial):
             self.fault = Fault.TOO_MANY_STEPS
 
     def record(self, start: float, every: float, first: int, last: int, rows: Buffer) -> int:
-        """Go on and write the outputs at times start + k every [s] to `rows`.
+        """Advance, and write the outputs at times start + k every [s] to `rows`.
 
         `k` goes from `first` to `last` - 1, and row k begins at k times `row`. Other threads run
         meanwhile.
@@ -210,7 +210,7 @@ class Solver(Trial):
     def record_some(
         self, start: float, every: float, first: int, last: int, rows: Buffer, tries: int
     ) -> int:
-        """The same with at most so many `tries` of a step."""
+        """As `record`, with at most so many `tries` of a step."""
         numbers = data(rows)
         last_try = self.steps + self.rejected + tries
         with nogil:

@@ -1,4 +1,4 @@
-"""The length of the next step.
+"""The length of the next step, by a PI controller.
 
 Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, II.4.
 """
@@ -12,12 +12,12 @@ FIRST_STEP, LONGEST_STEP, SHORTEST_STEP = 1e-5, 2e-3, 1e-16
 # part of the step that the error would allow, and how much shorter and longer the next step is at
 # most
 SAFETY, SHRINK, GROW = 0.9, 0.2, 5.0
-# weight of the error before: a step control with memory is calmer
+# weight of the error of the step before (the controller's proportional part): lengths vary less
 BETA = 0.04
 # errors, in units of the tolerance, are taken as no smaller: that of this step, and that of the
 # step before, which starts as this
 LEAST_ERROR, LEAST_PREVIOUS_ERROR = 1e-10, 1e-4
-# an error that says nothing of how much shorter the step must be
+# an error so large that the formula does not apply: the next step is as much shorter as it may be
 HOPELESS_ERROR = 1e10
 
 

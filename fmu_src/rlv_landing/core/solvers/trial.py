@@ -1,6 +1,6 @@
-"""A step that is tried: its stages and its end, its error, and what it loses.
+"""A trial step: its stages and its end, its error, and its loss of conserved quantities.
 
-What a step must not lose is what the system conserves: energy, and the liquid of dampers.
+The system conserves energy, and the liquid mass of dampers.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from ..bodies.system import System
 from ..memory import Buffer, Doubles, data
 from .rest import Rest
 
-# [s]: what a shorter step loses is not judged, for it is at a force that jumps, and loses next to
-# nothing
+# [s]: the loss of a shorter step is not judged: steps are so short only where a force jumps, and
+# lose next to nothing
 SHORTEST_JUDGED = 1e-10
-# part of the size of a step's ends that its interpolant may leave them by unseen: a pressure near
-# that of the liquid's stiffness holds much energy in little
+# how far the interpolant may overshoot the states at both ends of a step, as a part of their sizes,
+# before it is judged: a pressure near the liquid's stiffness changes much energy by a small change
 BULGE = 0.002
 # at looser tolerances the inside of every step is judged
 LOOSE = 1e-4
@@ -31,13 +31,14 @@ class Trial(Rest):
 
     A method computes a step from the state `y` and its rates `k1`: its stages, whose rates are `k2`
     to `k4`, the new state `y_new`, the rates `k_end` there, and the step's `deviation` from its
-    companion. All are [n]. Stages and deviation are those of the controlled states alone: nothing
-    depends on the others.
+    embedded method. All are [n]. Stages and deviation are those of the controlled states alone:
+    nothing depends on the others.
 
     Attributes:
         rhs_calls: Calls of the right-hand side so far.
         ceiling: [n] how large the error of each state may be at any tolerance.
-        flattened: Whether slopes of the interpolant written last were cut, so that a state rises.
+        flattened: Whether slopes of the interpolant written last were limited to keep a state
+            monotonic.
     """
 
     rhs_calls: float
@@ -126,9 +127,9 @@ class Trial(Rest):
         return self._loses_inside(h)
 
     def _hold_risen(self, end: Doubles) -> None:
-        """Let what never falls be at the `end` of a step at least what it was at its start.
+        """Keep states that never fall from falling: raise them at the `end` to their start values.
 
-        A method whose formula has a negative weight may miss a peak of a rate so far.
+        A method with a negative weight gives a fall where a rate has a narrow peak.
         """
         y = data(self.y)
         first = self.system.controlled
@@ -164,10 +165,10 @@ class Trial(Rest):
         self._keep_rising(h, at)
 
     def _keep_rising(self, h: float, at: int) -> None:
-        """Let the interpolant just written, which begins at `at`, rise where its state never falls.
+        """Make the interpolant just written, at `at`, monotonic for states that never fall.
 
-        Slopes at the ends are cut to where a cubic rises. The fourth-order part goes where the
-        quartic might fall: where its coefficients in Bernstein's form do.
+        Slopes at the ends are limited so that the cubic rises. The fourth-order part is left out
+        where the quartic might fall: where its coefficients in Bernstein's form do.
         """
         n = self.n
         d, k1, k_end = data(self.dense), data(self.k1), data(self.k_end)
@@ -194,8 +195,9 @@ class Trial(Rest):
     def _loses_inside(self, h: float) -> bool:
         """Whether the step loses more than it may at its quarters.
 
-        They are judged where the step's interpolant leaves its ends far behind or its slopes were
-        cut, or the tolerance is loose. They are read as outputs are, brought back.
+        They are judged if the interpolant overshoots the step's ends or its slopes were limited, or
+        the tolerance is loose. As for outputs, the states there are brought back first to what the
+        system conserves.
         """
         if self.rtol <= LOOSE and not self.flattened and not self._bulges():
             return False
@@ -214,7 +216,7 @@ class Trial(Rest):
         return most > 1.0
 
     def _bulges(self) -> bool:
-        """Whether the interpolant just written leaves its ends far behind at a quarter.
+        """Whether the interpolant just written overshoots the step's ends at a quarter.
 
         Only states whose error is relative to their size count.
         """

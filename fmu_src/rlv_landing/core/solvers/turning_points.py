@@ -1,4 +1,8 @@
-"""Turning points of quantities, and the highest point between three times."""
+"""Turning points of quantities: the maximum near three samples, by parabolic interpolation.
+
+A `Bend` is three successive samples of a quantity, a `Crest` the maximum of the parabola through
+them.
+"""
 
 from __future__ import annotations
 
@@ -7,15 +11,17 @@ from math import inf
 from ..memory import Doubles
 from ..records import Bend, Crest
 
-# a quantity that goes on by no more than this part of its last change has come to a level
+# a quantity that changes by no more than this part of its last change has become constant
 LEVEL = 1e-30
-# a crest is known well enough where the parabola promises no more than this part of its size beyond
+# a maximum is known well enough where the parabola rises above it by no more than this part of its
+# size
 ENOUGH = 2e-4
 # and where no side falls by more than this part
 STEEP = 0.0005
-# a steep side may hide this part of its height above the crest
+# between two samples that differ steeply, a kink may reach this part of their difference above the
+# crest
 HIDDEN = 0.5
-# it is looked for no nearer to a known point than this part of the gap between them
+# the next sample is no nearer to a known one than this part of the interval between two of them
 NEAREST = 0.05
 
 
@@ -40,11 +46,12 @@ def crest(b: Bend) -> Crest:
 
 
 def where_to_look(b: Bend, record: float, size: float, surprise: float) -> float:
-    """The time [s] to look at for a value in `b` above the `record`.
+    """The time [s] of the next sample in `b`, to find a value above the `record`.
 
-    It is at the crest, away from the times that are known; amid the wider side where the parabola
-    has missed by a `surprise` at the last look; amid the steeper side where that is so steep that
-    it may hold a kink; -inf where a look would not find much more, in parts of `size`.
+    It is at the crest, away from the times that are known; in the middle of the longer interval if
+    the parabola missed the last sample by a `surprise` that is large; in the middle of the steeper
+    interval if that is so steep that it may hold a kink; -inf if a sample would not find much
+    more, in parts of `size`.
     """
     top = crest(b)
     enough = ENOUGH * size
@@ -79,7 +86,7 @@ def mark_turns(
 ) -> None:
     """Write below 0 to `turns` for each quantity that turns in the middle of three times.
 
-    One that comes to a level there counts as well. There are neither branches nor calls, so that
+    One that becomes constant there counts as well. There are neither branches nor calls, so that
     the compiler takes several of the `count` quantities at once.
     """
     for i in range(count):

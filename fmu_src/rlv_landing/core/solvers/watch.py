@@ -1,8 +1,9 @@
 """The extremes of every output along the path of a system, whatever the communication step.
 
-At the end of each internal step the outputs are known without a further right-hand side. Where an
-output turns there, its extreme lies in the two steps beside; if the parabola through the three
-steps' ends says that it lies beyond the record so far, it is looked for on the interpolant.
+At the end of each internal step the outputs are known without a further call of the right-hand
+side. Where an output turns there, its extreme lies in the step before or after; if the parabola
+through the outputs at the three ends may pass the extreme so far, it is searched on the
+interpolant.
 """
 
 from __future__ import annotations
@@ -16,11 +17,12 @@ from ..records import Bend
 from .path import Path
 from .turning_points import LEVEL, expected, mark_turns, narrowed, where_to_look
 
-# a crest is no higher above the middle of a bend than so many times its higher side
+# a maximum near three samples is no higher above the middle one than so many times the larger of
+# its differences from the other two
 REACH = 2.0
-# an extreme is known in parts of its size, or of this share of what the output has gone through
+# the accuracy of an extreme is a part of its size, or of this share of the output's range so far
 SHARE = 0.1
-# it is looked for at so many times at most
+# samples of the search for one extreme, at most
 LOOKS = 20
 
 
@@ -114,11 +116,11 @@ class Watch(Path):
         self._outputs_at(t, y, row, 0)
 
     def _start_rows(self, y: Doubles, dy: Doubles) -> None:
-        """Begin at `t` with no step behind, at the state `y`, whose rates are `dy`."""
+        """Begin at time `t` at the state `y`, whose rates are `dy`, before the first step."""
         self.seen = 1
         self.noted = True
         self.system.read(y, data(self.u_now), dy, data(self.last), 0)
-        # not read before there are steps; a state shall not hold what was before the start
+        # not read before there are steps; filled so that a saved state holds nothing from before
         copy(data(self.last), data(self.middle), self.row)
         copy(data(self.last), data(self.before), self.row)
         if self.t == self.t_start:
@@ -194,7 +196,7 @@ class Watch(Path):
         found: Doubles,
         since: float,
     ) -> None:
-        """Take the outputs that turn in the `middle`, or near it, into the extremes `found`."""
+        """Update the extremes `found` by the outputs that turn in the `middle` or near it."""
         if t1 < since:
             return
         if t1 <= t0 or t2 <= t1:
@@ -216,7 +218,7 @@ class Watch(Path):
         return v1 - reach < found[i]
 
     def _raise(self, i: int, sign: float, b: Bend, found: Doubles, since: float) -> None:
-        """Look for the crest `b` of `sign` times the output `i`, beyond the record."""
+        """Search the samples `b` of `sign` times the output `i` for a value beyond the extreme."""
         at = (2 * self.row if sign > 0.0 else 0) + i
         look = data(self._look)
         self._put_higher(at, sign, b.t1, b.v1, found)
@@ -235,9 +237,9 @@ class Watch(Path):
             b = narrowed(b, t, value)
 
     def _put_higher(self, at: int, sign: float, t: float, value: float, found: Doubles) -> None:
-        """Put `value` at time `t` [s], `sign` times an output, where it is a new extreme.
+        """Keep `value` at time `t` [s], `sign` times an output, if it is a new extreme.
 
-        The record so far is `found[at]`.
+        The extreme so far is `found[at]`.
         """
         if value > sign * found[at]:
             found[at] = sign * value
@@ -253,7 +255,7 @@ class Watch(Path):
             found[3 * n + i] = t
 
     def _note_row(self, outputs: Doubles, t: float, found: Doubles, since: float) -> None:
-        """Take the `outputs` at time `t` [s] into the extremes `found`."""
+        """Update the extremes `found` by the `outputs` at time `t` [s]."""
         if t < since:
             return
         n = self.row
