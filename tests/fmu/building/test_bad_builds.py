@@ -44,7 +44,7 @@ def test_a_wrong_compiler_is_named_in_one_line(binary, header, monkeypatch, comm
 
 
 def test_a_full_disk_where_it_builds_is_told_as_such(binary, monkeypatch, tmp_path):
-    from fmu_build.build import _workshop
+    from fmu_build.build import _temporary_folder
 
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     full = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "core/leg.py")
@@ -52,12 +52,12 @@ def test_a_full_disk_where_it_builds_is_told_as_such(binary, monkeypatch, tmp_pa
     for error in (full, shutil.Error([("leg.py", "to/leg.py", str(full))])):
         with (
             pytest.raises(LandingError, match="No space left on device; make room, or name") as e,
-            _workshop(),
+            _temporary_folder(),
         ):
             raise error
         assert str(e.value).startswith(f"{tmp_path} cannot be written")
     other = OSError(errno.EACCES, os.strerror(errno.EACCES), "core/leg.py")
-    with pytest.raises(PermissionError), _workshop():
+    with pytest.raises(PermissionError), _temporary_folder():
         raise other
     assert not list(tmp_path.iterdir())
 
