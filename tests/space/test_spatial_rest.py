@@ -15,7 +15,8 @@ ANGLE = st.floats(-3.1, 3.1)
 RATE = st.floats(-0.3, 0.3)
 
 
-@settings(max_examples=12, deadline=None)
+# the same examples each time, so that the suite does not depend on chance
+@settings(max_examples=12, deadline=None, derandomize=True)
 @given(
     legs=st.sampled_from([3, 4, 5, 6, 8]),
     heading=ANGLE,
