@@ -32,6 +32,23 @@ def flat_state(body: Iterable[float], legs: Iterable[LegState], accounts: Accoun
     return array("d", [*body, *(number for leg in legs for number in leg), *accounts])
 
 
+def state_sizes(
+    body_scale: Iterable[float], groups: int, parameters: Parameters
+) -> tuple[array[float], array[float]]:
+    """The sizes of a state's numbers, and which numbers count by their own size as well.
+
+    Args:
+        body_scale: Typical sizes of the body's numbers.
+        groups: How many leg groups there are.
+        parameters: The parameters of the landing.
+    """
+    body = list(body_scale)
+    energy = touchdown_energy(parameters)
+    accounts = Accounts(*(energy for _ in Accounts._fields))
+    scale = flat_state(body, [LEG_SCALE] * groups, accounts)
+    return scale, flat_state([0.0] * len(body), [LEG_RELATIVE] * groups, NO_ENERGY)
+
+
 def leg_model(parameters: Parameters) -> LegModel:
     """The numbers of a leg that does not lie in a symmetric plane."""
     strut = parameters.auxiliary_strut

@@ -4,24 +4,21 @@ from __future__ import annotations
 
 from array import array
 
-from ..core import Accounts, BodyModel, BodyState, Inputs, LegModel, LegPlace, LegState, Planar
+from ..core import BodyModel, BodyState, Inputs, LegModel, LegPlace, LegState, Planar
 from ..parameters import Parameters
 from ..quantities import azimuth, groups_of
 from ..touchdown import AT_REST, FreeFlight, GroundMotion
 from .legs import (
-    LEG_RELATIVE,
-    LEG_SCALE,
     NO_ENERGY,
     by_symbol,
     flat_state,
     leg_model,
-    touchdown_energy,
+    state_sizes,
 )
 
 # see LEG_SCALE
 BODY_SCALE = BodyState(x=0.1, y=0.1, pitch=0.1, vx=1.0, vy=1.0, pitch_rate=1.0)
 NO_INPUTS = Inputs(*(0.0 for _ in Inputs._fields))
-BODY_RELATIVE = BodyState(x=0.0, y=0.0, pitch=0.0, vx=0.0, vy=0.0, pitch_rate=0.0)
 
 
 def body_model(parameters: Parameters) -> BodyModel:
@@ -55,11 +52,7 @@ def planar_system(parameters: Parameters, kind: type[Planar] = Planar) -> Planar
         kind: The class of the compiled or of the pure core.
     """
     legs = leg_models(parameters)
-    energy = touchdown_energy(parameters)
-    scale = flat_state(
-        BODY_SCALE, [LEG_SCALE] * len(legs), Accounts(*(energy for _ in Accounts._fields))
-    )
-    relative = flat_state(BODY_RELATIVE, [LEG_RELATIVE] * len(legs), NO_ENERGY)
+    scale, relative = state_sizes(BODY_SCALE, len(legs), parameters)
     return kind(body_model(parameters), legs, leg_places(parameters), scale, relative)
 
 

@@ -6,15 +6,14 @@ from array import array
 from collections.abc import Sequence
 from math import cos, radians, sin
 
-from ..core import Accounts, LegPlace, LegState, Spatial, SpatialInputs, SpatialModel, SpatialState
+from ..core import LegPlace, LegState, Spatial, SpatialInputs, SpatialModel, SpatialState
 from ..parameters import Parameters
 from ..quantities import azimuth
-from .legs import LEG_RELATIVE, LEG_SCALE, NO_ENERGY, flat_state, leg_model, touchdown_energy
+from .legs import NO_ENERGY, flat_state, leg_model, state_sizes
 from .spatial_flight import DeckMotion, SpatialFlight
 
 # see LEG_SCALE; half a quaternion's change is an angle's
 BODY_SCALE = SpatialState(*([0.1] * 3 + [0.05] * 4 + [1.0] * 6))
-BODY_RELATIVE = SpatialState(*([0.0] * len(SpatialState._fields)))
 
 
 def spatial_model(parameters: Parameters) -> SpatialModel:
@@ -70,11 +69,7 @@ def spatial_system(parameters: Parameters, kind: type[Spatial] = Spatial) -> Spa
         kind: The class of the compiled or of the pure core.
     """
     places = spatial_places(parameters)
-    energy = touchdown_energy(parameters)
-    scale = flat_state(
-        BODY_SCALE, [LEG_SCALE] * len(places), Accounts(*(energy for _ in Accounts._fields))
-    )
-    relative = flat_state(BODY_RELATIVE, [LEG_RELATIVE] * len(places), NO_ENERGY)
+    scale, relative = state_sizes(BODY_SCALE, len(places), parameters)
     legs = [leg_model(parameters)] * len(places)
     return kind(spatial_model(parameters), legs, places, scale, relative)
 

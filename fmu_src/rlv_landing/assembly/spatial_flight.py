@@ -9,6 +9,7 @@ from typing import NamedTuple
 from ..core import LegPlace, SpatialInputs, SpatialModel, SpatialState
 from ..core.bodies.deck import deck_turn, from_origin, ground_axes
 from ..core.bodies.spatial_legs import cg_of, in_leg
+from ..core.bodies.spatial_motion import gone_on
 from ..core.records import Rotation, Vector
 from ..core.vectors import added, cross, dot, less, rotation, scaled, solved, to_body, to_inertial
 from ..errors import LandingError
@@ -31,15 +32,15 @@ class DeckMotion(NamedTuple):
     rates: SpatialInputs
 
     def at(self, t: float) -> SpatialInputs:
-        """The deck's place `t` [s] later, by the same expressions as in the kernels."""
+        """The deck's place `t` [s] later, as in the kernels."""
         u, rate = self.inputs, self.rates
         return u._replace(
-            surge=u.surge + (u.surge_rate + 0.5 * rate.surge_rate * t) * t,
-            heave=u.heave + (u.heave_rate + 0.5 * rate.heave_rate * t) * t,
-            sway=u.sway + (u.sway_rate + 0.5 * rate.sway_rate * t) * t,
-            roll=u.roll + (u.roll_rate + 0.5 * rate.roll_rate * t) * t,
-            yaw=u.yaw + (u.yaw_rate + 0.5 * rate.yaw_rate * t) * t,
-            tilt=u.tilt + (u.tilt_rate + 0.5 * rate.tilt_rate * t) * t,
+            surge=gone_on(u.surge, u.surge_rate, rate.surge_rate, t),
+            heave=gone_on(u.heave, u.heave_rate, rate.heave_rate, t),
+            sway=gone_on(u.sway, u.sway_rate, rate.sway_rate, t),
+            roll=gone_on(u.roll, u.roll_rate, rate.roll_rate, t),
+            yaw=gone_on(u.yaw, u.yaw_rate, rate.yaw_rate, t),
+            tilt=gone_on(u.tilt, u.tilt_rate, rate.tilt_rate, t),
         )
 
 
