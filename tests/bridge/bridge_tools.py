@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import IO
 
 import pytest
+from forked import run_forked
 
 ROOT = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
@@ -52,18 +53,15 @@ def command(*arguments: object) -> list[str]:
 
 
 def run(
-    *arguments: object, domain: int | None = None, cwd: Path | None = None, **options: object
+    *arguments: object, domain: int | None = None, cwd: Path | None = None
 ) -> subprocess.CompletedProcess[str]:
     """Run a command of the bridge to its end."""
-    return subprocess.run(  # type: ignore[call-overload,no-any-return]
-        command(*arguments),
-        env=environment(domain),
+    return run_forked(
+        *arguments,
+        program="rlv_ros_bridge",
+        environment=environment(domain),
         cwd=cwd,
-        capture_output=True,
-        text=True,
         timeout=TIMEOUT,
-        check=False,
-        **options,
     )
 
 

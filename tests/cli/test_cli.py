@@ -12,6 +12,7 @@ from pathlib import Path
 import click
 import numpy as np
 import pytest
+from forked import run_forked
 
 from rlv_landing import Landing, load_preset
 from rlv_landing.cli import cli
@@ -19,15 +20,7 @@ from rlv_landing.quantities import OUTPUT_NAMES
 
 
 def run(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", "from rlv_landing.cli import main; main()", *arguments]
-    return subprocess.run(
-        command,
-        capture_output=True,
-        text=True,
-        cwd=cwd,
-        timeout=120,
-        env={**os.environ, "COLUMNS": "120"},
-    )
+    return run_forked(*arguments, cwd=cwd, environment={**os.environ, "COLUMNS": "120"})
 
 
 def test_simulate_writes_csv_with_landings_digits_and_a_picture(tmp_path, mode):

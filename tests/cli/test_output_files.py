@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import errno
 import os
-import resource
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from forked import run_forked
 
 from rlv_landing.commands.printing import exit_code
 from rlv_landing.text.durable import NO_ROOM, unwritable, write_durably
@@ -38,21 +37,9 @@ def run(
     folder: Path, *arguments: str, largest: int | None = None, output: str | None = None
 ) -> subprocess.CompletedProcess[str]:
     """The command in `folder`; files take `largest` bytes, and standard output goes to `output`."""
-
-    def limit() -> None:
-        if largest is not None:
-            resource.setrlimit(resource.RLIMIT_FSIZE, (largest, largest))
-
-    with Path(output or os.devnull).open("w") as out:
-        return subprocess.run(
-            [sys.executable, "-c", "from rlv_landing.cli import main; main()", *arguments],
-            stdout=out,
-            stderr=subprocess.PIPE,
-            text=True,
-            cwd=folder,
-            timeout=200,
-            preexec_fn=limit,
-        )
+    return run_forked(
+        *arguments, cwd=folder, largest=largest, output=Path(output or os.devnull), timeout=200.0
+    )
 
 
 @pytest.fixture

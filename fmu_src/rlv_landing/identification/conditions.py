@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -43,8 +44,8 @@ def _switches(history: History) -> float:
     return float(max(np.abs(np.diff(history[f"leg[{leg}].contact.active"])).sum() for leg in LEGS))
 
 
-def _extreme(name: str, sign: float) -> Callable[[History], float]:
-    return lambda history: float(max((sign * history[f"leg[{leg}].{name}"]).max() for leg in LEGS))
+def _greatest(name: str, sign: float, history: History) -> float:
+    return float(max((sign * history[f"leg[{leg}].{name}"]).max() for leg in LEGS))
 
 
 def _auxiliary_yield(history: History) -> float:
@@ -63,7 +64,7 @@ CONDITIONS: tuple[Condition, ...] = (
         2e-4,
         1e-4,
         "a piston rests on its stop",
-        _extreme("main_strut.stroke", -1.0),
+        partial(_greatest, "main_strut.stroke", -1.0),
     ),
     Condition(
         "contact switches of a leg",
@@ -79,7 +80,7 @@ CONDITIONS: tuple[Condition, ...] = (
         3.5e7,
         5e6,
         "what a reciprocating rod seal holds",
-        _extreme("main_strut.pressure_lower", 1.0),
+        partial(_greatest, "main_strut.pressure_lower", 1.0),
     ),
     Condition(
         "auxiliary strut's yield",
@@ -95,6 +96,6 @@ CONDITIONS: tuple[Condition, ...] = (
         2.5e-3,
         5e-4,
         "a footpad does not sink into a test floor",
-        _extreme("contact.penetration", 1.0),
+        partial(_greatest, "contact.penetration", 1.0),
     ),
 )
