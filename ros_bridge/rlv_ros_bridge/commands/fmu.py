@@ -128,6 +128,23 @@ def build(
     click.echo("\n".join(build_fmu(target, wanted)))
 
 
+def build_default(file: Path) -> None:
+    """Build the FMU of the default vehicle, with the compiled core if there is one.
+
+    Args:
+        file: The FMU; its folder is made.
+
+    Raises:
+        LandingError: What the build needs is missing, or the file cannot be written.
+    """
+    require_build()
+    from fmu_build.build import build as build_fmu
+    from fmu_build.wanted import Wanted
+    from rlv_landing.core import COMPILED
+
+    build_fmu(file, Wanted(pure=not COMPILED))
+
+
 def require_build() -> None:
     """Check that what the build needs is installed.
 
