@@ -22,6 +22,7 @@ from ..commands.options import HELP_NAMES, Group
 from ..commands.own_vehicle import draw, new
 from ..commands.parameters import parameters
 from ..commands.printing import BAD_INPUT, FAILED, exit_code
+from ..commands.report import report
 from ..commands.sensitivity import sensitivity
 from ..commands.simulate import simulate
 from ..commands.sweep import sweep
@@ -78,6 +79,7 @@ def cli(context: click.Context) -> None:
     \b
     rlv-landing simulate --mode 1-2-1 --compare    land in this process; compare with the paper
     rlv-landing new my_vehicle --like hopper       the files of a vehicle of your own; draw shows it
+    rlv-landing report mine.toml -o report.html    drawing, margins, loads, curves and audit; or PDF
     rlv-landing examples copy my_examples          studies, FMUs and ROS 2 files to begin with
     rlv-landing parameters --toml > mine.toml      a parameter file to edit
     rlv-landing validate --html report.html        every printed number and figure beside ours
@@ -101,7 +103,7 @@ def cli(context: click.Context) -> None:
 
 
 OWN = (
-    *(new, draw, examples, simulate, parameters, validate, audit),
+    *(new, draw, examples, simulate, report, parameters, validate, audit),
     *(identify, sweep, sensitivity, envelope),
 )
 for command in OWN:

@@ -21,6 +21,8 @@ HELP_NAMES: dict[str, Any] = {"help_option_names": ["-h", "--help"]}
 # the same, for commands whose help has long examples
 WIDE: dict[str, Any] = {**HELP_NAMES, "max_content_width": 120}
 MOST_WORKERS = 1024
+# what figures are written as
+PICTURES = (".png", ".svg", ".pdf")
 
 
 class Group(click.Group):
@@ -62,7 +64,7 @@ def plot_option() -> Option:
     """`--plot`: the overview of a landing."""
     return click.option(
         "--plot",
-        metavar="FILE.png",
+        metavar="FILE.png|svg|pdf",
         type=click.Path(path_type=Path),
         help="Draw forces, strokes and acceleration.",
     )

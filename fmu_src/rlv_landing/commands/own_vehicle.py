@@ -9,9 +9,14 @@ import click
 
 from ..errors import LandingError, one_line
 from ..text.durable import whole_file, writing
-from .options import HELP_NAMES, check_writable, chosen_parameters, force_option, new_folder
-
-PICTURES = (".svg", ".png", ".pdf")
+from .options import (
+    HELP_NAMES,
+    PICTURES,
+    check_writable,
+    chosen_parameters,
+    force_option,
+    new_folder,
+)
 
 
 @click.command(context_settings=HELP_NAMES)

@@ -34,7 +34,6 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
     is shown by colour. Lines are boundaries, dots are landings (filled: lost). Markers on a line
     give the critical condition, where it changes and halfway between.
     """
-    import matplotlib as mpl
     from matplotlib.figure import Figure
 
     panels = _panels(envelope)
@@ -57,16 +56,8 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
         f"(a uniform grid: {envelope.uniform})"
     )
     figure.suptitle(title, fontsize="medium", x=0.01, ha="left")
-    with mpl.rc_context({"svg.hashsalt": "envelope", "svg.fonttype": "none"}):
-        # the picture grows where legend or title are wider than the panels
-        save_whole(
-            figure,
-            Path(path),
-            dpi=110,
-            bbox_inches="tight",
-            pad_inches=0.1,
-            metadata={"Date": None} if Path(path).suffix == ".svg" else None,
-        )
+    # the picture grows where legend or title are wider than the panels
+    save_whole(figure, Path(path), dpi=110, bbox_inches="tight", pad_inches=0.1)
 
 
 def _markers(envelope: Envelope) -> dict[str, str]:
