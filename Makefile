@@ -18,26 +18,30 @@ FMU_FILES := fmu_src/landing_fmu.py CHANGELOG.md LICENSE fmu_src/rlv_landing/fig
   $(shell find $(addprefix fmu_src/rlv_landing/,$(FOLDERS)) -name '*.py') \
   $(shell find fmu_src/fmu_build fmu_src/fmu_front -name '*.py' -o -name '*.j2' -o -name '*.[ch]')
 
-.PHONY: help run test lint torture bench annotate coverage docs clean
+.PHONY: help run test lint torture bench wheels annotate coverage docs clean
 help:
 	@echo "make run [MODE=2-2|1-2-1]  land the drop test: FMU, ROS 2 node, MCAP log, table, picture"
 	@echo "make test                  the whole suite"
 	@echo "make torture               the long tests: thousands of damaged logs, a thousand lifecycles"
 	@echo "make bench                 cost at equal error of core, C, other solvers, MuJoCo, 3-D;"
 	@echo "                           cost of FMU, node, replay and sweeps"
+	@echo "make wheels                source distribution and portable wheels, in build/dist"
 	@echo "make annotate              the core's lines that call Python, marked, in build/annotate"
 	@echo "make coverage              coverage, measured on the pure core"
 	@echo "make docs                  pictures and marked numbers of README, docs and examples anew"
 	@echo "                           (some minutes; measured times are those of the last make bench)"
 	@echo "make clean                 remove .venv and build (logs stay)"
 
+# what is missing is said in one line; a half-made environment is made anew
+NEEDS := $(PYTHON) fmu_src/fmu_build/installing/prerequisites.py $(PYTHON)
 $(VENV)/.packages: pyproject.toml
-	@$(PYTHON) -c 'import sys; v = sys.version_info[:2]; \
-	  sys.exit(None if (3, 10) <= v <= (3, 13) else "error: python %d.%d found, 3.10 to 3.13 needed; \
-	name one: make PYTHON=python3.12" % v)'
-	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install -q --upgrade pip
+	@command -v $(PYTHON) >/dev/null || { echo "error: there is no $(PYTHON); on Debian and Ubuntu: \
+	apt install python3 python3-venv python3-dev; then run make again" >&2; exit 1; }
+	@$(NEEDS) venv headers
+	@$(BIN)/python -m pip --version >/dev/null 2>&1 || { rm -rf $(VENV) && $(PYTHON) -m venv $(VENV); }
 	@echo "installing rlv-landing, ROS 2 and the tools: a few minutes on the first run"
+	@# without a network the pip that is there serves
+	@$(BIN)/python -m pip install -q --upgrade pip 2>/dev/null || true
 	$(BIN)/python -m pip install -q -e '.[dev]'
 	@touch $@
 
@@ -77,7 +81,12 @@ $(CHROMIUM): tests/viewer/fetch_chromium.py tests/viewer/package-lock.json | $(V
 	$(BIN)/python $< $(@D)
 	@touch $@
 
-test: $(FMU) $(FMU3) $(COFMUPY) $(IMPORTERS) $(CHROMIUM) lint
+# the tests compile hosts in C
+.PHONY: compiler
+compiler:
+	@$(NEEDS) compiler
+
+test: compiler $(FMU) $(FMU3) $(COFMUPY) $(IMPORTERS) $(CHROMIUM) lint
 	$(BIN)/python -m pytest -n 3 --dist loadfile --timeout 900 --durations 10
 
 torture: $(FMU) $(FMU3)
@@ -89,6 +98,12 @@ bench: $(FMU)
 	$(BIN)/python benchmarks/bench_bridge.py
 	$(BIN)/python benchmarks/bench_quasi3d.py
 	$(BIN)/python benchmarks/bench_sweep.py 100 1000
+
+# in build/dist: the source distribution, and portable wheels, which auditwheel examines
+wheels: $(VENV)/.core
+	PYTHONPATH=fmu_src $(BIN)/python -m fmu_build.installing.wheels build/dist
+	for wheel in build/dist/*manylinux*.whl; do \
+	  $(BIN)/python -m auditwheel show $$wheel | grep manylinux_2_17_ || exit 1; done
 
 annotate: $(VENV)/.core
 	@$(BIN)/python benchmarks/annotate.py

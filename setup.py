@@ -6,7 +6,7 @@ no buffers, so a binary compiled there serves 3.10 alone.
 
 A wheel also carries what the FMU's build needs: the sources of slave and front, and the compiled
 front, where FMPy, which has FMI's headers, pythonfmu and a C compiler are installed. An isolated
-build has the first two by pyproject.toml.
+build has the first two by pyproject.toml. It has the examples, and what ROS 2 finds in `share`.
 """
 
 import os
@@ -17,6 +17,7 @@ from pathlib import Path
 
 from setuptools import Extension, setup
 from setuptools.command.build_py import build_py
+from setuptools.command.sdist import sdist
 
 ROOT = Path(__file__).parent
 LIMITED = sys.version_info >= (3, 11) and not sysconfig.get_config_var("Py_GIL_DISABLED")
@@ -73,12 +74,13 @@ class BuildWithFmuSources(build_py):
         """Build; an editable install finds the files where they are."""
         super().run()
         if not self.editable_mode:
-            from fmu_build.sources import carry
+            from fmu_build.sources import carry, carry_examples
 
             package = Path(self.build_lib) / "fmu_build"
             carry(package)
+            carry_examples(Path(self.build_lib) / "rlv_landing" / "examples")
             try:
-                from fmu_build.neutral_fronts import compile_neutral
+                from fmu_build.installing.neutral_fronts import compile_neutral
 
                 made = ", ".join(compile_neutral(package / "fronts" / "compiled"))
             except (ImportError, SystemExit) as e:
@@ -86,8 +88,36 @@ class BuildWithFmuSources(build_py):
             print(f"compiled fronts of the FMU: {made}")
 
 
+class DatedSources(sdist):
+    """The sources with their date, which git tells in a checkout alone."""
+
+    def make_release_tree(self, base_dir: str, files: list[str]) -> None:
+        """Copy the files, and write the date beside them."""
+        from fmu_build.sources import DATE, source_date
+
+        super().make_release_tree(base_dir, files)
+        (Path(base_dir) / DATE).write_text(f"{int(source_date().timestamp())}\n")
+
+
+def ros_files() -> list[tuple[str, list[str]]]:
+    """What ROS 2 finds below the environment: package, launch file, layouts, and the node."""
+    bridge = Path("ros_bridge")
+    name = "rlv_ros_bridge"
+    share = f"share/{name}"
+    return [
+        ("share/ament_index/resource_index/packages", [str(bridge / "resource" / name)]),
+        (share, [str(bridge / "package.xml")]),
+        *(
+            (f"{share}/{part}", sorted(map(str, (bridge / part).glob(pattern))))
+            for part, pattern in (("launch", "*.launch.py"), ("config", "*.*"))
+        ),
+        (f"lib/{name}", [str(bridge / "lib" / "landing_node")]),
+    ]
+
+
 setup(
-    cmdclass={"build_py": BuildWithFmuSources},
+    cmdclass={"build_py": BuildWithFmuSources, "sdist": DatedSources},
+    data_files=ros_files(),
     ext_modules=extensions(),
     options={"bdist_wheel": {"py_limited_api": "cp311"}} if LIMITED else {},
 )

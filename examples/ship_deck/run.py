@@ -51,14 +51,11 @@ def main(out: Path, until: float, step: float, picture: Path | None) -> None:
     """Build the FMUs, run both decks and draw them."""
     out.mkdir(parents=True, exist_ok=True)
     picture = picture or out / "ship_deck.png"
-    try:
-        fmus = system.build(out)
-        results = {
-            name: run(name, parameters, fmus, out, until, step)
-            for name, parameters in system.DECKS.items()
-        }
-    except FileNotFoundError as e:
-        raise click.ClickException(str(e)) from None
+    fmus = system.build(out)
+    results = {
+        name: run(name, parameters, fmus, out, until, step)
+        for name, parameters in system.DECKS.items()
+    }
     save_picture(results, picture)
     click.echo(f"wrote {picture}, and FMUs, SSP files and results in {out}")
 

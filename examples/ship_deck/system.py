@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import sys
 import zipfile
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -11,6 +10,7 @@ from tempfile import TemporaryDirectory
 from pythonfmu.builder import FmuBuilder
 
 HERE = Path(__file__).resolve().parent
+# of a checkout
 ROOT = HERE.parent.parent
 LANDING = ROOT / "build" / "RlvLanding.fmu"
 SLAVES = {"deck": "ship_deck.py", "engine": "engine_tail_off.py"}
@@ -45,11 +45,11 @@ DECKS = {"calm": CALM, "moving": MOVING}
 def build(folder: Path, landing: Path = LANDING) -> dict[str, Path]:
     """The file of every component; deck and engine are built into `folder`.
 
-    Raises:
-        FileNotFoundError: `landing` is missing.
+    So is the landing's where `landing` is missing, as outside of a checkout.
     """
     if not landing.is_file():
-        raise FileNotFoundError(f"{landing} is missing: run make build/RlvLanding.fmu")
+        landing = folder / "RlvLanding.fmu"
+        build_landing(landing)
     fmus = {"landing": landing}
     for component, slave in SLAVES.items():
         fmus[component] = Path(
@@ -61,12 +61,19 @@ def build(folder: Path, landing: Path = LANDING) -> dict[str, Path]:
     return fmus
 
 
+def build_landing(file: Path) -> None:
+    """Build the landing's FMU as `rlv-landing fmu build` does."""
+    from fmu_build.build import build as build_fmu
+    from fmu_build.wanted import Wanted
+
+    build_fmu(file, Wanted())
+
+
 def add_front(fmu: Path) -> None:
     """Give an FMU of pythonfmu the C front of RlvLanding.fmu.
 
     Without it the FMU runs only in hosts that are Python processes.
     """
-    sys.path.insert(0, str(ROOT / "fmu_src"))
     from fmu_build.binary import record_libpython, replace_binaries
 
     with TemporaryDirectory() as folder:

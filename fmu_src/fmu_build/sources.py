@@ -22,6 +22,8 @@ ROOT = HERE.parent
 PACKAGE = HERE / "rlv_landing"
 CARRIED = Path(__file__).parent / "carried"
 TO_CARRY = ("CHANGELOG.md", "LICENSE", "fmu_src/landing_fmu.py", "fmu_src/fmu_front")
+# of the bridge, those that users copy and edit
+ROS_FILES = ("launch", "config")
 DATE = "date.txt"
 # what the slave needs of the package: files, and folders with all their files
 MODULES = (
@@ -73,6 +75,19 @@ def carry(package: Path) -> None:
     (folder / DATE).write_text(f"{int(source_date().timestamp())}\n")
 
 
+def carry_examples(folder: Path) -> None:
+    """Copy the examples, and launch file and layouts of the bridge, into a package.
+
+    Args:
+        folder: The folder for them, which is made anew.
+    """
+    shutil.rmtree(folder, ignore_errors=True)
+    ignored = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(ROOT / "examples", folder, ignore=ignored)
+    for part in ROS_FILES:
+        shutil.copytree(ROOT / "ros_bridge" / part, folder / "ros2" / part, ignore=ignored)
+
+
 def version() -> str:
     """The package's version, from its `__init__.py`."""
     found = re.search(r'^__version__ = "(.+)"$', (PACKAGE / "__init__.py").read_text(), re.M)
@@ -85,14 +100,14 @@ def source_date() -> datetime:
     """The date of the sources [UTC].
 
     SOURCE_DATE_EPOCH of the environment, else the date of the last git commit, or the one that an
-    installed package carries, else 1980-01-01.
+    installed package or a source distribution carries, else 1980-01-01.
 
     Raises:
         SystemExit: SOURCE_DATE_EPOCH is no number of seconds that a zip file can hold.
     """
     text = os.environ.get("SOURCE_DATE_EPOCH", "")
-    if not text and (CARRIED / DATE).is_file():
-        text = (CARRIED / DATE).read_text()
+    if not text and source(DATE).is_file():
+        text = source(DATE).read_text()
     if not text and (ROOT / ".git").exists():
         try:
             text = subprocess.run(
@@ -134,9 +149,11 @@ def copy_sources(folder: Path, wanted: Wanted) -> tuple[Path, Path]:
     package.mkdir()
     cores = [] if wanted.pure else compiled_cores()
     if not cores and not wanted.pure:
+        from rlv_landing.core.freshness import how_to_compile
+
         raise SystemExit(
             "error: there is no compiled core of the present kernels: see why the compiler failed, "
-            "or compile it by python setup.py build_ext --inplace; --pure builds an FMU without "
+            f"or compile it: {how_to_compile()}; --pure builds an FMU without "
             "it, which lands to the same digits and takes ten times as long"
         )
     modules = [PACKAGE / name for name in MODULES]

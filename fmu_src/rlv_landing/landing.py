@@ -117,6 +117,21 @@ class Landing:
             "asleep": int(s.asleep),
         }
 
+    def _repr_html_(self) -> str:
+        """The table that notebooks show: the present outputs, with units and meanings."""
+        from html import escape
+
+        rows = []
+        for q, value in zip(self.interface.outputs, self.values()):
+            cells = map(escape, (q.name, f"{value:.6g}", q.unit, q.meaning))
+            rows.append("".join(f"<td>{cell}</td>" for cell in cells))
+        head = "".join(f"<th>{h}</th>" for h in ("output", "value", "unit", "meaning"))
+        body = "".join(f"<tr>{row}</tr>" for row in rows)
+        return (
+            f'<details open=""><summary>{escape(self.parameters.drop.mode)} landing at '
+            f"{self.time:g} s</summary><table><tr>{head}</tr>{body}</table></details>"
+        )
+
     def __reduce__(self) -> tuple[Any, ...]:
         made = (self.parameters, self._rtol, self._method, self._first, self.state())
         return _revived, (type(self), *made)

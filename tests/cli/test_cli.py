@@ -92,7 +92,7 @@ def test_help_teaches(command):
         (("simulate", "--until", "nan"), "until = nan s must be finite"),
         (("simulate", "--until", "abc"), "not a valid float"),
         (("simulate", "--rtol", "3"), "rtol = 3 is outside"),
-        (("simulate", "--output", "x.txt"), "must end in .csv"),
+        (("simulate", "--output", "x.txt"), "must end in .csv or .parquet"),
         (("simulate", "--output", "no/such/x.csv"), "there is no folder no/such"),
         (("simulate", "--output", "x" * 300 + ".csv"), "cannot be written: File name too long"),
         (("simulate", "--set", "drop.tilt=9**9**9**9 deg"), "nothing is calculated"),

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from rlv_landing import Landing, LandingError
+from rlv_landing import Landing, LandingError, load_preset
 from rlv_landing.history import History
 
 FORCE, STROKE = "leg[1].main_strut.force", "leg[1].main_strut.stroke"
@@ -83,3 +83,18 @@ def test_a_notebook_shows_each_columns_extremes(history):
     assert float(rows[FORCE][2]) == pytest.approx(history.extreme(FORCE).minimum, rel=1e-4)
     empty = History(np.empty(0), ["a"], np.empty((0, 1)))
     assert empty._repr_html_() == "no samples"
+
+
+@pytest.mark.parametrize("mode", ["2-2", "space"])
+def test_landing_and_parameters_show_every_value_in_a_notebook(mode):
+    landing = Landing(load_preset("yue2022-figures", mode))
+    landing.step(0.1)
+    for shown, names in (
+        (landing, landing.interface.output_names),
+        (landing.parameters, [name for name, _ in landing.parameters.items()]),
+    ):
+        page = ElementTree.fromstring(f"<div>{shown._repr_html_()}</div>")
+        rows = [[cell.text for cell in row] for row in page.iter("tr")][1:]
+        assert [row[0] for row in rows] == list(names)
+    values = [row[1] for row in rows]
+    assert values[0] == f"{landing.parameters.vehicle.mass:.6g}"

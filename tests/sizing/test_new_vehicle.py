@@ -143,4 +143,4 @@ def test_the_drawing_is_a_picture_that_repeats(vehicle, command, ending):
 def test_a_drawing_of_another_kind_is_refused(vehicle, command):
     done = command("draw", "yue2022-figures", str(vehicle / "a.bmp"))
     assert done.code == 2
-    assert "must end in .svg or .png or .pdf" in done.err
+    assert "must end in .png or .svg or .pdf" in done.err

@@ -176,7 +176,7 @@ def test_samples_with_a_failed_landing_are_replaced_and_counted_and_too_many_giv
         ),
         (("", ""), ("margin.stability",), "did you mean margin.stability_min?"),
         (("", ""), ("outcome",), "outcome is a text"),
-        (("", ""), ("--plot", "bars.pdf"), "must end in .png"),
+        (("", ""), ("--plot", "bars.jpg"), "must end in .png or .svg or .pdf"),
     ],
 )
 def test_what_has_no_indices_is_refused_before_anything_runs(

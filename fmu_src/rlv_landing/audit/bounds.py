@@ -77,7 +77,8 @@ BOUNDS: dict[str, Bound] = {
         "",
         1e-4,
         "at most",
-        "Simpson's rule over samples of 50 us, 1 us around contacts",
+        "Simpson's rule over samples of 50 us, 1 us around contacts; a change of less than a "
+        "thousandth of the vertical one's is taken for that much",
     ),
     "momentum_y": Bound(
         f"vertical momentum beyond the impulse of contact forces and weight, {OF_CHANGE}",
@@ -91,7 +92,8 @@ BOUNDS: dict[str, Bound] = {
         "",
         1e-4,
         "at most",
-        "as above; transverse_load_at = joint drops a moment: the bound does not apply",
+        "as above, at the footpads' radius; transverse_load_at = joint drops a moment: the bound "
+        "does not apply",
     ),
     "rest_weight": Bound(
         "vertical contact force at rest beyond the weight, of the weight",

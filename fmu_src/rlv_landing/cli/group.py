@@ -16,16 +16,19 @@ import click
 from .. import __version__
 from ..commands.audit import audit
 from ..commands.envelope import envelope
+from ..commands.examples import examples
 from ..commands.identification.identify import identify
 from ..commands.options import HELP_NAMES, Group
 from ..commands.own_vehicle import draw, new
 from ..commands.parameters import parameters
 from ..commands.printing import BAD_INPUT, FAILED, exit_code
+from ..commands.report import report
 from ..commands.sensitivity import sensitivity
 from ..commands.simulate import simulate
 from ..commands.sweep import sweep
 from ..commands.validate import validate
 from ..core import COMPILED, WHY_NOT_COMPILED
+from ..core.freshness import how_to_compile
 from ..errors import LandingError, one_line, reason_of
 from ..signals.handlers import hung_up
 from ..signals.interrupts import answer, interrupts, terminal_left
@@ -76,6 +79,8 @@ def cli(context: click.Context) -> None:
     \b
     rlv-landing simulate --mode 1-2-1 --compare    land in this process; compare with the paper
     rlv-landing new my_vehicle --like hopper       the files of a vehicle of your own; draw shows it
+    rlv-landing report mine.toml -o report.html    drawing, margins, loads, curves and audit; or PDF
+    rlv-landing examples copy my_examples          studies, FMUs and ROS 2 files to begin with
     rlv-landing parameters --toml > mine.toml      a parameter file to edit
     rlv-landing validate --html report.html        every printed number and figure beside ours
     rlv-landing identify --work identification     estimate parameters from landings
@@ -98,7 +103,7 @@ def cli(context: click.Context) -> None:
 
 
 OWN = (
-    *(new, draw, simulate, parameters, validate, audit),
+    *(new, draw, examples, simulate, report, parameters, validate, audit),
     *(identify, sweep, sensitivity, envelope),
 )
 for command in OWN:
@@ -114,7 +119,7 @@ def main() -> None:
         click.echo(
             one_line(
                 f"the core is not compiled ({WHY_NOT_COMPILED}): the same digits, ten times as "
-                "slow; python setup.py build_ext --inplace compiles it"
+                f"slow; {how_to_compile()} compiles it"
             ),
             err=True,
         )

@@ -16,6 +16,7 @@ from ..text.durable import ANOTHER_WORK, refuse_no_files, unwritable, writing
 from .number_types import Number, WholeNumber
 from .options import (
     HELP_NAMES,
+    PICTURES,
     check_writable,
     force_option,
     input_option,
@@ -98,7 +99,7 @@ STUDY = click.Path(path_type=Path)
 @workers_option()
 @click.option(
     "--plot",
-    metavar="FILE.png|.svg",
+    metavar="FILE.png|svg|pdf",
     type=click.Path(path_type=Path),
     help="Draw boundaries, landings and critical conditions.",
 )
@@ -136,8 +137,7 @@ def envelope(
     from ..tables.envelope_tables import envelope_tables
     from ..workers import default_workers
 
-    ending = ".svg" if plot is not None and plot.suffix == ".svg" else ".png"
-    check_writable(plot, ending, force=options["force"])
+    check_writable(plot, PICTURES, force=options["force"])
     asked = _study(study, options)
     print_warning(joint_warning(map(asked.parameters_with, asked.families), asked.inputs))
     workers = options["workers"] or default_workers()

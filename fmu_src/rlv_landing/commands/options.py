@@ -21,6 +21,8 @@ HELP_NAMES: dict[str, Any] = {"help_option_names": ["-h", "--help"]}
 # the same, for commands whose help has long examples
 WIDE: dict[str, Any] = {**HELP_NAMES, "max_content_width": 120}
 MOST_WORKERS = 1024
+# what figures are written as
+PICTURES = (".png", ".svg", ".pdf")
 
 
 class Group(click.Group):
@@ -62,7 +64,7 @@ def plot_option() -> Option:
     """`--plot`: the overview of a landing."""
     return click.option(
         "--plot",
-        metavar="FILE.png",
+        metavar="FILE.png|svg|pdf",
         type=click.Path(path_type=Path),
         help="Draw forces, strokes and acceleration.",
     )
@@ -196,3 +198,17 @@ def check_writable(path: Path | None, ending: str | tuple[str, ...], *, force: b
         raise LandingError(f"{path} exists; --force overwrites it")
     if not folder:
         raise LandingError(f"there is no folder {path.parent} to write {path.name} to")
+
+
+def new_folder(folder: Path) -> None:
+    """Make a folder, or take one that is empty.
+
+    Raises:
+        LandingError: It is neither new nor empty.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if any(folder.iterdir()):
+            raise LandingError(f"{folder} is there and is not empty; name a new folder")
+    except (FileExistsError, NotADirectoryError):
+        raise LandingError(f"{folder} is a file; name a new folder") from None

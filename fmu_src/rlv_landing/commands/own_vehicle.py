@@ -9,9 +9,14 @@ import click
 
 from ..errors import LandingError, one_line
 from ..text.durable import whole_file, writing
-from .options import HELP_NAMES, check_writable, chosen_parameters, force_option
-
-PICTURES = (".svg", ".png", ".pdf")
+from .options import (
+    HELP_NAMES,
+    PICTURES,
+    check_writable,
+    chosen_parameters,
+    force_option,
+    new_folder,
+)
 
 
 @click.command(context_settings=HELP_NAMES)
@@ -69,17 +74,8 @@ def new(folder: Path, like: str, pairs: tuple[str, ...], *, listed: bool) -> Non
 
 
 def _write(folder: Path, files: dict[str, str]) -> None:
-    """Write the files to a folder that is new or empty.
-
-    Raises:
-        LandingError: It is neither, or cannot be made.
-    """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        if any(folder.iterdir()):
-            raise LandingError(f"{folder} is there and is not empty; name a new folder")
-    except (FileExistsError, NotADirectoryError):
-        raise LandingError(f"{folder} is a file; name a new folder") from None
+    """Write the files to a folder that is new or empty."""
+    new_folder(folder)
     for name, text in files.items():
         with whole_file(folder / name) as file:
             file.write(text.encode())

@@ -10,7 +10,7 @@ import click
 from ..errors import first_of
 from ..text.durable import writing
 from .number_types import NumberRange, WholeNumber
-from .options import HELP_NAMES, check_writable
+from .options import HELP_NAMES, PICTURES, check_writable
 from .printing import print_json
 from .study_run import RunOptions, run_options, run_task, warn_of_joint
 from .sweep import show_plan
@@ -23,7 +23,7 @@ from .sweep import show_plan
 @click.option(
     "--plot",
     type=click.Path(path_type=Path),
-    metavar="FILE.png",
+    metavar="FILE.png|svg|pdf",
     help="Bars [default: sensitivity.png in the results].",
 )
 @click.option(
@@ -78,7 +78,7 @@ def sensitivity(
     from ..tables.sweep_tables import indices_table
 
     run = RunOptions(**options)
-    check_writable(plot, ".png", force=True)
+    check_writable(plot, PICTURES, force=True)
     read = read_study(study)
     wanted = numeric_responses(read, responses)
     task = Task(read, sobol_design(read))

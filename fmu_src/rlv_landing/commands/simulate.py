@@ -8,11 +8,11 @@ from typing import Any
 import click
 
 from ..landing import DEFAULT_RTOL, METHODS, Landing
-from ..text.durable import writing
 from .number_types import Number
 from .one_landing import draw_landing, landing_options, landing_progress, landing_text
 from .options import (
     HELP_NAMES,
+    PICTURES,
     check_writable,
     chosen_parameters,
     input_option,
@@ -42,7 +42,7 @@ from .printing import print_warning
     help="Integrator; dormand-prince: the paper's.",
 )
 @click.option("--compare", "comparison", is_flag=True, help="Print our numbers beside the paper's.")
-@landing_options("FILE.csv")
+@landing_options("FILE.csv|parquet")
 def simulate(output: Path | None, plot: Path | None, *, force: bool, **options: Any) -> None:
     """Land in this process and print outcome and peaks.
 
@@ -52,9 +52,10 @@ def simulate(output: Path | None, plot: Path | None, *, force: bool, **options: 
     rlv-landing simulate --set ground.friction=0.4 --set ground.slope="3 deg" --output landing.csv
     """
     from ..audit.transverse import warning_of
+    from ..tables.history_file import ENDINGS, write_history
 
-    for path, ending in ((output, ".csv"), (plot, ".png")):
-        check_writable(path, ending, force=force)
+    check_writable(output, ENDINGS, force=force)
+    check_writable(plot, PICTURES, force=force)
     landing = _landing(options)
     mode = landing.parameters.drop.mode
     with landing_progress(options["until"]) as show_progress:
@@ -68,8 +69,7 @@ def simulate(output: Path | None, plot: Path | None, *, force: bool, **options: 
         printed += comparison_table(history, mode)
     # the files first: they are there even where the reader of standard output has gone
     if output is not None:
-        with writing(output):
-            history.to_csv(output)
+        write_history(history, output)
     draw_landing(history, plot, title)
     click.echo(printed, nl=False)
 

@@ -24,7 +24,7 @@ def is_fresh(compiled: ModuleType) -> bool:
         return True
     warnings.warn_explicit(
         f"the core was compiled before {', '.join(changed) or 'its files'} changed: the present "
-        "files run, ten times as slow; python setup.py build_ext --inplace compiles them",
+        f"files run, ten times as slow; {how_to_compile()} compiles them",
         RuntimeWarning,
         # the place that the warning names, without a line of code
         str(compiled.__file__),
@@ -32,3 +32,13 @@ def is_fresh(compiled: ModuleType) -> bool:
         "rlv_landing.core",
     )
     return False
+
+
+def how_to_compile() -> str:
+    """What compiles the core: in a checkout setup.py, elsewhere an installation by a compiler."""
+    if Path(__file__).parents[3].joinpath("setup.py").is_file():
+        return "python setup.py build_ext --inplace"
+    return (
+        "an installation anew where gcc and Python.h (on Debian: gcc, python3-dev) are: "
+        "pip install --force-reinstall --no-cache-dir --no-deps with the same source or wheel"
+    )

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ..parameters import PARAMETER_QUANTITIES, Parameters
 from ..quantities import DISPLAY_UNITS
-from ..text.durable import whole_file
 from ..touchdown import footpad_at_rest
+from .plots import save_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 Point = tuple[float, float]
 BODY, MAIN, AUXILIARY, INK = "#5a6672", "#0b6e99", "#c8553d", "#30363d"
@@ -70,9 +71,7 @@ def dimensions(parameters: Parameters) -> list[Dimension]:
 
 
 def save_drawing(parameters: Parameters, path: Path, title: str) -> None:
-    """Draw the vehicle, struts at full length, to scale, with letters for a table of its lengths.
-
-    The body is drawn from its lowest joint to `vehicle.top_height`, as wide as its joints.
+    """Write the drawing of a vehicle to `path`.
 
     Args:
         parameters: The vehicle.
@@ -82,7 +81,14 @@ def save_drawing(parameters: Parameters, path: Path, title: str) -> None:
     Raises:
         OSError: The disk refuses.
     """
-    from matplotlib import rc_context
+    save_whole(vehicle_drawing(parameters, title), path, dpi=150)
+
+
+def vehicle_drawing(parameters: Parameters, title: str) -> Figure:
+    """The vehicle, struts at full length, to scale, with letters for a table of its lengths.
+
+    The body is drawn from its lowest joint to `vehicle.top_height`, as wide as its joints.
+    """
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(11.0, 7.5), layout="constrained")
@@ -97,9 +103,7 @@ def save_drawing(parameters: Parameters, path: Path, title: str) -> None:
         fontsize=9, family="monospace", linespacing=1.5,
     )  # fmt: skip
     figure.suptitle(title, color=INK)
-    metadata = {"Date": None} if path.suffix == ".svg" else None
-    with rc_context({"svg.fonttype": "none", "svg.hashsalt": "rlv-landing"}), whole_file(path) as f:
-        figure.savefig(f, format=path.suffix[1:], dpi=150, metadata=metadata)
+    return figure
 
 
 def _leg(parameters: Parameters) -> tuple[Point, Point, Point]:
@@ -123,7 +127,9 @@ def _table(parameters: Parameters) -> str:
         _, factor = DISPLAY_UNITS.get(unit, (q.unit, 1.0))
         rows.append(("", name, f"{float(parameters[name]) / factor:.4g} {unit}"))
     width = max(len(name) for _, name, _ in rows)
-    return "\n".join(f"{letter:1s}  {name:{width}s}  {value}" for letter, name, value in rows)
+    lines = (f"{letter:1s}  {name:{width}s}  {value}" for letter, name, value in rows)
+    # pages join spaces of an SVG, but not these
+    return "\n".join(lines).replace("  ", 2 * "\N{NO-BREAK SPACE}")
 
 
 def _draw_vehicle(ax: Axes, parameters: Parameters) -> None:

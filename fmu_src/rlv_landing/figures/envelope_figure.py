@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,6 +11,7 @@ from ..quantities import Quantity, shown
 from ..studies.envelope.results import lost_text, stretches
 from ..studies.envelope.search import Envelope, Family
 from ..studies.sweep.factors import value_text
+from .envelope_sides import name_stable_side, shade, stable_word
 from .plots import COLOURS, save_whole
 
 if TYPE_CHECKING:
@@ -19,7 +21,9 @@ if TYPE_CHECKING:
 MORE_COLOURS = (*COLOURS, "#7a4fa3", "#b8860b", "#3d3d3d")
 # more families than colours begin them anew in the next style
 STYLES = ("-", "--", ":")
-MARKERS = "osD^v<>Ph*X"
+# a picture has no more marks; conditions beyond share the last
+MARKERS = "osD^"
+OTHERS = "other conditions: boundary.csv"
 # height of a line of the legend [inch]
 LEGEND_LINE = 0.2
 # width of the last boundary of a panel, by how much each before it is wider, and the first at most
@@ -31,10 +35,9 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
     """Write a PNG or SVG.
 
     There is a panel for each combination of the families' values except the first quantity's, which
-    is shown by colour. Lines are boundaries, dots are landings (filled: lost). Markers on a line
+    is shown by colour. Lines are boundaries; the stable side is shaded and named. Markers on a line
     give the critical condition, where it changes and halfway between.
     """
-    import matplotlib as mpl
     from matplotlib.figure import Figure
 
     panels = _panels(envelope)
@@ -48,33 +51,31 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
         for k, family in enumerate(families):
             styles[_name(family)] = _line_style(k, len(families))
             _draw(ax, envelope, family, markers, styles[_name(family)])
+        name_stable_side(ax, envelope, families)
         ax.set_title(title, loc="left", fontsize="medium")
         ax.grid(visible=True, linewidth=0.3)
     _name_axes(list(axes), len(panels), columns, envelope)
-    _add_legend(figure, styles, markers, 1 if columns == 1 else 2)
+    _add_legend(figure, styles, markers, stable_word(envelope))
     title = (
         f"lost: {lost_text(envelope.study)}\n{envelope.landings} landings "
         f"(a uniform grid: {envelope.uniform})"
     )
     figure.suptitle(title, fontsize="medium", x=0.01, ha="left")
-    with mpl.rc_context({"svg.hashsalt": "envelope", "svg.fonttype": "none"}):
-        # the picture grows where legend or title are wider than the panels
-        save_whole(
-            figure,
-            Path(path),
-            dpi=110,
-            bbox_inches="tight",
-            pad_inches=0.1,
-            metadata={"Date": None} if Path(path).suffix == ".svg" else None,
-        )
+    # the picture grows where legend or title are wider than the panels
+    save_whole(figure, Path(path), dpi=110, bbox_inches="tight", pad_inches=0.1)
 
 
 def _markers(envelope: Envelope) -> dict[str, str]:
-    """A marker for each critical condition."""
-    conditions = dict.fromkeys(
-        r.condition for f in envelope.families for line in f.lines for r in stretches(line)
-    )
-    return {condition: MARKERS[k % len(MARKERS)] for k, condition in enumerate(conditions)}
+    """A marker for each critical condition; those with the longest boundaries have their own."""
+    length: Counter[str] = Counter()
+    for family in envelope.families:
+        for stretch in (r for line in family.lines for r in stretches(line)):
+            length[stretch.condition] += len(stretch.points)
+    most = [condition for condition, _ in length.most_common()]
+    if len(most) <= len(MARKERS):
+        return dict(zip(most, MARKERS))
+    own = len(MARKERS) - 1
+    return {**dict(zip(most, MARKERS)), **dict.fromkeys(most[own:], MARKERS[own])}
 
 
 def _line_style(k: int, count: int) -> dict[str, Any]:
@@ -103,16 +104,21 @@ def _name_axes(axes: Sequence[Axes], drawn: int, columns: int, envelope: Envelop
 
 
 def _add_legend(
-    figure: Figure, styles: dict[str, dict[str, Any]], markers: dict[str, str], across: int
+    figure: Figure, styles: dict[str, dict[str, Any]], markers: dict[str, str], stable: str
 ) -> None:
-    """Name lines, markers and dots in `across` columns below the panels; the figure grows."""
+    """Name lines, markers and shade below the panels; the figure grows."""
     from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    across = 1 if len(figure.axes) == 1 else 2
 
     grey: dict[str, Any] = {"color": "#666666", "linestyle": "none"}
-    named = {name: Line2D([], [], **style) for name, style in styles.items()}
-    named |= {name: Line2D([], [], marker=marker, **grey) for name, marker in markers.items()}
-    for text, face in (("a landing that is lost", "#666666"), ("one that is not", "none")):
-        named[text] = Line2D([], [], marker="o", markersize=3, markerfacecolor=face, **grey)
+    named: dict[str, Any] = {name: Line2D([], [], **style) for name, style in styles.items()}
+    shared = len(markers) > len(MARKERS)
+    for name, marker in markers.items():
+        text = OTHERS if shared and marker == MARKERS[-1] else name
+        named[text] = Line2D([], [], marker=marker, **grey)
+    named[f"shaded: {stable}"] = Patch(facecolor="#d5dde3")
     figure.legend(
         named.values(),
         named.keys(),
@@ -153,26 +159,10 @@ def _draw(
     markers: dict[str, str],
     drawn: dict[str, Any],
 ) -> None:
-    """A family's landings and boundaries, the latter `drawn` as matplotlib's keywords say."""
+    """A family's stable side and boundaries, the latter `drawn` as matplotlib's keywords say."""
     colour = drawn["color"]
     (_, sx), (_, sy) = shown(envelope.study.x.quantity), shown(envelope.study.y.quantity)
-    for lost in (False, True):
-        points = [
-            (x / sx, y / sy)
-            for x, y, landing in family.landings
-            if landing.lost(envelope.study.criterion) == lost
-        ]
-        if points:
-            xs, ys = map(list, zip(*points))
-            ax.scatter(
-                xs,
-                ys,
-                s=5,
-                facecolors=colour if lost else "none",
-                edgecolors=colour,
-                linewidths=0.4,
-                alpha=0.35,
-            )
+    shade(ax, envelope, family, colour)
     for line in family.lines:
         ax.plot([c.x / sx for c in line], [c.y / sy for c in line], **drawn)
         for stretch in stretches(line):

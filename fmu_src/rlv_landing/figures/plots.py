@@ -63,7 +63,7 @@ def draw_peaks(ax: Axes, history: History, column: str, factor: float, colour: s
 
 
 def save_overview(history: History, path: str | Path, title: str) -> None:
-    """Write a PNG of main strut forces, strokes, auxiliary strut forces and top acceleration.
+    """Write a picture of main strut forces, strokes, auxiliary strut forces and top acceleration.
 
     Legs that are mirror images share a curve. Dotted lines mark each leg's first contact, triangles
     true peaks.
@@ -109,6 +109,8 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
 def save_whole(figure: Figure, path: Path, **options: Any) -> None:
     """Write a figure to `path`, in the format of its ending, whole or not at all.
 
+    The same figure gives the same bytes, and the text of an SVG is text.
+
     Args:
         figure: The figure.
         path: The file.
@@ -117,7 +119,13 @@ def save_whole(figure: Figure, path: Path, **options: Any) -> None:
     Raises:
         OSError: The disk refuses.
     """
-    with whole_file(path) as file:
+    from matplotlib import rc_context
+
+    dates = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+    if path.suffix in dates:
+        options["metadata"] = dates[path.suffix]
+    texts: Any = {"svg.fonttype": "none", "svg.hashsalt": "rlv-landing"}
+    with rc_context(texts), whole_file(path) as file:
         figure.savefig(file, format=path.suffix[1:], **options)
 
 

@@ -30,6 +30,8 @@ from .report_marks import AUXILIARY, FORCE, STROKE
 from .report_movement import movement_figure
 
 TEMPLATE = Path(__file__).with_name("report.html.j2")
+# of all pages
+CSS = Path(__file__).with_name("page.css")
 
 
 def write_report(
@@ -72,6 +74,7 @@ def render_report(
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     return environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
+        css=CSS.read_text(encoding="utf-8"),
         label=label,
         version=__version__,
         modes=found.modes,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..history import History
 from ..parameters import Parameters
 from .plots import COLOURS
 from .report_marks import PITCH, draw_marks, marks
@@ -27,15 +28,30 @@ def movement_figure(found: Validation, mode: str) -> tuple[Figure, dict[str, str
 
     The paper's time of rest is marked on the pitch.
     """
+    figure, _, below = sequence(found.histories[mode], 0.9)
+    tooltips = draw_marks(below, marks(PITCH, (0,), found.histories[mode], found.comparisons[mode]))
+    below.set_title("| printed: at rest in the paper", loc="left", fontsize=10)
+    return figure, tooltips
+
+
+def sequence(history: History, longest: float) -> tuple[Figure, Any, Any]:
+    """The vehicle at equal times over the ground, and its pitch over time.
+
+    Args:
+        history: The landing, with its parameters.
+        longest: The last time that is drawn, if the landing is as long [s].
+
+    Returns:
+        The figure, and its axes on the left and on the right.
+    """
     from matplotlib import colormaps
     from matplotlib.figure import Figure
 
-    history = found.histories[mode]
     parameters = history.parameters
     assert parameters is not None
     figure = Figure(figsize=(11.0, 5.2), layout="constrained")
     ax, below = figure.subplots(1, 2, width_ratios=(1.35, 1.0))
-    end = min(float(history.time[-1]), 0.9)
+    end = min(float(history.time[-1]), longest)
     shades = colormaps["Blues"](np.linspace(0.18, 1.0, FRAMES))
     instants = np.linspace(0.0, end, FRAMES)
     lines = wireframe(
@@ -49,19 +65,17 @@ def movement_figure(found: Validation, mode: str) -> tuple[Figure, dict[str, str
     ax.set_xlabel("x [m]")
     ax.set_ylabel("y [m]")
     ax.set_title(
-        f"light to dark: t = 0 to {end:g} s, every {1e3 * end / (FRAMES - 1):.0f} ms",
+        f"light to dark: t = 0 to {end:.3g} s, every {1e3 * end / (FRAMES - 1):.0f} ms",
         loc="left",
         fontsize=10,
     )
     below.plot(history.time, history["body.pitch"] * PITCH.factor, color=COLOURS[0], linewidth=1.5)
-    tooltips = draw_marks(below, marks(PITCH, (0,), history, found.comparisons[mode]))
     below.set_xlabel("time [s]; bars: the instants drawn on the left")
     below.set_ylabel("pitch [deg], clockwise positive")
-    below.set_title("| printed: at rest in the paper", loc="left", fontsize=10)
     for each in (ax, below):
         each.grid(visible=True, linewidth=0.3)
         each.spines[["top", "right"]].set_visible(False)
-    return figure, tooltips
+    return figure, ax, below
 
 
 def _draw(ax: Any, lines: dict[str, Lines], shade: Any) -> None:

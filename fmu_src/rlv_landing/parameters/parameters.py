@@ -61,6 +61,23 @@ class Parameters:
         value: float | str = getattr(getattr(self, group), what)
         return value
 
+    def _repr_html_(self) -> str:
+        """The table that notebooks show: every value with its unit, source and meaning."""
+        from html import escape
+
+        rows = []
+        for name, value in self.items():
+            q = PARAMETER_QUANTITIES[name]
+            text = value if isinstance(value, str) else f"{value:.6g}"
+            cells = map(escape, (name, text, q.unit, self.source(name), q.meaning))
+            rows.append("".join(f"<td>{cell}</td>" for cell in cells))
+        head = "".join(f"<th>{h}</th>" for h in ("parameter", "value", "unit", "source", "meaning"))
+        body = "".join(f"<tr>{row}</tr>" for row in rows)
+        return (
+            f"<details><summary>{len(rows)} parameters, {escape(self.drop.mode)} landing</summary>"
+            f"<table><tr>{head}</tr>{body}</table></details>"
+        )
+
     def source(self, name: str, mode: str | None = None) -> str:
         """The source of the value of `name`; with a `mode`, of its value for that mode."""
         own = self.sources.get(name, PARAMETER_QUANTITIES[name].source)

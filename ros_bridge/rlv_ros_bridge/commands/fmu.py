@@ -18,6 +18,7 @@ from rlv_landing.commands.one_landing import (
 )
 from rlv_landing.commands.options import (
     HELP_NAMES,
+    PICTURES,
     Group,
     check_writable,
     chosen_parameters,
@@ -128,6 +129,23 @@ def build(
     click.echo("\n".join(build_fmu(target, wanted)))
 
 
+def build_default(file: Path) -> None:
+    """Build the FMU of the default vehicle, with the compiled core if there is one.
+
+    Args:
+        file: The FMU; its folder is made.
+
+    Raises:
+        LandingError: What the build needs is missing, or the file cannot be written.
+    """
+    require_build()
+    from fmu_build.build import build as build_fmu
+    from fmu_build.wanted import Wanted
+    from rlv_landing.core import COMPILED
+
+    build_fmu(file, Wanted(pure=not COMPILED))
+
+
 def require_build() -> None:
     """Check that what the build needs is installed.
 
@@ -184,7 +202,7 @@ def info(file: Path, *, as_json: bool) -> None:
 @click.option(
     "--until", type=Number("s"), metavar="S", help="End time [s] [default: the FMU's own]."
 )
-@landing_options("FILE.csv|.parquet")
+@landing_options("FILE.csv|parquet")
 def simulate(
     file: Path,
     *,
@@ -209,13 +227,10 @@ def simulate(
     130 interrupted.
     """
     from rlv_landing.audit.transverse import warning_of
+    from rlv_landing.tables.history_file import ENDINGS, write_history
 
-    from ..logs.export import ENDINGS, write_history
-
-    if output is not None and output.suffix not in ENDINGS:
-        raise LandingError(f"{output} must end in {' or '.join(ENDINGS)}")
-    for path, ending in ((output, output.suffix if output else ""), (plot, ".png")):
-        check_writable(path, ending, force=force)
+    check_writable(output, ENDINGS, force=force)
+    check_writable(plot, PICTURES, force=force)
     history, name = _landed(file, options)
     print_warning(warning_of(history))
     assert history.parameters is not None

@@ -12,6 +12,7 @@ import click
 from rlv_landing.commands.number_types import Number
 from rlv_landing.commands.options import (
     HELP_NAMES,
+    PICTURES,
     WIDE,
     Group,
     check_writable,
@@ -209,16 +210,16 @@ def _check_outputs(
         LandingError: There is nothing, an ending is wrong, a file exists and `force` is not given,
             or the picture lacks topics.
     """
-    from ..logs.export import ENDINGS
+    from rlv_landing.tables.history_file import ENDINGS
 
     if output is None and plot is None:
         raise LandingError(
-            "nothing to write; name a file OUTPUT.csv or OUTPUT.parquet, or --plot FILE.png"
+            "nothing to write; name a file OUTPUT.csv or OUTPUT.parquet, or --plot FILE.png|svg|pdf"
         )
     if output is not None and output.suffix not in ENDINGS:
         raise LandingError(f"{output} must end in {' or '.join(ENDINGS)}")
     check_writable(output, output.suffix if output is not None else "", force=force)
-    check_writable(plot, ".png", force=force)
+    check_writable(plot, PICTURES, force=force)
     if plot is not None and topics:
         raise LandingError("--plot needs every topic; leave --topics out")
 
@@ -227,8 +228,9 @@ def _export_rows(
     reader: LogReader, output: Path, topics: list[str], choice: RowChoice
 ) -> list[str]:
     """Write the rows of a log to a file; notes on what was left out."""
+    from rlv_landing.tables.history_file import Written, write_parts
+
     from ..fmu.peaks import known_extremes
-    from ..logs.export import Written, write_parts
     from ..logs.history import HistoryParts, with_parts
 
     def write(parts: HistoryParts) -> tuple[Written, list[str]]:

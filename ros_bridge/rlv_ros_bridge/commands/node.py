@@ -145,6 +145,8 @@ def node(
         if managed:
             settings["autostart"] = False
         require_ros()
+        if "fmu" not in settings:
+            _build_first_fmu()
         from ..node.land import land
 
         summary = land({**settings, **recording, **changes}, passed_on, stop, namespace)
@@ -163,6 +165,19 @@ def node(
         sys.exit(128 + summary.signal)
     if summary.recording_error or summary.unrecorded:
         sys.exit(EXIT_RECORDING_FAILED)
+
+
+def _build_first_fmu() -> None:
+    """Build the FMU of an installation by pip, which has none before its first landing."""
+    from ..fmu.installed import cached_fmu, installed_fmu
+
+    file = installed_fmu()
+    if file.is_file() or file != cached_fmu():
+        return
+    from .fmu import build_default
+
+    click.echo(f"building the FMU, once: {file}")
+    build_default(file)
 
 
 def _refuse_other_encodings(settings: dict[str, Any]) -> None:

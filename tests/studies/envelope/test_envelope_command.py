@@ -91,7 +91,7 @@ def test_all_lost_is_reported(command: Callable, tmp_path):
     [
         (["--x", f"{V}=3"], "write NAME=LOW..HIGH"),
         (["--tolerance", "ground.slope=1"], "ground.slope is not an axis"),
-        (["--plot", "picture.pdf"], "picture.pdf must end in .png"),
+        (["--plot", "picture.jpg"], "picture.jpg must end in .png or .svg or .pdf"),
         (["missing.toml"], "there is no study missing.toml"),
         (["--family", "ground.slope"], "--family 'ground.slope' has no '='"),
         (["--set", "ground.friction"], "quantity 'ground.friction' has no '='"),

@@ -7,10 +7,10 @@ import sys
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
-from .binary import compile_fronts, compilers, made_of
-from .fronts.header import neutral_header
-from .fronts.prebuilt import keep
-from .sources import HERE, source
+from ..binary import compile_fronts, compilers, made_of
+from ..fronts.header import neutral_header
+from ..fronts.prebuilt import keep
+from ..sources import HERE, source
 
 
 def compile_neutral(folder: Path) -> list[str]:
@@ -26,14 +26,14 @@ def compile_neutral(folder: Path) -> list[str]:
         ImportError: pythonfmu, which describes the slave, or what the slave needs is missing.
         SystemExit: FMI's headers or a C compiler are missing, or the front does not compile.
     """
-    root = _description()
+    root = describe_slave()
     folder.mkdir(parents=True, exist_ok=True)
     used = compile_fronts(neutral_header(root), lambda platform: folder / platform, compilers())
     keep(folder, made_of(root), used)
     return list(used)
 
 
-def _description() -> Element:
+def describe_slave() -> Element:
     """Root of the description that pythonfmu gives of the slave."""
     script = source("fmu_src/landing_fmu.py")
     sys.path.insert(0, str(HERE))

@@ -1,4 +1,4 @@
-"""Writes a landing's history from a log to CSV or Parquet."""
+"""Writes a landing's history to CSV or Parquet."""
 
 from __future__ import annotations
 
@@ -9,15 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-from rlv_landing.errors import LandingError, reason_of
-from rlv_landing.history import History
-from rlv_landing.outputs import Extreme
-from rlv_landing.presets import to_toml
-from rlv_landing.quantities import OUTPUT_NAMES, OUTPUT_QUANTITIES
-from rlv_landing.text.durable import text_of, unwritable, whole_file
+from ..errors import LandingError, reason_of
+from ..history import UNITS, History
+from ..outputs import Extreme
+from ..presets import to_toml
+from ..text.durable import text_of, unwritable, whole_file
 
 ENDINGS = (".csv", ".parquet")
-UNITS = {"time": "s", **{name: q.unit for name, q in zip(OUTPUT_NAMES, OUTPUT_QUANTITIES)}}
 
 
 def write_history(history: History, path: Path) -> None:
@@ -87,8 +85,7 @@ def _write_parquet(
     except ImportError as e:
         raise LandingError(
             f"Parquet needs pyarrow ({reason_of(e)}); "
-            'install it with pip install "rlv-landing[mcap]", '
-            "or export to .csv"
+            "install it with pip install pyarrow, or name a .csv"
         ) from None
     writer = None
     try:

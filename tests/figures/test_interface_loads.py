@@ -1,0 +1,61 @@
+"""The loads at the legs' interfaces are what accelerates the body."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rlv_landing import Landing, LandingError, load_preset
+from rlv_landing.figures.landing_report.loads import FOOTPAD, interface_loads, peaks
+from rlv_landing.quantities import azimuth, groups_of
+
+
+def in_body(vectors, history, leg):
+    """Vectors in a leg's axes, in those of the body."""
+    sine, cosine = next(
+        (side * azimuth(g.azimuth)[0], azimuth(g.azimuth)[1])
+        for g in groups_of(history.parameters.drop.mode)
+        for number, side in g.legs
+        if number == leg
+    )
+    radial, axial, tangential = vectors.T
+    return np.stack(
+        [cosine * radial - sine * tangential, axial, sine * radial + cosine * tangential], axis=-1
+    )
+
+
+@pytest.mark.parametrize("at", ["footpad", "joint"])
+def test_forces_and_moments_at_the_joints_are_the_bodys_acceleration(mode, at):
+    p = load_preset("yue2022-figures", mode).with_values({"vehicle.transverse_load_at": at})
+    history = Landing(p).run(0.5, 1e-3)
+    force, moment = np.zeros((2, len(history), 3))
+    for found in interface_loads(history):
+        if found.name == FOOTPAD:
+            continue
+        push, about, point = (
+            in_body(v, history, found.leg) for v in (*np.split(found.load, 2, 1), found.point)
+        )
+        force += push
+        moment += about + np.cross(point, push)
+    s, c = np.sin(history["body.pitch"]), np.cos(history["body.pitch"])
+    ax, ay = history["body.ax"], history["body.ay"] + p.ground.gravity
+    wanted = p.vehicle.mass * np.stack([ax * c - ay * s, ax * s + ay * c, 0.0 * s], axis=-1)
+    assert np.abs(force - wanted).max() < 1e-8 * np.abs(wanted).max()
+    # pitch is clockwise, against the moment about z
+    turning = -p.vehicle.inertia * history["body.pitch_acceleration"]
+    assert np.abs(moment[:, 2] - turning).max() < 1e-7 * np.abs(turning).max()
+    assert np.abs(moment[:, :2]).max() < 1e-7 * np.abs(turning).max()
+
+
+def test_a_peak_comes_with_the_whole_load_at_its_time(drop_test):
+    for found in interface_loads(drop_test):
+        for peak in peaks(found, drop_test.time):
+            row = int(np.argmin(np.abs(drop_test.time - peak.time)))
+            assert peak.load == tuple(found.load[row])
+            assert abs(peak.load[peak.component]) == np.abs(found.load[:, peak.component]).max()
+
+
+def test_a_landing_in_space_is_refused():
+    history = Landing(load_preset("yue2022-figures").with_values({"drop.mode": "space"})).run(0.01)
+    with pytest.raises(LandingError, match="symmetric landing"):
+        interface_loads(history)

@@ -1,0 +1,73 @@
+"""The report of one's own vehicles: page and PDF have every table, and their numbers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from test_report import Page
+
+from rlv_landing import Landing, load_preset
+from rlv_landing.figures.landing_report.page import page
+from rlv_landing.figures.landing_report.sections import Landed, side_by_side, tables_of
+from rlv_landing.summary import summarise
+
+
+@pytest.fixture(scope="module")
+def found() -> Landed:
+    return Landed("mine <&>", Landing(load_preset("yue2022-figures", "1-2-1")).run(0.6, 1e-3))
+
+
+def test_the_page_is_whole_and_has_every_table_and_picture_of_each_landing(found):
+    text = page([found])
+    read = Page(text)
+    assert read.open == []
+    assert len(read.ids()) == len(set(read.ids()))
+    pictures = [a["aria-label"] for tag, a in read.tags if tag == "svg"]
+    assert len(pictures) == 7
+    assert "mine &lt;&amp;&gt;" in text
+    assert "mine <&>" not in text
+    for table in tables_of(found):
+        assert text.count(f"<h3>{table.title}</h3>") == 1
+    assert not any(a.get("src") or a.get("href", "#")[0] != "#" for _, a in read.tags)
+
+
+def test_the_first_table_has_a_column_for_each_landing_with_its_numbers(found):
+    table = side_by_side([found, found])
+    rows = {row[0]: row[1:] for row in table.rows}
+    leg = summarise(found.history)["legs"][0]
+    force = max(-each["main_strut_force_min"] for each in summarise(found.history)["legs"])
+    assert rows["largest main strut force"] == (f"{force / 1e3:.4g} kN",) * 2
+    assert rows["outcome"][0].startswith(found.outcome.name)
+    legs = next(t for t in tables_of(found) if t.title == "Legs")
+    assert legs.rows[0][2] == f"{leg['main_strut_force_min'] / 1e3:.3f}"
+
+
+def test_a_damper_without_liquid_has_no_pressures(found):
+    p = found.parameters
+    struck = replace(p, main_strut=replace(p.main_strut, kind="spring-damper", stiffness=2e5))
+    dry = Landed("dry", Landing(struck).run(0.3, 1e-3))
+    assert not any("pressure" in head for t in tables_of(dry) for head in t.head)
+    assert dict(side_by_side([dry]).rows)["highest pressure"] == "no liquid"
+
+
+def test_the_command_writes_page_and_pdf_and_refuses_what_is_no_vehicle_of_it(
+    tmp_path, command, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    done = command("report", "yue2022-figures", "--no-audit", "--until", "0.3", "-o", "mine.pdf")
+    assert (done.code, done.err) == (0, "")
+    assert done.out.splitlines()[-1] == "report: mine.pdf"
+    content = (tmp_path / "mine.pdf").read_bytes()
+    assert content.startswith(b"%PDF")
+    assert content.count(b"/Type /Page ") >= 9
+    space = ("--set", "drop.mode=space", "-o", "space.html")
+    for arguments, said in (
+        (("yue2022-figures", *space), "reports are of symmetric landings"),
+        (("missing.toml",), "missing.toml"),
+        (("yue2022-figures", "-o", "mine.txt"), "must end in .html or .pdf"),
+        (("yue2022-figures", "-o", "mine.pdf"), "--force"),
+    ):
+        refused = command("report", *arguments)
+        assert (refused.code, refused.err.count("\n")) == (2, 1)
+        assert said in refused.err
