@@ -10,14 +10,12 @@ from pathlib import Path
 from typing import BinaryIO
 
 from rlv_landing.errors import LandingError, reason_of
-from rlv_landing.history import History
+from rlv_landing.history import UNITS, History
 from rlv_landing.outputs import Extreme
 from rlv_landing.presets import to_toml
-from rlv_landing.quantities import OUTPUT_NAMES, OUTPUT_QUANTITIES
 from rlv_landing.text.durable import text_of, unwritable, whole_file
 
 ENDINGS = (".csv", ".parquet")
-UNITS = {"time": "s", **{name: q.unit for name, q in zip(OUTPUT_NAMES, OUTPUT_QUANTITIES)}}
 
 
 def write_history(history: History, path: Path) -> None:
