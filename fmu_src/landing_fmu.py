@@ -34,14 +34,8 @@ from rlv_landing import LandingError, __version__
 from rlv_landing.core import COMPILED
 from rlv_landing.hosted import HostedLanding
 from rlv_landing.landing import DEFAULT_RTOL, LOOSEST_RTOL
-from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.quantities import (
-    INPUT_QUANTITIES,
-    OUTPUT_QUANTITIES,
-    PEAK_QUANTITIES,
-    STATISTIC_QUANTITIES,
-    Quantity,
-)
+from rlv_landing.parameters import PARAMETER_QUANTITIES, parameters_of
+from rlv_landing.quantities import STATISTIC_QUANTITIES, Quantity
 
 # the front sets the rate of input i as the real RATES + i, a value reference of no variable
 RATES = 2_000_000
@@ -51,6 +45,7 @@ MOST_REFUSALS = 10
 # start values of the vehicle that the FMU was built for; there is no file for the default vehicle
 VEHICLE = Path(__file__).with_name("vehicle.json")
 STARTS: dict[str, Any] = json.loads(VEHICLE.read_text()) if VEHICLE.is_file() else {}
+PARAMETERS = parameters_of(STARTS.get("drop.mode", PARAMETER_QUANTITIES["drop.mode"].default))
 KINDS = {"real": Real, "integer": Integer, "boolean": Boolean, "string": String}
 
 
@@ -76,10 +71,11 @@ def log_exceptions(method: Callable[..., Any]) -> Callable[..., Any]:
 
 
 class RlvLanding(Fmi2Slave):
-    """Touchdown of a four-legged rocket stage as an FMI 2.0 co-simulation slave.
+    """Touchdown of a rocket stage on legs as an FMI 2.0 co-simulation slave.
 
-    Inputs are external loads and ground motion. Outputs are motion, strut and contact forces,
-    strokes, energies and status.
+    It lands in a plane, or in space, as the vehicle that it was built for does. Inputs are external
+    loads and ground motion. Outputs are motion, strut and contact forces, strokes, energies and
+    status.
     """
 
     author = "The rlv-landing authors"
@@ -100,7 +96,8 @@ class RlvLanding(Fmi2Slave):
         self._values: list[Any] = []
         # steps that were refused since the last one that was made
         self._refusals = 0
-        for q in PARAMETER_QUANTITIES.values():
+        interface = self._hosted.interface
+        for q in PARAMETERS.values():
             self._register(
                 q,
                 STARTS.get(q.name, q.default),
@@ -108,10 +105,10 @@ class RlvLanding(Fmi2Slave):
                 Fmi2Variability.fixed,
                 Fmi2Initial.exact,
             )
-        for q in INPUT_QUANTITIES:
+        for q in interface.inputs:
             self._register(q, 0.0, Fmi2Causality.input, Fmi2Variability.continuous, None)
         self._first_output = len(self.vars)
-        for q in OUTPUT_QUANTITIES:
+        for q in interface.outputs:
             variability = (
                 Fmi2Variability.continuous if q.kind == "real" else Fmi2Variability.discrete
             )
@@ -120,7 +117,7 @@ class RlvLanding(Fmi2Slave):
             self._register(
                 q, 0.0, Fmi2Causality.local, Fmi2Variability.discrete, Fmi2Initial.calculated
             )
-        for q in PEAK_QUANTITIES:
+        for q in interface.peak_quantities:
             self._register(
                 q, 0.0, Fmi2Causality.local, Fmi2Variability.continuous, Fmi2Initial.calculated
             )
@@ -234,7 +231,7 @@ class RlvLanding(Fmi2Slave):
         calculated: list[Any] = []
         if last >= first:
             calculated = self._hosted.outputs()
-        if last >= first + len(OUTPUT_QUANTITIES):
+        if last >= first + len(self._hosted.interface.outputs):
             counts = [min(count, LARGEST_INTEGER) for count in self._hosted.statistics()]
             calculated = [*calculated, *counts, COMPILED]
         if last >= first + len(calculated):
@@ -247,7 +244,7 @@ class RlvLanding(Fmi2Slave):
 
     def get_outputs(self) -> list[float]:
         """All outputs, in order, for the front; NaN after an error."""
-        return self._read_outputs() or [math.nan] * len(OUTPUT_QUANTITIES)
+        return self._read_outputs() or [math.nan] * len(self._hosted.interface.outputs)
 
     def get_real(self, vrs: list[int]) -> list[float]:
         """Values of real variables; NaN after an error."""
@@ -273,7 +270,7 @@ class RlvLanding(Fmi2Slave):
                 continue
             name = self._names[vr]
             self._values[vr] = value
-            if name in PARAMETER_QUANTITIES:
+            if name in PARAMETERS:
                 self._hosted.set_parameter(name, value)
             else:
                 self._hosted.set_input(name, value)

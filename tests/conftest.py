@@ -28,6 +28,7 @@ sys.path.insert(0, str(ROOT / "examples" / "ship_deck"))
 sys.path[:0] = [str(ROOT / "tests" / "shared"), str(ROOT / "tests" / "bridge")]
 
 from bridge_tools import domain, log, one_log, processes  # noqa: E402, F401
+from five_legs import five_legs  # noqa: E402
 
 # the time that one example takes depends on the machine
 settings.register_profile("suite", deadline=None)
@@ -61,6 +62,27 @@ def fmu3(fmu: Path) -> Path:
     path = fmu.with_name("RlvLanding3.fmu")
     assert path.is_file(), f"{path} is missing: run ./build_fmu.sh --fmi 3"
     return path
+
+
+def _space_fmu(folder: Path, fmi: str) -> Path:
+    from fmu_build.build import build
+    from fmu_build.wanted import Wanted
+
+    path = folder / f"Space{fmi}.fmu"
+    build(path, Wanted(five_legs(), "five legs", "FiveLegs", fmi=fmi))
+    return path
+
+
+@pytest.fixture(scope="session")
+def space_fmu(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The FMU of a landing in space on five legs."""
+    return _space_fmu(tmp_path_factory.mktemp("space"), "2")
+
+
+@pytest.fixture(scope="session")
+def space_fmu3(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The FMU of FMI 3.0 of a landing in space on five legs."""
+    return _space_fmu(tmp_path_factory.mktemp("space3"), "3")
 
 
 @pytest.fixture(scope="session", params=MODES)

@@ -187,7 +187,7 @@ def build(target: Path, wanted: Wanted) -> list[str]:
         compile_cores(others, package / "core" / "compiled_for")
         record_libpython(files)
         root = complete_description(files, date, wanted)
-        description = describe3(root) if wanted.fmi == "3" else root
+        description = describe3(root, wanted) if wanted.fmi == "3" else root
         write_description(files, description)
         write_documentation(files, description, wanted)
         if wanted.fmi == "3":

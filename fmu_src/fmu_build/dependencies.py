@@ -11,6 +11,12 @@ once either: the ground moves to a new position from the next step on.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from rlv_landing.quantities import Interface
+
+from . import in_space
 
 LOADS = frozenset({"external.force_x", "external.force_y", "external.moment"})
 RATES = frozenset({"ground.heave_rate", "ground.tilt_rate"})
@@ -97,19 +103,43 @@ PARAMETERS: dict[str, frozenset[str]] = {
 }
 
 
+@dataclass(frozen=True)
+class Dependencies:
+    """What the outputs depend on, those of all legs alike.
+
+    Attributes:
+        inputs_of: The inputs that change an output at once.
+        start_inputs_of: The inputs that its initial value depends on.
+        parameters_of: The parameters that its initial value depends on.
+    """
+
+    inputs_of: Mapping[str, frozenset[str]]
+    start_inputs_of: Mapping[str, frozenset[str]]
+    parameters_of: Mapping[str, frozenset[str]]
+
+    def inputs(self, output: str) -> frozenset[str]:
+        """The inputs that change `output` at the instant at which they change themselves."""
+        return self.inputs_of.get(_of_any_leg(output), frozenset())
+
+    def at_start(self, output: str) -> frozenset[str]:
+        """The inputs and parameters that the initial value of `output` depends on.
+
+        No footpad is in the ground at the start, so contact forces depend on none.
+        """
+        name = _of_any_leg(output)
+        return self.start_inputs_of.get(name, frozenset()) | self.parameters_of.get(
+            name, frozenset()
+        )
+
+
+IN_A_PLANE = Dependencies(INPUTS, START_INPUTS, PARAMETERS)
+IN_SPACE = Dependencies(in_space.INPUTS, in_space.START_INPUTS, in_space.PARAMETERS)
+
+
+def dependencies_of(interface: Interface) -> Dependencies:
+    """What the outputs of an interface depend on."""
+    return IN_SPACE if interface.in_space else IN_A_PLANE
+
+
 def _of_any_leg(output: str) -> str:
     return re.sub(r"^leg\[\d+\]\.", "", output)
-
-
-def inputs_of(output: str) -> frozenset[str]:
-    """The inputs that change `output` at the instant at which they change themselves."""
-    return INPUTS.get(_of_any_leg(output), frozenset())
-
-
-def known_at_start(output: str) -> frozenset[str]:
-    """The inputs and parameters that the initial value of `output` depends on.
-
-    No footpad is in the ground at the start, so contact forces depend on none.
-    """
-    name = _of_any_leg(output)
-    return START_INPUTS.get(name, frozenset()) | PARAMETERS.get(name, frozenset())

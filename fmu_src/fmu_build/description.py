@@ -7,25 +7,17 @@ the outputs, and attributes of the model.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from xml.etree.ElementTree import Element, SubElement
 
 from rlv_landing import __version__
-from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.quantities import (
-    BASE_UNITS,
-    DISPLAY_UNITS,
-    INPUT_QUANTITIES,
-    OUTPUT_QUANTITIES,
-    PEAK_QUANTITIES,
-    STATISTIC_QUANTITIES,
-    Quantity,
-    flat_name,
-)
+from rlv_landing.quantities import BASE_UNITS, DISPLAY_UNITS, Quantity, flat_name
 
-from .dependencies import inputs_of, known_at_start
+from .dependencies import dependencies_of
 from .wanted import Wanted
 
 DIMENSIONLESS = "1"
+IN_SPACE = "Touchdown of a vertical-landing rocket stage in space: six degrees of freedom, any legs"
 # SI unit -> physical kind, FMI's `quantity`
 PHYSICAL_KINDS = {
     "m": "Length",
@@ -59,16 +51,6 @@ CAPABILITIES = {
     "canGetAndSetFMUstate": True,
     "canSerializeFMUstate": True,
 }
-QUANTITIES = {
-    q.name: q
-    for q in (
-        *PARAMETER_QUANTITIES.values(),
-        *INPUT_QUANTITIES,
-        *OUTPUT_QUANTITIES,
-        *STATISTIC_QUANTITIES,
-        *PEAK_QUANTITIES,
-    )
-}
 
 
 def describe(root: Element, date: str, wanted: Wanted) -> None:
@@ -92,14 +74,17 @@ def describe(root: Element, date: str, wanted: Wanted) -> None:
     for capability, can in CAPABILITIES.items():
         simulation.set(capability, str(can).lower())
     root.insert(1, unit_definitions())
-    root.insert(2, type_definitions())
+    quantities = wanted.quantities
+    root.insert(2, type_definitions(quantities.values()))
     names = [v.attrib["name"] for v in variables]
     for name, variable in zip(names, variables):
-        complete(variable, QUANTITIES[name], wanted.values.get(name))
+        complete(variable, quantities[name], wanted.values.get(name))
         if wanted.flat_names:
             variable.set("name", flat_name(name))
     structure.clear()
-    structure.extend(unknowns(names))
+    structure.extend(unknowns(names, wanted))
+    if wanted.interface.in_space:
+        root.set("description", IN_SPACE)
     root.set("modelName", wanted.name)
     simulation.set("modelIdentifier", wanted.name)
     experiment.set("stopTime", str(wanted.stop_time))
@@ -128,10 +113,10 @@ def unit_definitions() -> Element:
     return node
 
 
-def type_definitions() -> Element:
-    """A type for each physical kind and display unit of the table."""
+def type_definitions(quantities: Iterable[Quantity]) -> Element:
+    """A type for each physical kind and display unit of the `quantities`."""
     node = Element("TypeDefinitions")
-    types = {type_name(q): q for q in QUANTITIES.values() if q.kind == "real"}
+    types = {type_name(q): q for q in quantities if q.kind == "real"}
     for name in sorted(types):
         q = types[name]
         of_kind = SubElement(SubElement(node, "SimpleType", name=name), "Real")
@@ -171,18 +156,20 @@ def _set_units(typed: Element, q: Quantity) -> None:
         typed.set("displayUnit", q.display_unit)
 
 
-def unknowns(names: list[str]) -> list[Element]:
+def unknowns(names: list[str], wanted: Wanted) -> list[Element]:
     """The elements Outputs and InitialUnknowns of ModelStructure, with their dependencies.
 
     Args:
         names: All variables, in the order of the description.
+        wanted: The FMU.
     """
+    known_of = dependencies_of(wanted.interface)
     index = {name: i for i, name in enumerate(names, start=1)}
     outputs, initial = Element("Outputs"), Element("InitialUnknowns")
-    for q in OUTPUT_QUANTITIES:
-        for node, known in ((outputs, inputs_of(q.name)), (initial, known_at_start(q.name))):
-            numbers = sorted(index[name] for name in known)
+    for name in wanted.interface.output_names:
+        for node, known in ((outputs, known_of.inputs(name)), (initial, known_of.at_start(name))):
+            numbers = sorted(index[cause] for cause in known)
             SubElement(
-                node, "Unknown", index=str(index[q.name]), dependencies=" ".join(map(str, numbers))
+                node, "Unknown", index=str(index[name]), dependencies=" ".join(map(str, numbers))
             )
     return [outputs, initial]

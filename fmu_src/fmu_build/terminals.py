@@ -25,9 +25,9 @@ TERMINALS = {
     "external": (
         "external.",
         "plug",
-        "wrench on the body at its CG: forces along inertial x and y, moment clockwise",
+        "wrench on the body at its CG: forces and moments, inertial axes",
     ),
-    "ground": ("ground.", "plug", "motion of the ground: heave, tilt and their rates"),
+    "ground": ("ground.", "plug", "motion of the ground, and its rates"),
     "body": ("body.", "bus", "motion of the body"),
 }
 PARTS = {
@@ -69,7 +69,7 @@ def terminals_and_icons(description: Element) -> Element:
     named = flat_name if description.get("variableNamingConvention") == "flat" else str
     for name, (prefix, rule, meaning) in TERMINALS.items():
         _terminal(terminals, name, rule, meaning, named(prefix), connected)
-    legs = _terminal(terminals, "legs", "bus", "the four legs; element k is leg k", "", [])
+    legs = _terminal(terminals, "legs", "bus", "the legs; element k is leg k", "", [])
     for part, meaning in PARTS.items():
         _terminal(legs, part, "bus", meaning, named(f"leg.{part}."), connected)
     return root

@@ -10,7 +10,7 @@ from fmpy.validation import validate_fmu
 
 from rlv_landing import Landing
 from rlv_landing.errors import reason_of
-from rlv_landing.quantities import OUTPUT_QUANTITIES, flat_name, whole_name
+from rlv_landing.quantities import flat_name, whole_name
 
 from .terminals import faults
 from .wanted import Wanted
@@ -55,7 +55,7 @@ def check(fmu: Path, wanted: Wanted, ends: Expected) -> str:
     problems = validate_fmu(str(fmu)) + (faults(fmu) if wanted.fmi == "3" else [])
     if problems:
         raise SystemExit("error: the FMU is not valid: " + "; ".join(problems))
-    names = {q.name: _own_name(q.name, wanted) for q in OUTPUT_QUANTITIES}
+    names = {q.name: _own_name(q.name, wanted) for q in wanted.interface.outputs}
     try:
         result: Any = fmpy.simulate_fmu(
             fmpy.extract(str(fmu), str(fmu.with_suffix(""))),
@@ -67,7 +67,7 @@ def check(fmu: Path, wanted: Wanted, ends: Expected) -> str:
         if isinstance(e.__context__, KeyboardInterrupt):  # it has ended the slave
             raise e.__context__ from None
         raise SystemExit(f"error: the FMU does not land: {reason_of(e)}") from None
-    for q in OUTPUT_QUANTITIES:
+    for q in wanted.interface.outputs:
         ours, its = ends.values[q.name], float(_column(result, q.name, names)[-1])
         if not abs(its - ours) <= TOLERANCE * max(abs(ours), q.nominal):
             raise SystemExit(

@@ -8,7 +8,8 @@ from math import ceil
 
 from rlv_landing import MODEL_NAME
 from rlv_landing.errors import LandingError
-from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
+from rlv_landing.parameters import Parameters, parameters_of
+from rlv_landing.quantities import STATISTIC_QUANTITIES, Interface, Quantity, interface_of
 
 from .targets import OWN, TARGETS, Target, own_machine
 
@@ -20,6 +21,7 @@ NO_NAMES = re.compile(
     r"|inline|int|long|register|restrict|return|short|signed|sizeof|static|struct|switch|typedef"
     r"|union|unsigned|void|volatile|while|(?i:con|prn|aux|nul|com\d|lpt\d)"
 )
+COUNTS = {3: "three", 4: "four", 5: "five", 6: "six", 7: "seven", 8: "eight"}
 # the default experiment's end [s], and how long after the first contact it is at least
 END, AFTER_CONTACT = 1.0, 0.5
 
@@ -72,11 +74,28 @@ class Wanted:
             )
 
     @property
+    def table(self) -> dict[str, Quantity]:
+        """Its parameters by name."""
+        return parameters_of(self.parameters.drop.mode)
+
+    @property
+    def interface(self) -> Interface:
+        """Its inputs and outputs."""
+        return interface_of(self.parameters.drop.mode, int(self.parameters.vehicle.legs))
+
+    @property
+    def quantities(self) -> dict[str, Quantity]:
+        """What its variables are in FMI 2.0, by name, in the order of their value references."""
+        i = self.interface
+        calculated = (*i.outputs, *STATISTIC_QUANTITIES, *i.peak_quantities)
+        return {**self.table, **{q.name: q for q in (*i.inputs, *calculated)}}
+
+    @property
     def values(self) -> dict[str, float | str]:
         """The parameters by name; empty where all are the defaults."""
-        own = dict(self.parameters.items())
-        is_default = all(own[name] == q.default for name, q in PARAMETER_QUANTITIES.items())
-        return {} if is_default else own
+        own = {name: self.parameters[name] for name in self.table}
+        is_default = all(own[name] == q.default for name, q in self.table.items())
+        return {} if is_default and not self.interface.in_space else own
 
     @property
     def other_targets(self) -> list[Target]:
@@ -94,7 +113,8 @@ class Wanted:
     def vehicle(self) -> str:
         """The vehicle and its drop, in words."""
         p = self.parameters
-        mass = p.vehicle.mass + 4.0 * p.vehicle.footpad_mass
-        return (
-            f"{mass:.4g} kg on four legs, {p.drop.mode} at {abs(p.drop.vertical_velocity):.3g} m/s"
-        )
+        legs = int(p.vehicle.legs)
+        mass = p.vehicle.mass + legs * p.vehicle.footpad_mass
+        how = "in space" if self.interface.in_space else p.drop.mode
+        speed = abs(p.drop.vertical_velocity)
+        return f"{mass:.4g} kg on {COUNTS[legs]} legs, {how} at {speed:.3g} m/s"

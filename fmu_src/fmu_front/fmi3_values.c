@@ -9,7 +9,7 @@
 
 #include <stdlib.h>
 
-enum { TIME = VARIABLE_COUNT };
+#define TIME VARIABLE_COUNT
 
 /* The functions, and the phases in which each may be called. */
 #define FUNCTIONS(X) \

@@ -29,8 +29,8 @@ static bool check_references(const struct instance *c, const struct function *f,
 {
     for (size_t i = 0; i < n; i++) {
         if (vr[i] >= VARIABLE_COUNT) {
-            log_message(c, STATUS_ERROR, "%s: value reference %u is not one of 0 to %d", f->name,
-                        (unsigned)vr[i], VARIABLE_COUNT - 1);
+            log_message(c, STATUS_ERROR, "%s: value reference %u is not one of 0 to %u", f->name,
+                        (unsigned)vr[i], (unsigned)(VARIABLE_COUNT - 1));
             return false;
         }
         const struct variable *v = &VARIABLES[vr[i]];
@@ -55,8 +55,8 @@ static bool enter_read(struct instance *c, const struct function *f, enum kind k
 /* Read all numeric outputs of the kind, or, if that is 0, of every kind, to the cache. */
 static enum answer read_outputs(struct instance *c, int kind)
 {
-    uint32_t vr[VARIABLE_COUNT];
-    double value[VARIABLE_COUNT];
+    uint32_t vr[MOST_VARIABLES];
+    double value[MOST_VARIABLES];
     size_t n = 0;
     for (uint32_t i = 0; i < VARIABLE_COUNT; i++)
         if (is_numeric_output(i) && (kind == 0 || VARIABLES[i].kind == kind)) {

@@ -10,8 +10,8 @@ from typing import Any
 
 from .errors import LandingError
 from .landing import DEFAULT_RTOL, Landing
-from .parameters import PARAMETER_QUANTITIES, Parameters, check_value
-from .quantities import PEAKS, groups_of
+from .parameters import Parameters, check_value, parameters_of
+from .quantities import SPACE, Interface, interface_of
 from .state import LATEST
 
 # beyond it a host's time, a double, is rounded to more than 1 us [s]
@@ -29,12 +29,14 @@ class HostedLanding:
             defaults.
 
     Attributes:
+        interface: Its inputs and outputs, which no parameter changes.
         start_time: The host's time at the start of the landing [s].
         failure: The reason why the landing has ended; empty while it runs.
     """
 
     def __init__(self, starts: Mapping[str, Any] | None = None) -> None:
         self._vehicle = Parameters().with_values(starts or {})
+        self.interface: Interface = _interface(self._vehicle)
         self.start_time = 0.0
         self.failure = ""
         self._rtol = DEFAULT_RTOL
@@ -155,7 +157,7 @@ class HostedLanding:
         return [reached, float(event)]
 
     def outputs(self) -> list[float]:
-        """All outputs at the present time, in the order of OUTPUT_NAMES."""
+        """All outputs at the present time, in the order of the interface."""
         landing = self._current()
         # inputs act at once; the next step refuses those that are out of bounds
         with suppress(LandingError):
@@ -165,7 +167,7 @@ class HostedLanding:
         return self._outputs
 
     def peaks(self) -> list[float]:
-        """Value and the host's time [s] of each of PEAKS until the present time.
+        """Value and the host's time [s] of each of the interface's peaks until the present time.
 
         They are computed once after each change.
         """
@@ -173,7 +175,7 @@ class HostedLanding:
         if self._peaks[0] is not outputs:
             extremes = self._current().extremes()
             found: list[float] = []
-            for peak in PEAKS:
+            for peak in self.interface.peaks:
                 low, low_time, high, high_time = extremes[peak.output]
                 value, time = (low, low_time) if peak.side == "min" else (high, high_time)
                 found += [value, self.start_time + time]
@@ -257,10 +259,34 @@ def new_landing(
         rates: Rates of inputs at the start by name; the others are 0.
 
     Raises:
-        LandingError: A value is out of bounds, values contradict each other, the landing is in
-            space, or the free flight would pass below the ground.
+        LandingError: A value is out of bounds, values contradict each other, the landing has other
+            inputs and outputs than the vehicle's, or the free flight would pass below the ground.
     """
-    checked = {name: check_value(PARAMETER_QUANTITIES[name], v) for name, v in values.items()}
-    parameters = vehicle.with_values(checked)
-    groups_of(parameters.drop.mode)
-    return Landing(parameters, rtol=rtol, inputs=inputs, rates=rates)
+    table = parameters_of(vehicle.drop.mode)
+    _check_same_interface(vehicle, values)
+    checked = {name: check_value(table[name], v) for name, v in values.items()}
+    return Landing(vehicle.with_values(checked), rtol=rtol, inputs=inputs, rates=rates)
+
+
+def _interface(parameters: Parameters) -> Interface:
+    return interface_of(parameters.drop.mode, int(parameters.vehicle.legs))
+
+
+def _check_same_interface(vehicle: Parameters, values: Mapping[str, Any]) -> None:
+    """Check that a landing with these `values` has the inputs and outputs of the `vehicle`'s.
+
+    Raises:
+        LandingError: It has others.
+    """
+    mode, legs = vehicle.drop.mode, vehicle.vehicle.legs
+    other = values.get("drop.mode", mode)
+    if (other == SPACE) != (mode == SPACE):
+        raise LandingError(
+            f"drop.mode = {other} has other inputs and outputs than this FMU, which is of "
+            f"drop.mode = {mode}; build one for it by `rlv-landing fmu build`"
+        )
+    if values.get("vehicle.legs", legs) != legs:
+        raise LandingError(
+            f"vehicle.legs = {values['vehicle.legs']:g} has other outputs than this FMU, which is "
+            f"of {legs:g} legs; build one for them by `rlv-landing fmu build`"
+        )

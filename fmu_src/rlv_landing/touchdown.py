@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, sin
+from math import cos, radians, sin
 from typing import NamedTuple
 
 from .errors import LandingError
 from .parameters import Parameters
-from .quantities import azimuth, groups_of
+from .quantities import SPACE, azimuth, groups_of
 
 # parts of the free flight's duration at which the footpads are checked to be above the ground
 FLIGHT_CHECKS = tuple(i / 64.0 for i in range(65))
@@ -41,6 +41,23 @@ class GroundMotion(NamedTuple):
 
 
 AT_REST = GroundMotion()
+
+
+def leg_directions(parameters: Parameters) -> dict[int, tuple[float, float]]:
+    """Sine and cosine of each leg's azimuth, from body x towards z, by the leg's number.
+
+    In space the legs stand evenly round the body, with growing azimuths. At heading 0 and with the
+    default azimuth, four stand as in the mode 1-2-1.
+    """
+    if parameters.drop.mode == SPACE:
+        legs = int(parameters.vehicle.legs)
+        first = parameters.vehicle.leg_azimuth / radians(1.0)
+        return {i + 1: azimuth(first + 360.0 * i / legs) for i in range(legs)}
+    found = {}
+    for group in groups_of(parameters.drop.mode):
+        sine, cosine = azimuth(group.azimuth)
+        found.update({leg: (side * sine, cosine) for leg, side in group.legs})
+    return dict(sorted(found.items()))
 
 
 def footpad_at_rest(parameters: Parameters) -> tuple[float, float]:

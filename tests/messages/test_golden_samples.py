@@ -17,10 +17,11 @@ from rlv_landing import load_preset
 from rlv_landing.quantities import OUTPUT_NAMES
 from rlv_ros_bridge.messages.columns import READINGS
 from rlv_ros_bridge.messages.definitions import definition
-from rlv_ros_bridge.messages.fields import Vehicle, expected_fields
+from rlv_ros_bridge.messages.fields import Vehicle
 from rlv_ros_bridge.messages.inputs import READINGS as INPUT_READINGS
 from rlv_ros_bridge.messages.markers import Wireframe
 from rlv_ros_bridge.messages.samples import SampleBytes, SampleMessages
+from rlv_ros_bridge.messages.tables import expected_fields
 from rlv_ros_bridge.messages.topics import (
     APPLIED,
     APPLIED_GROUND,

@@ -19,9 +19,10 @@ from rlv_landing.errors import LandingError
 from rlv_landing.quantities import OUTPUT_NAMES
 from rlv_ros_bridge.messages.axes import from_ros, pitch_quaternion, to_ros, world_to_body
 from rlv_ros_bridge.messages.columns import COLUMN_NAMES, sample_columns
-from rlv_ros_bridge.messages.fields import FIELDS, Vehicle, expected_numbers
+from rlv_ros_bridge.messages.fields import FIELDS, Vehicle
 from rlv_ros_bridge.messages.markers import Wireframe
 from rlv_ros_bridge.messages.samples import SampleMessages
+from rlv_ros_bridge.messages.tables import expected_numbers
 from rlv_ros_bridge.messages.topics import CLOCK, JOINTS, ODOM, SAMPLED, STRUTS
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)

@@ -219,3 +219,16 @@ def test_a_liquid_without_stiffness_at_zero_pressure_is_refused():
     Parameters().with_values({**soft, "main_strut.ambient_pressure": 2.99e5})
     with pytest.raises(LandingError, match=r"stay below .* = 300000 Pa"):
         Parameters().with_values({**soft, "main_strut.ambient_pressure": 3.01e5})
+
+
+def test_a_vehicle_of_landings_in_space_keeps_the_values_of_the_symmetric_modes_in_toml(tmp_path):
+    values = {"drop.mode": "space", "vehicle.legs": 5.0, "drop.heading": 0.3, "drop.tilt": 0.02}
+    parameters = load_preset("yue2022-figures").with_values(values)
+    assert parameters.by_mode["1-2-1"]
+    file = tmp_path / "space.toml"
+    file.write_text(to_toml(parameters))
+    found = read_toml(file)
+    assert dict(found.items()) == dict(parameters.items())
+    assert found.by_mode == parameters.by_mode
+    with pytest.raises(LandingError, match=r"vehicle.legs = 5 needs drop.mode = space"):
+        found.for_mode("1-2-1")

@@ -15,7 +15,7 @@ from remote import ACTIVATE, CLEANUP, CONFIGURE, DEACTIVATE, Remote
 from std_msgs.msg import String
 
 from rlv_landing import Landing, load_preset
-from rlv_landing.parameters import PARAMETER_QUANTITIES
+from rlv_landing.parameters import PARAMETER_QUANTITIES, parameters_of
 from rlv_landing.quantities import INPUT_NAMES, OUTPUT_NAMES, PEAK_QUANTITIES, STATISTIC_QUANTITIES
 from rlv_ros_bridge.logs.history import history_of
 from rlv_ros_bridge.logs.reader import LogReader
@@ -80,7 +80,7 @@ def test_transitions_load_land_pause_and_free(
     assert remote.state() == "inactive"
     listed = json.loads(remote.first(String, "/landing/variables").data)
     assert [v["name"] for v in listed] == [
-        *PARAMETER_QUANTITIES,
+        *parameters_of("2-2"),
         *INPUT_NAMES,
         *OUTPUT_NAMES,
         *(q.name for q in (*STATISTIC_QUANTITIES, *PEAK_QUANTITIES)),
@@ -147,7 +147,7 @@ def test_parameters_are_described_checked_and_kept_while_landing(
     managed: tuple[subprocess.Popen[str], Remote],
 ) -> None:
     node, remote = managed
-    assert remote.names() >= {*PARAMETER_QUANTITIES, *SETTINGS}
+    assert remote.names() >= {*parameters_of("2-2"), *SETTINGS}
     (mass,) = remote.describe("vehicle.mass")
     q = PARAMETER_QUANTITIES["vehicle.mass"]
     assert mass.description == f"{q.meaning} [kg]"

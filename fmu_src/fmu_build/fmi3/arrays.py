@@ -1,7 +1,7 @@
-"""The variables of FMI 3.0: those of FMI 2.0, with the four legs' as one array.
+"""The variables of FMI 3.0: those of FMI 2.0, with the legs' as one array.
 
-`leg[1].contact.force` to `leg[4].contact.force` are the elements of `leg.contact.force`, with flat
-names `leg1_contact_force` to `leg4_contact_force` those of `leg_contact_force`. The value
+`leg[1].contact.force`, `leg[2].contact.force` ... are the elements of `leg.contact.force`, with
+flat names `leg1_contact_force`, `leg2_contact_force` ... those of `leg_contact_force`. The value
 reference of a variable is that of its first element in FMI 2.0; `time`, which FMI 2.0 does not
 have, comes after all of them.
 """
@@ -11,13 +11,29 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import pairwise
 
-from rlv_landing.quantities import flat_name, whole_name
-
-from ..description import QUANTITIES
+from rlv_landing.parameters import PARAMETER_QUANTITIES
+from rlv_landing.quantities import (
+    MODES,
+    MOST_LEGS,
+    SPACE,
+    STATISTIC_QUANTITIES,
+    flat_name,
+    interface_of,
+    whole_name,
+)
 
 TIME = "time"
-# the quantities that have other names where names are flat
-STRUCTURED = {flat_name(name): name for name in QUANTITIES}
+# the quantities of all interfaces that have other names where names are flat
+STRUCTURED = {
+    flat_name(name): name
+    for interface in (interface_of(min(MODES)), interface_of(SPACE, MOST_LEGS))
+    for name in (
+        *PARAMETER_QUANTITIES,
+        *interface.input_names,
+        *interface.output_names,
+        *(q.name for q in (*STATISTIC_QUANTITIES, *interface.peak_quantities)),
+    )
+}
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from xml.etree.ElementTree import Element, SubElement
 
-from rlv_landing.quantities import OUTPUT_NAMES
+from rlv_landing.quantities import Quantity
 
-from ..dependencies import inputs_of, known_at_start
-from ..description import DIMENSIONLESS, QUANTITIES, type_name
+from ..dependencies import dependencies_of
+from ..description import DIMENSIONLESS, type_name
+from ..wanted import Wanted
 from .arrays import TIME, Variable, variables, whole_meaning
 
 TYPES = {"real": "Float64", "integer": "Int32", "boolean": "Boolean", "string": "String"}
@@ -36,11 +37,12 @@ SAME = (
 )
 
 
-def describe3(root: Element) -> Element:
+def describe3(root: Element, wanted: Wanted) -> Element:
     """The description of FMI 3.0.
 
     Args:
         root: Root of the complete description of FMI 2.0.
+        wanted: The FMU.
     """
     made = Element("fmiModelDescription", fmiVersion="3.0")
     made.set("instantiationToken", root.attrib["guid"])
@@ -56,8 +58,8 @@ def describe3(root: Element) -> Element:
     made.append(_child(root, "DefaultExperiment"))
     scalars = list(_child(root, "ModelVariables"))
     whole = variables([v.attrib["name"] for v in scalars])
-    made.append(_model_variables(whole, scalars))
-    made.append(_structure(whole))
+    made.append(_model_variables(whole, scalars, wanted.quantities))
+    made.append(_structure(whole, wanted))
     return made
 
 
@@ -74,7 +76,9 @@ def _types(of_fmi2: Element) -> Element:
     return node
 
 
-def _model_variables(whole: list[Variable], scalars: list[Element]) -> Element:
+def _model_variables(
+    whole: list[Variable], scalars: list[Element], quantities: dict[str, Quantity]
+) -> Element:
     node = Element("ModelVariables")
     SubElement(
         node,
@@ -87,24 +91,26 @@ def _model_variables(whole: list[Variable], scalars: list[Element]) -> Element:
         unit="s",
     )
     for variable in whole:
-        node.append(_variable(variable, scalars[variable.reference]))
+        q = quantities[variable.elements[0]]
+        node.append(_variable(variable, scalars[variable.reference], q))
     return node
 
 
-def _variable(variable: Variable, scalar: Element) -> Element:
+def _variable(variable: Variable, scalar: Element, q: Quantity) -> Element:
     """The element of a variable.
 
     Args:
         variable: The variable.
         scalar: Its first element in the description of FMI 2.0.
+        q: What that is.
     """
-    q = QUANTITIES[variable.elements[0]]
     node = Element(TYPES[q.kind], name=variable.name, valueReference=str(variable.reference))
     node.set("causality", scalar.attrib["causality"])
     node.set("variability", scalar.attrib["variability"])
     if scalar.get("initial"):
         node.set("initial", scalar.attrib["initial"])
-    node.set("description", _description(variable))
+    meaning = whole_meaning(q.meaning) if len(variable.elements) > 1 else q.meaning
+    node.set("description", meaning)
     typed = scalar[0]
     if q.kind == "real":
         node.set("declaredType", type_name(q))
@@ -124,20 +130,15 @@ def _variable(variable: Variable, scalar: Element) -> Element:
     return node
 
 
-def _description(variable: Variable) -> str:
-    """What a variable means; of an array, what its elements mean."""
-    meaning = QUANTITIES[variable.elements[0]].meaning
-    return whole_meaning(meaning) if len(variable.elements) > 1 else meaning
-
-
-def _structure(whole: list[Variable]) -> Element:
+def _structure(whole: list[Variable], wanted: Wanted) -> Element:
     """ModelStructure: outputs and initial unknowns with what they depend on."""
+    dependencies, names = dependencies_of(wanted.interface), set(wanted.interface.output_names)
     references = {element: v.reference for v in whole for element in v.elements}
-    outputs = [v for v in whole if v.elements[0] in OUTPUT_NAMES]
+    outputs = [v for v in whole if v.elements[0] in names]
     node = Element("ModelStructure")
-    for tag, known in (("Output", inputs_of), ("InitialUnknown", known_at_start)):
+    for tag, known in (("Output", dependencies.inputs), ("InitialUnknown", dependencies.at_start)):
         for v in outputs:
             numbers = sorted({references[name] for e in v.elements for name in known(e)})
-            dependencies = " ".join(map(str, numbers))
-            SubElement(node, tag, valueReference=str(v.reference), dependencies=dependencies)
+            found = " ".join(map(str, numbers))
+            SubElement(node, tag, valueReference=str(v.reference), dependencies=found)
     return node

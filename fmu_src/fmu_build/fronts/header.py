@@ -1,7 +1,7 @@
 """The header `variables.h`, by which the front's sources know of their FMU.
 
 The identity in it (names, GUID, variables) is data of the binary, with a mark before it. So it can
-be written into a front that was compiled before, for another FMU of as many variables.
+be written into a front that was compiled before, for another FMU.
 """
 
 from __future__ import annotations
@@ -9,10 +9,20 @@ from __future__ import annotations
 import sys
 from xml.etree.ElementTree import Element
 
+from rlv_landing.parameters import Parameters
+from rlv_landing.quantities import MOST_LEGS, SPACE
+
 from ..fmi3.arrays import variables
 from ..sources import source
+from ..wanted import Wanted
 
 FRONT = source("fmu_src/fmu_front")
+# those of a landing in space on as many legs as there may be
+MOST_VARIABLES = len(
+    Wanted(
+        Parameters().with_values({"drop.mode": SPACE, "vehicle.legs": float(MOST_LEGS)})
+    ).quantities
+)
 CAUSALITIES = {"parameter": "p", "input": "i", "output": "o"}
 # kind, causality, name; and in FMI 3.0 count, stride and name of the array that it is the first of
 Row = tuple[str, str, str, int, int, str]
@@ -34,16 +44,12 @@ def variables_header(root: Element, module: str) -> str:
     Raises:
         SystemExit: The value references are not 0, 1, 2, ... in order, or a name is too long.
     """
-    identity = front_identity(root, module)
-    return _header(len(_variables(root)), categories(root), identity)
+    return _header(categories(root), front_identity(root, module))
 
 
 def neutral_header(root: Element) -> str:
     """The header of a front that gets its identity later; the same for all FMUs that it fits."""
-    count = len(_variables(root))
-    return _header(
-        count, categories(root), _identity("", "", "", 0, [("-", "-", "", 0, 0, "")] * count)
-    )
+    return _header(categories(root), _identity("", "", "", 0, []))
 
 
 def front_identity(root: Element, module: str) -> bytes:
@@ -86,10 +92,11 @@ def _variables(root: Element) -> list[Element]:
 def _identity(guid: str, model: str, module: str, minor: int, rows: list[Row]) -> bytes:
     found = MARK.ljust(MARK_SIZE, b"\0") + _text(guid, GUID_SIZE)
     found += _text(model, TEXT_SIZE) + _text(module, TEXT_SIZE) + bytes([minor])
+    found += len(rows).to_bytes(2, "little")
     for kind, causality, name, count, stride, whole in rows:
         found += f"{kind}{causality}".encode() + bytes([count, stride])
         found += _text(name, NAME_SIZE) + _text(whole, NAME_SIZE)
-    return found
+    return found + bytes((MOST_VARIABLES - len(rows)) * (4 + 2 * NAME_SIZE))
 
 
 def _text(text: str, size: int) -> bytes:
@@ -101,7 +108,7 @@ def _text(text: str, size: int) -> bytes:
     return encoded.ljust(size, b"\0")
 
 
-def _header(count: int, log_categories: list[str], identity: bytes) -> str:
+def _header(log_categories: list[str], identity: bytes) -> str:
     lines = [
         "/* Made by fmu_build/fronts/header.py from modelDescription.xml. */",
         "/* In FMI 3.0 it is the first of `count` elements of `whole`, `stride` apart. */",
@@ -110,14 +117,16 @@ def _header(count: int, log_categories: list[str], identity: bytes) -> str:
         "    unsigned char count, stride; /* count 0: no variable of its own */",
         f"    char name[{NAME_SIZE}], whole[{NAME_SIZE}];",
         "};",
-        f"enum {{ VARIABLE_COUNT = {count} }};",
+        f"enum {{ MOST_VARIABLES = {MOST_VARIABLES} }};",
         "struct identity {",
         f"    char mark[{MARK_SIZE}], guid[{GUID_SIZE}];",
         f"    char model[{TEXT_SIZE}], module[{TEXT_SIZE}], python_minor;",
-        "    struct variable variables[VARIABLE_COUNT];",
+        "    unsigned char count[2]; /* of variables, the lower byte first */",
+        "    struct variable variables[MOST_VARIABLES];",
         "};",
         "extern const struct identity IDENTITY;",
         "#define VARIABLES IDENTITY.variables",
+        "#define VARIABLE_COUNT ((uint32_t)(IDENTITY.count[0] + 256 * IDENTITY.count[1]))",
         "#define GUID IDENTITY.guid",
         "#define MODEL_NAME IDENTITY.model",
         "#define SLAVE_MODULE IDENTITY.module",
@@ -144,10 +153,12 @@ def _values(identity: bytes) -> list[str]:
     for size in (MARK_SIZE, GUID_SIZE, TEXT_SIZE, TEXT_SIZE):
         texts.append(quoted(identity[at : at + size].rstrip(b"\0").decode()) + ",")
         at += size
-    lines = [*texts, f"{identity[at]},", "{"]
-    at += 1
-    for row in range(at, len(identity), 4 + 2 * NAME_SIZE):
-        kind, causality = map(chr, identity[row : row + 2])
+    lines = [*texts, f"{identity[at]},", f"{{{identity[at + 1]}, {identity[at + 2]}}},", "{"]
+    count = int.from_bytes(identity[at + 1 : at + 3], "little")
+    size, at = 4 + 2 * NAME_SIZE, at + 3
+    # of an array without variables C would want an element
+    for row in range(at, at + max(count, 1) * size, size):
+        kind, causality = (chr(byte or ord("-")) for byte in identity[row : row + 2])
         count, stride = identity[row + 2 : row + 4]
         name, whole = (
             quoted(identity[start : start + NAME_SIZE].rstrip(b"\0").decode())

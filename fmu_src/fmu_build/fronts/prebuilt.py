@@ -1,7 +1,7 @@
 """Fronts that were compiled when the package was built, so that no compiler is needed later.
 
 Such a front has a neutral identity. The FMU's own is written over it; all else is the same in every
-FMU of as many variables. The folder `compiled` in the installed package has a library for each
+FMU. The folder `compiled` in the installed package has a library for each
 platform, and `made.json`: the digest of what they are made of, and their compilers. A checkout has
 no such folder: it compiles its front.
 """

@@ -15,35 +15,25 @@ from jinja2 import Environment, StrictUndefined
 from latex2mathml.converter import convert
 from markupsafe import Markup
 
-from rlv_landing import Parameters, __version__
+from rlv_landing import __version__
 from rlv_landing.errors import one_line
 from rlv_landing.figures.plots import inline_svg
 from rlv_landing.landing import LOOSEST_RTOL
-from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.quantities import (
-    INPUT_QUANTITIES,
-    LEGS,
-    OUTPUT_QUANTITIES,
-    PEAK_QUANTITIES,
-    STATISTIC_QUANTITIES,
-    Quantity,
-    flat_name,
-    whole_name,
-)
+from rlv_landing.quantities import STATISTIC_QUANTITIES, Quantity, flat_name, whole_name
 
 from ..binary import compilers
-from ..dependencies import inputs_of
+from ..dependencies import dependencies_of
 from ..fmi3.arrays import whole_meaning
 from ..sources import source
 from ..targets import tried
-from ..wanted import Wanted
+from ..wanted import COUNTS, Wanted
 from .drawing import vehicle_figure
 
 TEMPLATE = Path(__file__).with_name("documentation.html.j2")
 LICENCE_OF = "pythonfmu"
 DOTS_PER_INCH = 100
 # what the tables say of the legs, by the version of FMI
-OF_LEGS = {2: "leg[1] stands for every leg", 3: "[4]: arrays with an element for each leg"}
+OF_LEGS = {2: "leg[1] stands for every leg", 3: "[N]: arrays with an element for each leg"}
 
 
 def write_documentation(files: Path, description: Element, wanted: Wanted) -> None:
@@ -98,6 +88,8 @@ def render(files: Path, description: Element, wanted: Wanted) -> str:
         wanted=wanted,
         named=named,
         loosest=LOOSEST_RTOL,
+        in_space=wanted.interface.in_space,
+        legs=COUNTS[len(wanted.interface.legs)],
         model=description.attrib,
         fmi=fmi,
         identity=description.get("guid") or description.get("instantiationToken"),
@@ -112,11 +104,11 @@ def render(files: Path, description: Element, wanted: Wanted) -> str:
             inline_svg(
                 vehicle_figure(wanted.parameters, named=True),
                 "vehicle",
-                "The vehicle on its four legs",
+                f"The vehicle on its {COUNTS[len(wanted.interface.legs)]} legs",
             )
         ),
         pythonfmu=distribution("pythonfmu").version,
-        tables=tables(wanted.parameters, fmi, named("leg[1]")),
+        tables=tables(wanted, fmi, named("leg[1]")),
     )
 
 
@@ -124,29 +116,30 @@ def render(files: Path, description: Element, wanted: Wanted) -> str:
 Table = tuple[str, str, str, list[dict[str, str]]]
 
 
-def tables(parameters: Parameters, fmi: int, first_leg: str) -> list[Table]:
+def tables(wanted: Wanted, fmi: int, first_leg: str) -> list[Table]:
     """The tables of variables.
 
     Args:
-        parameters: The vehicle, whose values are the start values.
+        wanted: The FMU, whose vehicle's values are the start values.
         fmi: The version of FMI.
         first_leg: The name of leg 1 in names of variables.
     """
-    of_legs = OF_LEGS[fmi].replace("leg[1]", first_leg)
+    interface = wanted.interface
+    legs = len(interface.legs)
+    of_legs = OF_LEGS[fmi].replace("leg[1]", first_leg).replace("N", str(legs))
+    outputs = rows(of_one_leg(interface.outputs), legs if fmi == 3 else 0)
+    known_of = dependencies_of(interface)
+    for row, q in zip(outputs, of_one_leg(interface.outputs)):
+        row["at_once"] = " ".join(sorted(known_of.inputs(q.name)))
     return [
         (
             "parameters",
             "Parameters",
             "fixed; set them before or in initialization mode",
-            rows(starts_of(parameters)),
+            rows(starts_of(wanted)),
         ),
-        ("inputs", "Inputs", "continuous; 0 by default", rows(INPUT_QUANTITIES)),
-        (
-            "outputs",
-            "Outputs",
-            f"calculated; {of_legs}, numbered as drawn",
-            rows(of_one_leg(OUTPUT_QUANTITIES), fmi),
-        ),
+        ("inputs", "Inputs", "continuous; 0 by default", rows(interface.inputs)),
+        ("outputs", "Outputs", f"calculated; {of_legs}, numbered as drawn", outputs),
         (
             "statistics",
             "Statistics",
@@ -157,22 +150,23 @@ def tables(parameters: Parameters, fmi: int, first_leg: str) -> list[Table]:
             "peaks",
             "Peaks",
             f"local; extremes since the start, between steps too; {of_legs}",
-            rows(of_one_leg(PEAK_QUANTITIES, "peak."), fmi),
+            rows(of_one_leg(interface.peak_quantities, "peak."), legs if fmi == 3 else 0),
         ),
     ]
 
 
-def starts_of(parameters: Parameters) -> list[Quantity]:
+def starts_of(wanted: Wanted) -> list[Quantity]:
     """The parameters' quantities with the vehicle's values for defaults, and their sources."""
+    own = wanted.parameters
     return [
         # a file may name any source
-        replace(q, default=parameters[name], source=cast(Any, one_line(parameters.source(name))))
-        for name, q in PARAMETER_QUANTITIES.items()
+        replace(q, default=own[name], source=cast(Any, one_line(own.source(name))))
+        for name, q in wanted.table.items()
     ]
 
 
 def of_one_leg(quantities: Iterable[Quantity], before: str = "") -> list[Quantity]:
-    """The quantities without those of legs 2 to 4, which differ from leg 1's in their names alone.
+    """The quantities without those of later legs, which differ from leg 1's in their names alone.
 
     Args:
         quantities: The quantities.
@@ -185,19 +179,24 @@ def of_one_leg(quantities: Iterable[Quantity], before: str = "") -> list[Quantit
     ]
 
 
-def names(q: Quantity, fmi: int) -> dict[str, str]:
-    """Name, size and meaning of a quantity, or of the array that it begins in FMI 3.0."""
+def names(q: Quantity, elements: int) -> dict[str, str]:
+    """Name, size and meaning of a quantity, or of the array of so many `elements` it begins."""
     whole = whole_name(q.name)
-    if fmi == 3 and whole != q.name:
-        return {"name": whole, "size": f"[{len(LEGS)}]", "meaning": whole_meaning(q.meaning)}
+    if elements and whole != q.name:
+        return {"name": whole, "size": f"[{elements}]", "meaning": whole_meaning(q.meaning)}
     return {"name": q.name, "size": "", "meaning": q.meaning}
 
 
-def rows(quantities: Any, fmi: int = 2) -> list[dict[str, str]]:
-    """One table row per quantity, all as text; bounds and default in its SI unit."""
+def rows(quantities: Iterable[Quantity], elements: int = 0) -> list[dict[str, str]]:
+    """One table row per quantity, all as text; bounds and default in its SI unit.
+
+    Args:
+        quantities: The quantities.
+        elements: Elements of the legs' arrays, 0 where each leg has its own variables.
+    """
     return [
         {
-            **names(q, fmi),
+            **names(q, elements),
             "unit": q.unit or ("1" if q.kind == "real" else ""),
             "shown": q.display_unit,
             "type": q.kind.capitalize(),
@@ -205,7 +204,7 @@ def rows(quantities: Any, fmi: int = 2) -> list[dict[str, str]]:
             "bounds": " | ".join(q.choices) or _bounds(q),
             "nominal": f"{q.nominal:g}" if q.kind == "real" else "",
             "source": q.source,
-            "at_once": " ".join(sorted(inputs_of(q.name))),
+            "at_once": "",
         }
         for q in quantities
     ]

@@ -1,13 +1,12 @@
-"""Draws the vehicle on its four legs, for the FMU's icon and its documentation."""
+"""Draws the vehicle on its legs, for the FMU's icon and its documentation."""
 
 from __future__ import annotations
 
-from math import cos, pi, radians, sin
+from math import atan2, cos, pi, radians, sin
 from typing import TYPE_CHECKING, Any
 
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import groups_of
-from rlv_landing.touchdown import footpad_at_rest
+from rlv_landing.touchdown import footpad_at_rest, leg_directions
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -61,11 +60,7 @@ def vehicle_figure(parameters: Parameters, *, named: bool = False) -> Figure:
 
 def _azimuths(parameters: Parameters) -> dict[int, float]:
     """Azimuth [rad] of each leg, by its number."""
-    return {
-        leg: radians(g.azimuth * side)
-        for g in groups_of(parameters.drop.mode)
-        for leg, side in g.legs
-    }
+    return {leg: atan2(sine, cosine) for leg, (sine, cosine) in leg_directions(parameters).items()}
 
 
 def _project(r: float, h: float, azimuth: float) -> tuple[float, float]:

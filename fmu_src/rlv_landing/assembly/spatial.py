@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Sequence
-from math import cos, radians, sin
+from math import cos, sin
 
 from ..core import LegPlace, LegState, Spatial, SpatialInputs, SpatialModel, SpatialState
 from ..parameters import Parameters
-from ..quantities import azimuth
+from ..touchdown import leg_directions
 from .legs import NO_ENERGY, flat_state, leg_model, state_sizes
 from .spatial_flight import DeckMotion, SpatialFlight
 
@@ -52,13 +52,8 @@ def spatial_model(parameters: Parameters) -> SpatialModel:
 
 
 def spatial_places(parameters: Parameters) -> list[LegPlace]:
-    """Place of each leg: evenly round the body, with growing azimuths.
-
-    At heading 0 and with the default azimuth, four legs stand as in the mode 1-2-1.
-    """
-    legs = int(parameters.vehicle.legs)
-    first = parameters.vehicle.leg_azimuth / radians(1.0)
-    return [LegPlace(*azimuth(first + 360.0 * i / legs), 1.0) for i in range(legs)]
+    """Place of each leg."""
+    return [LegPlace(s, c, 1.0) for s, c in leg_directions(parameters).values()]
 
 
 def spatial_system(parameters: Parameters, kind: type[Spatial] = Spatial) -> Spatial:

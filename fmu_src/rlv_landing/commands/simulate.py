@@ -77,10 +77,11 @@ def simulate(output: Path | None, plot: Path | None, *, force: bool, **options: 
 def _landing(options: dict[str, Any]) -> Landing:
     """The landing that the options choose, at its start."""
     from ..choices import parse_pairs
-    from ..quantities import INPUTS_BY_NAME
+    from ..quantities import interface_of
 
     parameters = chosen_parameters(
         options["preset"], options["file"], options["mode"], options["pairs"]
     )
-    inputs = parse_pairs(options["inputs"], INPUTS_BY_NAME, "input")
+    interface = interface_of(parameters.drop.mode, int(parameters.vehicle.legs))
+    inputs = parse_pairs(options["inputs"], interface.inputs_by_name, "input")
     return Landing(parameters, rtol=options["rtol"], method=options["method"], inputs=inputs)

@@ -10,14 +10,14 @@ from ..core import Solver
 from ..errors import LandingError, unknown
 from ..interruptible import view
 from ..parameters import check_value
-from ..quantities import MODES, Interface, interface_of
+from ..quantities import MODES, SPACE, Interface, interface_of
 from .ground_way import Way, next_interval, reached, ways_of
 
-# the ground's positions whose rate is an input of its own, in a symmetric landing
-_PLANAR = interface_of(min(MODES))
+# the ground's positions whose rate is an input of its own, in every landing
 RATE_INPUTS = {
-    _PLANAR.input_names[i]: _PLANAR.input_names[j]
-    for i, j in zip(_PLANAR.positions, _PLANAR.position_rates)
+    interface.input_names[i]: interface.input_names[j]
+    for interface in (interface_of(SPACE), interface_of(min(MODES)))
+    for i, j in zip(interface.positions, interface.position_rates)
 }
 # values of the inputs, and their rates [unit/s], in the order of their quantities
 Setting = tuple[tuple[float, ...], tuple[float, ...]]

@@ -7,7 +7,7 @@ from identified ones. Lengths down from the CG are positive depths, as in the pa
 from .drop import Drop, Integration
 from .ground import Ground
 from .parameters import Parameters
-from .table import GROUPS, PARAMETER_QUANTITIES, check_value
+from .table import GROUPS, PARAMETER_QUANTITIES, check_value, parameters_of
 from .vehicle import AuxiliaryStrut, MainStrut, Vehicle
 
 __all__ = [
@@ -21,4 +21,5 @@ __all__ = [
     "Parameters",
     "Vehicle",
     "check_value",
+    "parameters_of",
 ]

@@ -122,7 +122,9 @@ class Parameters:
         by_mode = {mode: dict(own) for mode, own in self.by_mode.items()}
         sources = dict(self.sources)
         for mode, own in values.items():
-            self.for_mode(mode)._replaced(own, {})
+            # a vehicle of landings in space may have what no symmetric landing has
+            whole = self if mode in MODES and self.drop.mode == SPACE else self.for_mode(mode)
+            whole._replaced(own, {})
             by_mode.setdefault(mode, {}).update(own)
             sources.update({(mode, name): _source(name, source) for name in own})
         return replace(self, by_mode=by_mode, sources=sources)

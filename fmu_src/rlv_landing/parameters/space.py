@@ -16,6 +16,8 @@ ONLY_IN_SPACE = {
     Drop: ("heading", "roll", "roll_rate", "yaw_rate", "lateral_velocity"),
     Ground: ("slope_direction",),
 }
+# a symmetric landing may have them, and does not depend on them
+NO_EFFECT_IN_A_PLANE = ("vehicle.leg_azimuth", "vehicle.inertia_roll", "vehicle.inertia_yaw")
 
 
 def check_space(vehicle: Vehicle, drop: Drop, ground: Ground) -> None:

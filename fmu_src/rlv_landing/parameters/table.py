@@ -7,9 +7,10 @@ from math import isfinite, isinf
 from typing import Any, Literal, get_args, get_type_hints
 
 from ..errors import LandingError
-from ..quantities import Quantity
+from ..quantities import MODES, SPACE, Quantity
 from .drop import Drop, Integration
 from .ground import Ground
+from .space import NO_EFFECT_IN_A_PLANE, ONLY_IN_SPACE
 from .vehicle import AuxiliaryStrut, MainStrut, Vehicle
 
 GROUPS: dict[str, type] = {
@@ -40,6 +41,33 @@ PARAMETER_QUANTITIES: dict[str, Quantity] = _table()
 FIELDS: dict[str, tuple[str, str]] = {
     name: (name.split(".")[0], name.split(".")[1]) for name in PARAMETER_QUANTITIES
 }
+MODE = "drop.mode"
+
+
+def _with_modes(table: dict[str, Quantity], modes: tuple[str, ...]) -> dict[str, Quantity]:
+    """A table of parameters in which these are the modes to choose from."""
+    default = modes[0] if table[MODE].default not in modes else table[MODE].default
+    return {**table, MODE: replace(table[MODE], choices=modes, default=default)}
+
+
+IN_SPACE: dict[str, Quantity] = _with_modes(PARAMETER_QUANTITIES, (SPACE,))
+IN_A_PLANE: dict[str, Quantity] = _with_modes(
+    {
+        name: q
+        for name, q in PARAMETER_QUANTITIES.items()
+        if name not in NO_EFFECT_IN_A_PLANE
+        and FIELDS[name][1] not in ONLY_IN_SPACE.get(GROUPS[FIELDS[name][0]], ())
+    },
+    tuple(MODES),
+)
+
+
+def parameters_of(mode: str) -> dict[str, Quantity]:
+    """The parameters that a landing in space, or a symmetric one, depends on, by name.
+
+    `drop.mode` has the modes that have these parameters for choices.
+    """
+    return IN_SPACE if mode == SPACE else IN_A_PLANE
 
 
 def check_value(q: Quantity, value: Any) -> float | str:

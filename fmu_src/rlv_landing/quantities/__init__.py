@@ -31,6 +31,7 @@ from .outputs import (
 )
 from .peaks import PEAK_QUANTITIES, PEAKS, Peak
 from .quantity import BASE_UNITS, DISPLAY_UNITS, NOMINALS, Quantity, flat_name, shown, whole_name
+from .space import SPACE_INPUTS
 from .statistics import STATISTIC_QUANTITIES
 
 __all__ = [
@@ -55,6 +56,7 @@ __all__ = [
     "PEAK_QUANTITIES",
     "SHARED_QUANTITIES",
     "SPACE",
+    "SPACE_INPUTS",
     "STATISTIC_QUANTITIES",
     "STATUS_QUANTITIES",
     "Interface",

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 from .legs import LEGS
-from .outputs import OUTPUTS_BY_NAME
+from .outputs import OUTPUT_QUANTITIES
 from .quantity import Quantity
 
 
@@ -49,14 +50,22 @@ PEAKS_OF_A_LEG: tuple[tuple[str, tuple[Literal["min", "max"], ...]], ...] = (
     ("auxiliary_strut.force", ("min", "max")),
     ("contact.force", ("max",)),
 )
-PEAKS: tuple[Peak, ...] = (
-    _peak(OUTPUTS_BY_NAME["body.top_axial_acceleration"], "max"),
-    _peak(OUTPUTS_BY_NAME["status.stability_margin"], "min"),
-    *(
-        _peak(OUTPUTS_BY_NAME[f"leg[{leg}].{name}"], side)
-        for leg in LEGS
-        for name, sides in PEAKS_OF_A_LEG
-        for side in sides
-    ),
-)
+
+
+def peaks_of(outputs: Sequence[Quantity], legs: Sequence[int]) -> tuple[Peak, ...]:
+    """The extremes that an FMU with these `outputs` and numbers of `legs` gives."""
+    by_name = {q.name: q for q in outputs}
+    return (
+        _peak(by_name["body.top_axial_acceleration"], "max"),
+        _peak(by_name["status.stability_margin"], "min"),
+        *(
+            _peak(by_name[f"leg[{leg}].{name}"], side)
+            for leg in legs
+            for name, sides in PEAKS_OF_A_LEG
+            for side in sides
+        ),
+    )
+
+
+PEAKS: tuple[Peak, ...] = peaks_of(OUTPUT_QUANTITIES, LEGS)
 PEAK_QUANTITIES: tuple[Quantity, ...] = tuple(q for p in PEAKS for q in (p.value, p.time))

@@ -34,6 +34,7 @@ from rlv_landing.text.files import shown_name
 if TYPE_CHECKING:
     from rlv_landing.history import History
     from rlv_landing.parameters import Parameters
+    from rlv_landing.quantities import Quantity
 
     from ..fmu.input_table import Setting
 
@@ -246,14 +247,14 @@ def _landed(file: Path, options: dict[str, Any]) -> tuple[History, str]:
     """The landing that the options choose, with progress on a terminal; the model's name."""
     from rlv_landing.parameters import PARAMETER_QUANTITIES
 
-    from ..fmu.description import read_description, vehicle_of
+    from ..fmu.description import interface_in, read_description, vehicle_of
     from ..fmu.input_table import sloped
     from ..fmu.landing import land_fmu
 
     description = read_description(file)
     values = parse_pairs(options["pairs"], PARAMETER_QUANTITIES, "parameter")
     parameters: Parameters = vehicle_of(description, values)
-    inputs = _inputs(options["inputs"])
+    inputs = _inputs(options["inputs"], interface_in(description).inputs_by_name)
     if description.fmiVersion == "3.0" and (names := sloped(inputs)):
         print_warning(
             f"FMI 3.0 has no rates of inputs; {', '.join(names)} is set in steps of at most 1 ms, "
@@ -279,23 +280,25 @@ def _own_end(description: Any, file: Path) -> float:
     return float(end)
 
 
-def _inputs(given: tuple[str, ...]) -> list[Setting]:
+def _inputs(given: tuple[str, ...], inputs: dict[str, Quantity]) -> list[Setting]:
     """What is set: a table, and constant inputs beside it.
+
+    Args:
+        given: What is given of both.
+        inputs: The inputs that the FMU has, by name.
 
     Raises:
         LandingError: There are two tables, an input is in both, or one of them is wrong.
     """
-    from rlv_landing.quantities import INPUTS_BY_NAME
-
     from ..fmu.input_table import constants, read_inputs
 
     files = [text for text in given if "=" not in text]
     if len(files) > 1:
         raise LandingError(f"give one table of inputs, not {len(files)}; join them")
-    values = parse_pairs([text for text in given if "=" in text], INPUTS_BY_NAME, "input")
+    values = parse_pairs([text for text in given if "=" in text], inputs, "input")
     if not files:
         return constants(values) if values else []
-    table = read_inputs(Path(files[0]))
+    table = read_inputs(Path(files[0]), inputs)
     for name in values:
         if name in table.columns:
             raise LandingError(f"{name} is given as a constant and by {files[0]}; leave one")

@@ -22,7 +22,7 @@ from ..ros.arguments import ROS_COMMAND_SETTINGS, split_ros_args
 
 @click.command(context_settings=ROS_COMMAND_SETTINGS)
 @click.option(
-    "--mode", metavar="2-2|1-2-1", help="Landing mode. Default: the parameters' own (2-2)."
+    "--mode", metavar="2-2|1-2-1|space", help="Landing mode. Default: the parameters' own (2-2)."
 )
 @click.option(
     "--preset",

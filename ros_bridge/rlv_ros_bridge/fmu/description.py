@@ -13,13 +13,15 @@ from typing import Any, NamedTuple
 
 from rlv_landing import MODEL_NAME
 from rlv_landing.errors import LandingError, reason_of
-from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
+from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters, parameters_of
 from rlv_landing.quantities import (
-    INPUT_NAMES,
-    OUTPUT_NAMES,
-    PEAK_QUANTITIES,
+    LEGS,
+    MODES,
+    SPACE,
     STATISTIC_QUANTITIES,
+    Interface,
     flat_name,
+    interface_of,
     whole_name,
 )
 
@@ -33,12 +35,8 @@ LARGEST, LARGEST_DESCRIPTION = 1_000_000_000, 200_000_000
 DESCRIPTION = "modelDescription.xml"
 BUILD = "build ours by `rlv-landing fmu build`"
 FMI_VERSIONS = ("2.0", "3.0")
-NAMES = (
-    *OUTPUT_NAMES,
-    *INPUT_NAMES,
-    *PARAMETER_QUANTITIES,
-    *(q.name for q in (*STATISTIC_QUANTITIES, *PEAK_QUANTITIES)),
-)
+# an output that an FMU of landings in space has, and no other
+OF_SPACE = "body.q_w"
 
 
 class Place(NamedTuple):
@@ -140,15 +138,32 @@ def read_description(path: Path) -> Any:
     return description
 
 
-def places(
-    description: Any, path: Path, needed: Container[str] = frozenset(NAMES)
-) -> dict[str, Place]:
+def interface_in(description: Any) -> Interface:
+    """The inputs and outputs of our FMU."""
+    names = {v.name for v in description.modelVariables}
+    if OF_SPACE not in names and flat_name(OF_SPACE) not in names:
+        return interface_of(min(MODES))
+    return interface_of(SPACE, int(start_values(description).get("vehicle.legs", len(LEGS))))
+
+
+def names_of(interface: Interface) -> tuple[str, ...]:
+    """The quantities that an FMU with this interface has."""
+    return (
+        *interface.output_names,
+        *interface.input_names,
+        *parameters_of(SPACE if interface.in_space else min(MODES)),
+        *(q.name for q in (*STATISTIC_QUANTITIES, *interface.peak_quantities)),
+    )
+
+
+def places(description: Any, path: Path, needed: Container[str] | None = None) -> dict[str, Place]:
     """Where our FMU has each quantity, by our names, also where its own are flat or arrays.
 
     Args:
         description: Its description.
         path: Its file, for the error.
-        needed: The quantities that it must have. Those of other versions may lack others.
+        needed: The quantities that it must have; None: all. Those of other versions may lack
+            others.
 
     Raises:
         LandingError: It lacks a needed variable: it is of another version.
@@ -156,13 +171,14 @@ def places(
     known = {v.name: v for v in description.modelVariables}
     found: dict[str, Place] = {}
     arrays = description.fmiVersion == "3.0"
-    own_names = [_own_name(name, known, arrays=arrays) for name in NAMES]
+    names = names_of(interface_in(description))
+    own_names = [_own_name(name, known, arrays=arrays) for name in names]
     sizes, seen = Counter(own_names), Counter[str]()
-    for name, own in zip(NAMES, own_names):
+    for name, own in zip(names, own_names):
         if own in known and _size(known[own]) == sizes[own]:
             found[name] = Place(known[own].valueReference, seen[own], sizes[own])
             seen[own] += 1
-        elif name in needed:
+        elif needed is None or name in needed:
             raise without(path, description.version, name)
     return found
 

@@ -11,6 +11,7 @@ from typing import Any
 
 from rlv_landing.errors import LandingError
 from rlv_landing.parameters import Parameters
+from rlv_landing.quantities import SPACE
 from rlv_landing.tables.rendering import new_table, render
 from rlv_landing.touchdown import footpad_at_rest
 
@@ -165,7 +166,7 @@ def _short(kind: str, start: Any) -> str:
 def _vehicle(p: Parameters) -> dict[str, float | str]:
     radius, height = footpad_at_rest(p)
     return {
-        "mass with footpads [kg]": p.vehicle.mass + 4.0 * p.vehicle.footpad_mass,
+        "mass with footpads [kg]": p.vehicle.mass + p.vehicle.legs * p.vehicle.footpad_mass,
         "pitch inertia of the body [kg.m2]": p.vehicle.inertia,
         "footpads' radius, legs extended [m]": radius,
         "CG above the footpads [m]": -height,
@@ -177,4 +178,16 @@ def _vehicle(p: Parameters) -> dict[str, float | str]:
         "horizontal velocity then [m/s]": p.drop.horizontal_velocity,
         "tilt then [deg]": degrees(p.drop.tilt),
         "pitch rate then [deg/s]": degrees(p.drop.pitch_rate),
+        **(_in_space(p) if p.drop.mode == SPACE else {}),
+    }
+
+
+def _in_space(p: Parameters) -> dict[str, float | str]:
+    return {
+        "legs": p.vehicle.legs,
+        "heading then [deg]": degrees(p.drop.heading),
+        "roll then [deg]": degrees(p.drop.roll),
+        "velocity across then [m/s]": p.drop.lateral_velocity,
+        "roll rate then [deg/s]": degrees(p.drop.roll_rate),
+        "yaw rate then [deg/s]": degrees(p.drop.yaw_rate),
     }

@@ -70,8 +70,12 @@ class InputTable:
         return rates
 
 
-def read_inputs(path: Path) -> InputTable:
+def read_inputs(path: Path, inputs: Mapping[str, Quantity] = INPUTS_BY_NAME) -> InputTable:
     """The table in a CSV file, see this module's docstring.
+
+    Args:
+        path: The file.
+        inputs: The inputs that there are, by name.
 
     Raises:
         LandingError: The file is missing or cannot be read, a column is missing, unknown or
@@ -83,10 +87,10 @@ def read_inputs(path: Path) -> InputTable:
     rows: list[list[float]] = []
     for line, cells in read_csv(path, "table of inputs"):
         if not names:
-            names, units = _headings(path, cells)
+            names, units = _headings(path, cells, inputs)
             continue
         try:
-            rows.append(_values(names, units, cells))
+            rows.append(_values([inputs.get(name, TIME) for name in names], units, cells))
             if len(rows) > 1 and rows[-1][0] < rows[-2][0]:
                 raise LandingError(
                     f"time = {rows[-1][0]:g} s comes after {rows[-2][0]:g} s; sort the rows by time"
@@ -99,14 +103,16 @@ def read_inputs(path: Path) -> InputTable:
     return InputTable([row[0] for row in rows], {names[i]: [row[i] for row in rows] for i in order})
 
 
-def _headings(path: Path, cells: list[str]) -> tuple[list[str], list[Unit]]:
+def _headings(
+    path: Path, cells: list[str], inputs: Mapping[str, Quantity]
+) -> tuple[list[str], list[Unit]]:
     names, units = [], []
     for heading in cells:
         name, unit = split_heading(heading)
         try:
-            if name != TIME.name and name not in INPUTS_BY_NAME:
-                raise unknown("input", name, [TIME.name, *INPUTS_BY_NAME])
-            units.append(unit_of(INPUTS_BY_NAME.get(name, TIME), unit))
+            if name != TIME.name and name not in inputs:
+                raise unknown("input", name, [TIME.name, *inputs])
+            units.append(unit_of(inputs.get(name, TIME), unit))
         except LandingError as e:
             raise LandingError(f"{path}, column {heading!r}: {e}") from None
         if name in names:
@@ -120,18 +126,17 @@ def _headings(path: Path, cells: list[str]) -> tuple[list[str], list[Unit]]:
     return names, units
 
 
-def _values(names: list[str], units: list[Unit], cells: list[str]) -> list[float]:
-    check_row(cells, names)
+def _values(quantities: list[Quantity], units: list[Unit], cells: list[str]) -> list[float]:
+    check_row(cells, [q.name for q in quantities])
     values = []
-    for name, unit, text in zip(names, units, cells):
-        q = INPUTS_BY_NAME.get(name, TIME)
+    for q, unit, text in zip(quantities, units, cells):
         try:
             number = parse_number(text.strip())
         except UnitError as e:
-            raise LandingError(f"{name} = {text.strip()!r} is no number: {e}") from None
+            raise LandingError(f"{q.name} = {text.strip()!r} is no number: {e}") from None
         value = float(check_value(q, number_in_si(q, number, unit)))
         if not isfinite(value):
-            raise LandingError(f"{name} = {value:g} {q.unit} must be finite")
+            raise LandingError(f"{q.name} = {value:g} {q.unit} must be finite")
         values.append(value)
     return values
 

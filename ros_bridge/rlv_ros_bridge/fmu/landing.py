@@ -11,7 +11,7 @@ import numpy as np
 from rlv_landing.effort import check_duration
 from rlv_landing.history import History
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import OUTPUT_NAMES
+from rlv_landing.quantities import interface_of
 from rlv_landing.sampling import sample_count
 
 from .input_table import Setting, in_steps, sloped
@@ -49,9 +49,10 @@ def land_fmu(
     Raises:
         LandingError: A time is out of bounds, or the FMU does not load, or refuses with its reason.
     """
-    count = sample_count(0.0, until, every, len(OUTPUT_NAMES), costs=(0.0, SECONDS_PER_SAMPLE))
+    names = interface_of(parameters.drop.mode, int(parameters.vehicle.legs)).output_names
+    count = sample_count(0.0, until, every, len(names), costs=(0.0, SECONDS_PER_SAMPLE))
     times = [k * every for k in range(count)]
-    rows = np.empty((len(times), len(OUTPUT_NAMES)))
+    rows = np.empty((len(times), len(names)))
     with FmuRunner(path, dict(parameters.items())) as runner:
         settings = iter(inputs)
         if sloped(inputs) and not runner.takes_rates:
@@ -74,7 +75,7 @@ def land_fmu(
             if progress is not None:
                 progress(time)
         found = {name.removeprefix("peak."): peak for name, peak in runner.peaks().items()}
-    history = History(np.array(times), OUTPUT_NAMES, rows, parameters)
+    history = History(np.array(times), names, rows, parameters)
     history.extremes = known_extremes(found, history)
     return history
 

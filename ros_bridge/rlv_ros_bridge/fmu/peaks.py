@@ -7,8 +7,10 @@ from math import nan
 
 from rlv_landing.history import History
 from rlv_landing.outputs import Extreme
-from rlv_landing.quantities import PEAKS
+from rlv_landing.quantities import MOST_LEGS, SPACE, interface_of
 
+# the outputs that an FMU gives peaks of, with the most legs
+OUTPUTS = tuple(dict.fromkeys(p.output for p in interface_of(SPACE, MOST_LEGS).peaks))
 # value [SI] and time [s]
 Found = tuple[float, float]
 
@@ -25,7 +27,7 @@ def known_extremes(
         history: The samples; None: what is not known is NaN.
     """
     extremes: dict[str, Extreme] = {}
-    for output in dict.fromkeys(p.output for p in PEAKS):
+    for output in OUTPUTS:
         low, high = found.get(f"{output}.min"), found.get(f"{output}.max")
         if low is None and high is None:
             continue

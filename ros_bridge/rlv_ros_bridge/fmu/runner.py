@@ -12,18 +12,11 @@ from typing import Any, NoReturn, TypeVar
 
 from rlv_landing import MODEL_NAME
 from rlv_landing.errors import LandingError, unknown
-from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.quantities import (
-    INPUT_NAMES,
-    OUTPUT_NAMES,
-    OUTPUT_QUANTITIES,
-    PEAK_QUANTITIES,
-    PEAKS,
-    STATISTIC_QUANTITIES,
-)
+from rlv_landing.parameters import PARAMETER_QUANTITIES, parameters_of
+from rlv_landing.quantities import MODES, SPACE, STATISTIC_QUANTITIES, Interface
 from rlv_landing.text.durable import writing
 
-from .description import NAMES, check_size, places, read_description, without
+from .description import check_size, interface_in, places, read_description, without
 from .fmi2 import Fmi2
 from .fmi3 import Fmi3, with_ground_rates
 from .folder import ProcessFolder
@@ -42,11 +35,12 @@ class FmuRunner:
     Args:
         fmu_path: the `.fmu` file.
         values: parameters by name, SI; others keep the FMU's defaults.
-        needed: quantities that the FMU must have. One of an older version may lack others;
-            parameters that it lacks must have their defaults.
+        needed: quantities that the FMU must have; None: all of its interface. One of an older
+            version may lack others; parameters that it lacks must have their defaults.
 
     Attributes:
-        output_names: the outputs of `values()`: `OUTPUT_NAMES`, without those that it lacks.
+        interface: its inputs and outputs.
+        output_names: the outputs of `values()`: those of its interface that it has.
 
     Raises:
         LandingError: no such file, not an FMU, another model, an unknown parameter, or one that the
@@ -57,7 +51,7 @@ class FmuRunner:
         self,
         fmu_path: str | Path,
         values: Mapping[str, float | str],
-        needed: Container[str] = frozenset(NAMES),
+        needed: Container[str] | None = None,
     ) -> None:
         self.path = Path(fmu_path)
         self._messages: list[tuple[int, str]] = []
@@ -71,7 +65,9 @@ class FmuRunner:
         self.version: str = description.version or ""
         self.made_by: str = description.generationTool or ""
         self._places = places(description, self.path, needed)
-        self.output_names = tuple(name for name in OUTPUT_NAMES if name in self._places)
+        self.interface: Interface = interface_in(description)
+        names = self.interface.output_names
+        self.output_names = tuple(name for name in names if name in self._places)
         try:
             self._instantiate(description, self._own_parameters(values))
             self._prepare_outputs()
@@ -80,14 +76,18 @@ class FmuRunner:
             raise
 
     def _own_parameters(self, values: Mapping[str, float | str]) -> dict[str, float | str]:
-        """The parameters without the defaults of those that the FMU lacks."""
+        """The parameters without the defaults of those that the FMU lacks.
+
+        Without those of landings in space, too, where it is of others, which they do not change.
+        """
         own = {}
+        counting = parameters_of(SPACE if self.interface.in_space else min(MODES))
         for name, value in values.items():
             if name not in PARAMETER_QUANTITIES:
                 raise unknown("parameter", name, PARAMETER_QUANTITIES)
             if name in self._places:
                 own[name] = value
-            elif value != PARAMETER_QUANTITIES[name].default:
+            elif name in counting and value != PARAMETER_QUANTITIES[name].default:
                 raise without(self.path, self.version, name)
         return own
 
@@ -128,7 +128,7 @@ class FmuRunner:
         return reader.values()
 
     def _prepare_outputs(self) -> None:
-        kinds = {q.name: q.kind for q in OUTPUT_QUANTITIES}
+        kinds = {q.name: q.kind for q in self.interface.outputs}
         for k, kind in enumerate(("real", "integer", "boolean")):
             indices = [i for i, name in enumerate(self.output_names) if kinds[name] == kind]
             self._readers.append(self._reader(kind, [self.output_names[i] for i in indices]))
@@ -220,13 +220,13 @@ class FmuRunner:
         Raises:
             LandingError: the FMU refuses, or has been freed.
         """
-        names = [q.name for q in PEAK_QUANTITIES if q.name in self._places]
+        names = [q.name for q in self.interface.peak_quantities if q.name in self._places]
         if not names:
             return {}
         values = dict(zip(names, self._read(self._reader("real", names))))
         return {
             p.value.name: (values[p.value.name], values[p.time.name])
-            for p in PEAKS
+            for p in self.interface.peaks
             if p.value.name in values
         }
 
@@ -253,8 +253,8 @@ class FmuRunner:
                 FMU refuses a value.
         """
         for name in (*inputs, *(rates or {})):
-            if name not in INPUT_NAMES:
-                raise unknown("input", name, INPUT_NAMES)
+            if name not in self.interface.input_names:
+                raise unknown("input", name, self.interface.input_names)
             if name not in self._places:
                 raise without(self.path, self.version, name)
         instance = self._own()

@@ -18,15 +18,14 @@ from rlv_landing.history import History
 from rlv_landing.text.units import parse_number
 
 from ..fmu.peaks import Found, known_extremes
-from ..messages.columns import READINGS
-from ..messages.topics import RECORDED, resolve
+from ..messages.columns import readings_of
+from ..messages.topics import resolve, topics_of
 from .bag_reader import open_log
 from .instants import OrderError, RowChoice, instants
 from .lost import lost_text
 from .peaks import read_peaks
 from .reader import Decoder, LogReader
 
-TYPES = {t.name: t.type_name for t in RECORDED}
 # Rows of a part of a history.
 ROWS_AT_ONCE = 1000
 Result = TypeVar("Result")
@@ -82,17 +81,20 @@ def drawn_history(
     def read(parts: HistoryParts) -> tuple[History, list[str]]:
         return parts.complete(thinned(parts, shown)), parts.notes()
 
-    needed = [
-        relative
-        for relative, (names, _) in READINGS.items()
-        if columns is None or not columns.isdisjoint(names)
-    ]
-    return with_parts(reader, needed if columns is not None else (), choice or RowChoice(), read)
+    def needed() -> list[str]:
+        return [
+            relative
+            for relative, (names, _) in readings_of(reader.interface).items()
+            if columns is None or not columns.isdisjoint(names)
+        ]
+
+    topics = needed if columns is not None else ()
+    return with_parts(reader, topics, choice or RowChoice(), read)
 
 
 def with_parts(
     reader: LogReader,
-    topics: Sequence[str],
+    topics: Sequence[str] | Callable[[], Sequence[str]],
     choice: RowChoice,
     use: Callable[[HistoryParts], Result],
 ) -> Result:
@@ -104,13 +106,13 @@ def with_parts(
 
     Args:
         reader: the log.
-        topics: as in `log_history`.
+        topics: as in `log_history`, or what gives them when the log's start has been read.
         choice: the rows to take; it is reset.
         use: what to do.
     """
     if not reader.read_summary():
         reader.read_through()
-    chosen = choose_topics(reader, topics)
+    chosen = choose_topics(reader, topics() if callable(topics) else topics)
     try:
         choice.reset()
         return use(HistoryParts(reader, chosen, choice, ROWS_AT_ONCE))
@@ -134,11 +136,12 @@ class HistoryParts:
     ) -> None:
         self._reader, self._chosen, self._choice, self._size = reader, chosen, choice, size
         self._incomplete = 0
+        self._readings = readings_of(reader.interface)
         self.names = [
             name
-            for relative in READINGS
+            for relative, (names, _) in self._readings.items()
             if relative in chosen.values()
-            for name in READINGS[relative][0]
+            for name in names
         ]
         self.parameters = reader.parameters()
 
@@ -163,7 +166,7 @@ class HistoryParts:
                 continue
             row: dict[str, float] = {}
             for topic, message in messages.items():
-                columns, reading = READINGS[self._chosen[topic]]
+                columns, reading = self._readings[self._chosen[topic]]
                 row.update(zip(columns, decode.read(message, _floats_of(reading))))
             times.append(time)
             stamps.append(nanoseconds)
@@ -216,11 +219,13 @@ def _floats_of(reading: Callable[[Any], Iterable[Any]]) -> Callable[[Any], list[
 
 def choose_topics(reader: LogReader, topics: Sequence[str]) -> dict[str, str]:
     """The topics to read: full name -> name relative to the landing's namespace."""
-    full = {resolve(reader.namespace, relative): relative for relative in READINGS}
+    interface = reader.interface
+    types = {t.name: t.type_name for t in topics_of(interface.legs).sampled}
+    full = {resolve(reader.namespace, name): name for name in readings_of(interface)}
     readable = {
         name: relative
         for name, relative in full.items()
-        if name in reader.channels and reader.channels[name].type_name == TYPES[relative]
+        if name in reader.channels and reader.channels[name].type_name == types[relative]
     }
     if not topics:
         missing = [name for name in full if name not in readable]

@@ -10,6 +10,7 @@ from datetime import datetime, timezone
 from typing import Any
 
 from rlv_landing.errors import LandingError, one_line
+from rlv_landing.quantities import LEGS
 from rlv_landing.summary import OUTCOMES, unfinished
 from rlv_landing.tables.landing import decimals
 from rlv_landing.text.terminal import legible_lines
@@ -188,13 +189,21 @@ def _leg_row(leg: Mapping[str, Any]) -> tuple[str, ...]:
     )
 
 
+def _legs(reader: LogReader) -> tuple[int, ...]:
+    """The numbers of the vehicle's legs; four where the log's parameters cannot be read."""
+    try:
+        return reader.interface.legs
+    except LandingError:
+        return LEGS
+
+
 def log_info(reader: LogReader, *, check: bool = False) -> LogInfo:
     """Summarises the log by its summary and its record of the landing.
 
     A log that lacks one of them is read through, as is each log with `check`.
     """
     if not check and reader.read_summary():
-        if (landing := read_landing(reader.landing)) is not None:
+        if (landing := read_landing(reader.landing, _legs(reader))) is not None:
             return _by_summary(reader, landing=landing)
         try:
             choose_topics(reader, ())

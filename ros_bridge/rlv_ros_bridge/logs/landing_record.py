@@ -18,7 +18,7 @@ from rlv_landing.core import Phase
 from rlv_landing.errors import LandingError
 from rlv_landing.history import History
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import LEGS, OUTPUT_NAMES
+from rlv_landing.quantities import LEGS, interface_of
 from rlv_landing.summary import OUTCOMES, summarise
 from rlv_landing.validation.first_stroke import State
 from rlv_landing.validation.paper import reading_of
@@ -30,17 +30,10 @@ LANDING = "landing"
 # Samples that are kept for it: those of a minute in steps of 1 ms. A landing is over by then; of
 # one whose legs are not at rest, or do not touch until then, there is no such record.
 MOST_SAMPLES = 60_000
-COLUMNS: tuple[str, ...] = (
-    *(
-        f"leg[{leg}].{name}"
-        for leg in LEGS
-        for name in ("main_strut.force", "main_strut.stroke", "contact.force_y")
-    ),
-    "body.top_axial_acceleration",
-)
-PHASE = OUTPUT_NAMES.index("status.phase")
+PHASE = "status.phase"
 # names of the phases, as in `/diagnostics`, in the order of `rlv_landing.summary.OUTCOMES`
 PHASES = tuple(phase.name.lower() for phase in Phase)
+OF_A_LEG = ("main_strut.force", "main_strut.stroke", "contact.force_y")
 ENDED = ("complete", "not compressed")
 # A text longer than this is none of it [characters].
 LONGEST = 64 * 1024
@@ -87,16 +80,23 @@ class LandingRows:
 
     def __init__(self, parameters: Parameters) -> None:
         self._parameters = parameters
-        self._columns_of = itemgetter(*(OUTPUT_NAMES.index(name) for name in COLUMNS))
+        interface = interface_of(parameters.drop.mode, int(parameters.vehicle.legs))
+        self._columns = (
+            *(f"leg[{leg}].{name}" for leg in interface.legs for name in OF_A_LEG),
+            "body.top_axial_acceleration",
+        )
+        places = interface.output_names.index
+        self._columns_of = itemgetter(*map(places, self._columns))
+        self._phase_at = places(PHASE)
         self._rows = array("d")
         self._times = array("d")
         self._phase = 0
         self._last = 0.0
 
     def add(self, time: float, values: Sequence[float]) -> None:
-        """Adds the sample at `time` [s]: all outputs, in the order of `OUTPUT_NAMES`."""
+        """Adds the sample at `time` [s]: all outputs, in the order of the interface."""
         self._last = time
-        self._phase = int(values[PHASE])
+        self._phase = int(values[self._phase_at])
         if len(self._times) < MOST_SAMPLES:
             self._times.append(time)
             self._rows.extend(self._columns_of(values))
@@ -110,8 +110,8 @@ class LandingRows:
         if not self._times:
             return {}
         time = np.array(self._times)
-        data = np.array(self._rows).reshape(len(time), len(COLUMNS))
-        history = History(time, COLUMNS, data, self._parameters)
+        data = np.array(self._rows).reshape(len(time), len(self._columns))
+        history = History(time, self._columns, data, self._parameters)
         history.extremes = known_extremes(peaks, history)
         try:
             landing = landing_summary(history, OUTCOMES[self._phase])
@@ -132,18 +132,19 @@ def _is_over(landing: Mapping[str, Any]) -> bool:
     )
 
 
-def read_landing(texts: Mapping[str, str]) -> dict[str, Any] | None:
+def read_landing(texts: Mapping[str, str], legs: Sequence[int] = LEGS) -> dict[str, Any] | None:
     """The summary in the record; None where there is none of its layout.
 
     Args:
         texts: the record.
+        legs: the numbers of the vehicle's legs.
     """
     if len(texts.get(LANDING, "")) > LONGEST:
         return None
     try:
         landing = json.loads(texts[LANDING])
         numbers = [landing["end_time"], landing["top_axial_acceleration_max"]]
-        for number, leg in zip(LEGS, landing["legs"], strict=True):
+        for number, leg in zip(legs, landing["legs"], strict=True):
             numbers += [leg[name] for name in LEG_NUMBERS]
             numbers += [leg[name] for name in LEG_OPTIONAL if leg.get(name) is not None]
             numbers += [leg["main_strut_stroke_max_time"]]
@@ -153,7 +154,7 @@ def read_landing(texts: Mapping[str, str]) -> dict[str, Any] | None:
                 return None
         if landing["outcome"] not in OUTCOMES or landing["peaks_of"] not in ("landing", "samples"):
             return None
-        if not set(landing["bottomed_out"]) <= set(LEGS):
+        if not set(landing["bottomed_out"]) <= set(legs):
             return None
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return None

@@ -1,8 +1,8 @@
 """A log's record of the landing's true peaks, which its messages lack between their times.
 
-It is a metadata record at the log's end. For each peak of `rlv_landing.quantities.PEAKS` it has, by
-the output's name with `.min` or `.max`, a JSON object of `value` and `unit` (SI, the FMU's axes)
-and `time` [s]. `until` is the time [s] until which they hold.
+It is a metadata record at the log's end. For each of the landing's `Interface.peaks` it has, by the
+output's name with `.min` or `.max`, a JSON object of `value` and `unit` (SI, the FMU's axes) and
+`time` [s]. `until` is the time [s] until which they hold.
 """
 
 from __future__ import annotations
@@ -13,12 +13,17 @@ from math import isfinite
 
 from rlv_landing import Landing
 from rlv_landing.errors import LandingError
-from rlv_landing.quantities import PEAKS
+from rlv_landing.quantities import MOST_LEGS, SPACE, interface_of
 
 from ..fmu.peaks import Found
 
 RECORD = "rlv_landing_peaks"
 UNTIL = "until"
+# name of a peak's variable -> `OUTPUT.SIDE` and unit, of the most legs
+KNOWN = {
+    p.value.name: (f"{p.output}.{p.side}", p.value.unit)
+    for p in interface_of(SPACE, MOST_LEGS).peaks
+}
 
 
 def peak_texts(found: Mapping[str, Found], until: float) -> dict[str, str]:
@@ -29,11 +34,9 @@ def peak_texts(found: Mapping[str, Found], until: float) -> dict[str, str]:
         until: the time until which they hold [s].
     """
     texts = {UNTIL: repr(until)}
-    for peak in PEAKS:
-        value, time = found[peak.value.name]
-        texts[f"{peak.output}.{peak.side}"] = json.dumps(
-            {"value": value, "unit": peak.value.unit, "time": time}
-        )
+    for variable, (value, time) in found.items():
+        name, unit = KNOWN[variable]
+        texts[name] = json.dumps({"value": value, "unit": unit, "time": time})
     return texts
 
 
@@ -42,7 +45,7 @@ def landing_peaks(landing: Landing) -> dict[str, Found]:
     extremes = landing.extremes()
     return {
         p.value.name: extremes[p.output][:2] if p.side == "min" else extremes[p.output][2:]
-        for p in PEAKS
+        for p in landing.interface.peaks
     }
 
 
@@ -62,8 +65,7 @@ def read_peaks(texts: Mapping[str, str], where: str) -> tuple[dict[str, Found], 
     name = UNTIL
     try:
         until = _finite(json.loads(texts[UNTIL]))
-        for peak in PEAKS:
-            name = f"{peak.output}.{peak.side}"
+        for name, _ in KNOWN.values():
             if name in texts:
                 record = json.loads(texts[name])
                 found[name] = _finite(record["value"]), _finite(record["time"])

@@ -10,7 +10,9 @@ from typing import Any, TypeVar
 
 from rlv_landing.errors import LandingError, reason_of, unknown
 from rlv_landing.parameters import Parameters
+from rlv_landing.quantities import Interface, interface_of
 
+from ..messages.fields import IN_A_PLANE
 from ..messages.topics import STRUTS
 from .landing_record import RECORD as LANDING_RECORD
 from .log_files import check_file, find_files
@@ -234,6 +236,14 @@ class LogReader:
                 f"{name} has {len(data)} bytes, more than the {LARGEST_DEFINITION} of any vehicle"
             )
         return parse_toml(data.decode("utf-8", "replace"), name)
+
+    @property
+    def interface(self) -> Interface:
+        """Inputs and outputs of the log's landing; a symmetric one's where it has no parameters."""
+        own = self.parameters()
+        if own is None:
+            return IN_A_PLANE
+        return interface_of(own.drop.mode, int(own.vehicle.legs))
 
 
 class Definitions:

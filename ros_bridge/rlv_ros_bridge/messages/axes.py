@@ -8,6 +8,9 @@ from __future__ import annotations
 
 from math import cos, sin
 
+from rlv_landing.core.records import Vector
+from rlv_landing.core.vectors import added, cross, rotation, to_body, to_inertial
+
 # The coordinate across the body's plane. With this sign it turns into 0.0, not -0.0.
 IN_PLANE = -0.0
 
@@ -95,3 +98,66 @@ def in_plane(path: str) -> tuple[str, str]:
 def about_pitch(path: str) -> tuple[str]:
     """The field that a turn or moment in the pitch's sense is in the vector at `path`."""
     return (f"{path}.y",)
+
+
+def ros_quaternion(w: float, x: float, y: float, z: float) -> tuple[float, float, float, float]:
+    """The attitude (x, y, z, w) in ROS axes of a body at the paper's quaternion; exact."""
+    return *to_ros(x, y, z), w
+
+
+def paper_quaternion(x: float, y: float, z: float, w: float) -> tuple[float, float, float, float]:
+    """The inverse of `ros_quaternion`."""
+    return w, *from_ros(x, y, z)
+
+
+def in_map(x: float, y: float, z: float, *quaternion: float) -> tuple[float, float, float]:
+    """A vector of the body's frame in that of the map, ROS axes.
+
+    Args:
+        x: in the paper's axes.
+        y: in the paper's axes.
+        z: in the paper's axes.
+        quaternion: the body's attitude w, x, y, z in the paper's axes.
+    """
+    return to_ros(*to_inertial(rotation(*quaternion), Vector(x, y, z)))
+
+
+def in_body(x: float, y: float, z: float, *quaternion: float) -> tuple[float, float, float]:
+    """A vector of the map in the body's frame, ROS axes; arguments as of `in_map`."""
+    return to_ros(*to_body(rotation(*quaternion), Vector(x, y, z)))
+
+
+def spatial_specific_force(
+    ax: float, ay: float, az: float, *attitude_and_gravity: float
+) -> tuple[float, float, float]:
+    """What an accelerometer at the CG of a body in space feels, in the body's frame. Derived.
+
+    Args:
+        ax: acceleration of the CG in the paper's axes [m/s2].
+        ay: up [m/s2].
+        az: to the right [m/s2].
+        attitude_and_gravity: the quaternion w, x, y, z, and the gravitational acceleration [m/s2].
+
+    Returns:
+        x, y, z in ROS axes [m/s2].
+    """
+    *quaternion, gravity = attitude_and_gravity
+    return in_body(ax, ay + gravity, az, *quaternion)
+
+
+def spatial_top_specific_force(*numbers: float) -> tuple[float, float, float]:
+    """What an accelerometer at the top of a body in space feels, in the body's frame. Derived.
+
+    Args:
+        numbers: acceleration of the CG x, y, z [m/s2], the quaternion w, x, y, z, angular velocity
+            [rad/s] and angular acceleration [rad/s2] in body axes, all in the paper's axes; the
+            gravitational acceleration [m/s2], and the sensor's height above the CG [m].
+
+    Returns:
+        x, y, z in ROS axes [m/s2].
+    """
+    gravity, height = numbers[13:]
+    up, spin, turning = Vector(0.0, height, 0.0), Vector(*numbers[7:10]), Vector(*numbers[10:13])
+    by_turning = to_ros(*added(cross(turning, up), cross(spin, cross(spin, up))))
+    x, y, z = spatial_specific_force(*numbers[:7], gravity)
+    return x + by_turning[0], y + by_turning[1], z + by_turning[2]

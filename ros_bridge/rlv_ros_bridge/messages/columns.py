@@ -1,19 +1,22 @@
 """Reads the model's outputs back from messages, digit for digit: the inverse of `samples.py`.
 
-Made from `fields.FIELDS`. Needs no ROS 2: a message is anything with the fields of the ROS message,
-rclpy's own object or one decoded from a log.
+Made from the table of fields. Needs no ROS 2: a message is anything with the fields of the ROS
+message, rclpy's own object or one decoded from a log.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from operator import attrgetter
 from typing import Any
 
 from rlv_landing.errors import LandingError
+from rlv_landing.quantities import Interface
 
-from .fields import TOPIC_FIELDS, Conversion, Field, split
-from .topics import JOINTS, STRUTS
+from .fields import IN_A_PLANE, Conversion, Field
+from .tables import split, table_of
+from .topics import STRUTS
 
 Reading = Callable[[Any], Sequence[float]]
 
@@ -36,15 +39,17 @@ def _getter(path: str) -> Callable[[Any], float]:
     return element
 
 
-def _check_joints(message: Any) -> None:
-    if tuple(message.name) != JOINTS:
+def _check_joints(message: Any, joints: tuple[str, ...]) -> None:
+    if tuple(message.name) != joints:
         raise LandingError(
             f"the log's struts are called {', '.join(message.name)}; "
-            f"a landing's are {', '.join(JOINTS)}"
+            f"a landing's are {', '.join(joints)}"
         )
 
 
-def _reading(topic: str, fields: Sequence[Field]) -> tuple[tuple[str, ...], Reading]:
+def _reading(
+    topic: str, fields: Sequence[Field], joints: tuple[str, ...]
+) -> tuple[tuple[str, ...], Reading]:
     """The outputs that are read back from the messages of `topic`, and how."""
     reads: list[tuple[Conversion, list[Callable[[Any], float]]]] = [
         (f.read, [_getter(path) for path in f.paths]) for f in fields if f.read is not None
@@ -53,7 +58,7 @@ def _reading(topic: str, fields: Sequence[Field]) -> tuple[tuple[str, ...], Read
 
     def read(message: Any) -> list[float]:
         if topic == STRUTS.name:
-            _check_joints(message)
+            _check_joints(message, joints)
         return [
             number
             for convert, getters in reads
@@ -65,27 +70,41 @@ def _reading(topic: str, fields: Sequence[Field]) -> tuple[tuple[str, ...], Read
 
 # Relative topic name -> the outputs that are read back from its messages, and how. A reading raises
 # LandingError for struts of another vehicle.
-READINGS: dict[str, tuple[tuple[str, ...], Reading]] = {
-    topic: _reading(topic, fields)
-    for topic, fields in TOPIC_FIELDS.items()
-    if any(f.read is not None for f in fields)
-}
+Readings = Mapping[str, tuple[tuple[str, ...], Reading]]
 
+
+@cache
+def readings_of(interface: Interface) -> Readings:
+    """How the outputs of a landing with this interface are read back."""
+    table = table_of(interface)
+    return {
+        topic: _reading(topic, fields, table.topics.joints)
+        for topic, fields in table.fields_of.items()
+        if any(f.read is not None for f in fields)
+    }
+
+
+# Those of symmetric landings.
+READINGS: Readings = readings_of(IN_A_PLANE)
 COLUMN_NAMES: tuple[str, ...] = tuple(name for names, _ in READINGS.values() for name in names)
 
 
-def sample_columns(messages: Mapping[str, Any]) -> dict[str, float]:
+def sample_columns(
+    messages: Mapping[str, Any], interface: Interface = IN_A_PLANE
+) -> dict[str, float]:
     """The outputs that the messages of one instant carry.
 
     Args:
         messages: relative topic name -> message. Topics without outputs are passed over.
+        interface: the landing's.
 
     Returns:
         Output name -> value, SI, the paper's axes.
     """
     values: dict[str, float] = {}
+    readings = readings_of(interface)
     for topic, message in messages.items():
-        if topic in READINGS:
-            names, read = READINGS[topic]
+        if topic in readings:
+            names, read = readings[topic]
             values.update(zip(names, read(message)))
     return values

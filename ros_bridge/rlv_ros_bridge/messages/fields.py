@@ -1,4 +1,4 @@
-"""`FIELDS`, the table of the outputs that the fields of messages carry.
+"""The table of the outputs that the fields of messages carry: `FIELDS`, and in space `in_space`.
 
 Messages are filled and packed by it (`samples.py`) and read back (`columns.py`), and `log verify`
 compares logs with it (`expected_fields`). A line here adds an output to a message. Needs no ROS 2.
@@ -6,20 +6,23 @@ compares logs with it (`expected_fields`). A line here adds an output to a messa
 
 from __future__ import annotations
 
-import re
-from array import array
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import LEGS, OUTPUT_NAMES
+from rlv_landing.quantities import LEGS, MODES, Interface, interface_of
 
 from .axes import (
     about_pitch,
     from_ros,
+    in_body,
+    in_map,
     in_plane,
+    paper_quaternion,
     pitch_quaternion,
+    ros_quaternion,
+    spatial_specific_force,
+    spatial_top_specific_force,
     specific_force,
     to_ros,
     top_specific_force,
@@ -29,30 +32,21 @@ from .axes import (
 )
 from .topics import (
     ACCEL,
-    BODY_FRAME,
-    CONTACTS,
-    FOOTPAD_FRAMES,
     IMU,
-    JOINTS,
     ODOM,
-    ODOM_FRAME,
     POSE,
     RPY,
-    SAMPLED,
     STRUTS,
     TOP_ACCEL,
-    TOP_FRAME,
     TOP_IMU,
     TWIST,
-    WORLD_FRAME,
     Topic,
-    framed,
+    topics_of,
 )
-from .wire import NANOSECONDS
 
 Conversion = Callable[..., Sequence[float]]
-INDEX = {name: i for i, name in enumerate(OUTPUT_NAMES)}
-ELEMENT = re.compile(r"(.+)\[(\d+)\]")
+# the interface of symmetric landings
+IN_A_PLANE = interface_of(min(MODES))
 
 
 def copied(*numbers: float) -> tuple[float, ...]:
@@ -68,16 +62,20 @@ class Vehicle:
         gravity: gravitational acceleration [m/s2].
         top_height: of the top sensor above the CG [m].
         frame_prefix: is put before the names of its frames.
+        interface: its outputs.
     """
 
     gravity: float
     top_height: float
     frame_prefix: str = ""
+    interface: Interface = IN_A_PLANE
 
     @classmethod
     def of(cls, parameters: Parameters, frame_prefix: str = "") -> Vehicle:
         """That of the model's `parameters`."""
-        return cls(parameters.ground.gravity, parameters.vehicle.top_height, frame_prefix)
+        vehicle = parameters.vehicle
+        interface = interface_of(parameters.drop.mode, int(vehicle.legs))
+        return cls(parameters.ground.gravity, vehicle.top_height, frame_prefix, interface)
 
 
 @dataclass(frozen=True)
@@ -85,7 +83,7 @@ class Field:
     """Fields of one message that are made of some outputs.
 
     Args:
-        topic: one of `topics.SAMPLED`.
+        topic: one of `LegTopics.sampled`.
         paths: the fields, all float64: `pose.position.x`, or `position[3]` of an array.
         outputs: the outputs that the fields are made of, SI, the paper's axes.
         write: gives a number for each of `paths` from the values of `outputs`; SI, ROS axes. Its
@@ -110,19 +108,37 @@ class Field:
         return lambda *values: self.write(*values, *constants)
 
 
-def strut_outputs(quantity: str) -> tuple[str, ...]:
-    """The outputs that are the struts' `quantity`, in the order of `JOINTS`."""
+def strut_outputs(quantity: str, legs: Sequence[int] = LEGS) -> tuple[str, ...]:
+    """The outputs that are the struts' `quantity`, in the order of `LegTopics.joints`."""
     struts = ("main_strut", "auxiliary_strut")
-    return tuple(f"leg[{leg}].{strut}.{quantity}" for leg in LEGS for strut in struts)
+    return tuple(f"leg[{leg}].{strut}.{quantity}" for leg in legs for strut in struts)
 
 
-def _elements(path: str) -> tuple[str, ...]:
-    return tuple(f"{path}[{i}]" for i in range(len(JOINTS)))
+def elements(path: str, count: int) -> tuple[str, ...]:
+    """The paths of the elements of an array."""
+    return tuple(f"{path}[{i}]" for i in range(count))
 
 
-def _contact(leg: int, topic: Topic) -> Field:
-    force = tuple(f"leg[{leg}].contact.force_{axis}" for axis in "xyz")
-    return Field(topic, xyz("wrench.force"), force, write=to_ros, read=from_ros)
+def _struts(legs: Sequence[int]) -> tuple[Field, ...]:
+    count = 2 * len(legs)
+    return (
+        Field(STRUTS, elements("position", count), strut_outputs("stroke", legs)),
+        Field(STRUTS, elements("velocity", count), strut_outputs("stroke_rate", legs)),
+        Field(STRUTS, elements("effort", count), strut_outputs("force", legs)),
+    )
+
+
+def _contacts(legs: tuple[int, ...]) -> tuple[Field, ...]:
+    return tuple(
+        Field(
+            topic,
+            xyz("wrench.force"),
+            tuple(f"leg[{leg}].contact.force_{axis}" for axis in "xyz"),
+            write=to_ros,
+            read=from_ros,
+        )
+        for leg, topic in zip(legs, topics_of(legs).contacts)
+    )
 
 
 def _imu(
@@ -140,9 +156,7 @@ def _imu(
 # Columns of logs are in this order. Odometry repeats what other topics carry, so it is not read
 # back. Its twist is in the body's frame, by nav_msgs/Odometry's definition.
 FIELDS: tuple[Field, ...] = (
-    Field(STRUTS, _elements("position"), strut_outputs("stroke")),
-    Field(STRUTS, _elements("velocity"), strut_outputs("stroke_rate")),
-    Field(STRUTS, _elements("effort"), strut_outputs("force")),
+    *_struts(LEGS),
     Field(POSE, in_plane("pose.position"), ("body.x", "body.y")),
     Field(POSE, xyzw("pose.orientation"), ("body.pitch",), write=pitch_quaternion, read=None),
     Field(RPY, about_pitch("vector"), ("body.pitch",)),
@@ -151,7 +165,7 @@ FIELDS: tuple[Field, ...] = (
     Field(ACCEL, in_plane("accel.linear"), ("body.ax", "body.ay")),
     Field(ACCEL, about_pitch("accel.angular"), ("body.pitch_acceleration",)),
     Field(TOP_ACCEL, ("accel.linear.z",), ("body.top_axial_acceleration",)),
-    *(_contact(leg, topic) for leg, topic in zip(LEGS, CONTACTS)),
+    *_contacts(LEGS),
     Field(ODOM, in_plane("pose.pose.position"), ("body.x", "body.y"), read=None),
     Field(ODOM, xyzw("pose.pose.orientation"), ("body.pitch",), write=pitch_quaternion, read=None),
     Field(
@@ -171,90 +185,55 @@ FIELDS: tuple[Field, ...] = (
     ),
 )
 
-# The fields that hold the same text in every sample.
-TEXTS: dict[Topic, dict[str, str]] = {
-    STRUTS: {"header.frame_id": BODY_FRAME, **dict(zip(_elements("name"), JOINTS))},
-    **{t: {"header.frame_id": WORLD_FRAME} for t in (POSE, RPY, TWIST, ACCEL)},
-    **{t: {"header.frame_id": frame} for t, frame in zip(CONTACTS, FOOTPAD_FRAMES)},
-    IMU: {"header.frame_id": BODY_FRAME},
-    **{t: {"header.frame_id": TOP_FRAME} for t in (TOP_ACCEL, TOP_IMU)},
-    ODOM: {"header.frame_id": ODOM_FRAME, "child_frame_id": BODY_FRAME},
-}
-
-# Relative topic name -> its fields, and the topic.
-TOPIC_FIELDS = {t.name: tuple(f for f in FIELDS if f.topic == t) for t in SAMPLED}
-_TOPICS = {t.name: t for t in SAMPLED}
+PLACE = ("body.x", "body.y", "body.z")
+QUATERNION = tuple(f"body.q_{part}" for part in "wxyz")
+SPEED = ("body.vx", "body.vy", "body.vz")
+ACCELERATION = ("body.ax", "body.ay", "body.az")
+SPIN, TURNING = (
+    tuple(f"body.{what}_{axis}" for axis in "xyz") for what in ("spin", "spin_acceleration")
+)
 
 
-def texts(topic: Topic, vehicle: Vehicle) -> dict[str, str]:
-    """The texts in every message of `topic`, by path."""
-    return {
-        path: framed(vehicle.frame_prefix, text) if path.endswith("frame_id") else text
-        for path, text in TEXTS.get(topic, {}).items()
-    }
+def _spatial_imu(
+    topic: Topic, write: Conversion, outputs: tuple[str, ...], constants: tuple[str, ...]
+) -> tuple[Field, ...]:
+    """As `_imu`, of a body in space."""
+    orientation, force = xyzw("orientation"), xyz("linear_acceleration")
+    return (
+        Field(topic, orientation, QUATERNION, write=ros_quaternion, read=None),
+        Field(topic, xyz("angular_velocity"), SPIN, write=to_ros, read=None),
+        Field(topic, force, outputs, write=write, read=None, constants=constants),
+    )
 
 
-def indices(*outputs: str) -> tuple[int, ...]:
-    """The positions of `outputs` in a sample, which is in the order of `OUTPUT_NAMES`."""
-    return tuple(INDEX[name] for name in outputs)
+def in_space(legs: tuple[int, ...]) -> tuple[Field, ...]:
+    """The table of a landing in space on these `legs`.
 
-
-def split(path: str) -> tuple[str, str | int]:
-    """The path of what holds a field ("" for the message), and the field's name or index in it."""
-    element = ELEMENT.fullmatch(path)
-    if element:
-        return element[1], int(element[2])
-    owner, _, name = path.rpartition(".")
-    return owner, name
-
-
-def expected_numbers(topic: str, values: Mapping[str, float], vehicle: Vehicle) -> dict[str, float]:
-    """The numbers of the message of `topic` (relative), by path, at the sample `values`.
-
-    Args:
-        topic: one of `TOPIC_FIELDS`.
-        values: outputs by name, SI, the paper's axes.
-        vehicle: what messages tell beside them.
-
-    Returns:
-        Path -> number, SI, ROS axes. A field that is not named is 0.
+    `rpy` has the landing's own angles, which need not be those that REP-103 makes of the attitude.
+    The spin is read back from odometry, whose twist is in the body's frame, as the model has it.
     """
-    return {
-        path: number
-        for field in TOPIC_FIELDS[topic]
-        for path, number in zip(
-            field.paths, field.conversion(vehicle)(*(values[o] for o in field.outputs))
-        )
-    }
-
-
-def expected_fields(
-    topic: str, values: Mapping[str, float], nanoseconds: int, vehicle: Vehicle
-) -> dict[str, Any]:
-    """All fields of the message of `topic` (relative), by path, at the sample `values`.
-
-    Args:
-        topic: one of `TOPIC_FIELDS`.
-        values: outputs by name, SI, the paper's axes.
-        nanoseconds: simulation time of the sample [ns].
-        vehicle: what messages tell beside them.
-
-    Returns:
-        Path -> number or text. A field that is not named is 0, or empty.
-    """
-    seconds, rest = divmod(nanoseconds, NANOSECONDS)
-    stamp = {"header.stamp.sec": seconds, "header.stamp.nanosec": rest}
-    named = texts(_TOPICS[topic], vehicle)
-    return {**expected_numbers(topic, values, vehicle), **named, **stamp}
-
-
-def leaves(message: Any, at: str = "") -> Iterator[tuple[str, Any]]:
-    """Every number and text in a decoded message, by the path to it."""
-    if isinstance(message, (list, tuple, array)):
-        for i, element in enumerate(message):
-            yield from leaves(element, f"{at}[{i}]")
-    elif hasattr(message, "__slots__"):
-        for name in message.__slots__:
-            yield from leaves(getattr(message, name), f"{at}.{name}" if at else name)
-    else:
-        yield at, message
+    turned_pose, turned_odom = xyzw("pose.orientation"), xyzw("pose.pose.orientation")
+    linear, angular = xyz("twist.twist.linear"), xyz("twist.twist.angular")
+    return (
+        *_struts(legs),
+        Field(POSE, xyz("pose.position"), PLACE, write=to_ros, read=from_ros),
+        Field(POSE, turned_pose, QUATERNION, write=ros_quaternion, read=paper_quaternion),
+        Field(RPY, xyz("vector"), ("body.roll", "body.pitch", "body.heading")),
+        Field(TWIST, xyz("twist.linear"), SPEED, write=to_ros, read=from_ros),
+        Field(TWIST, xyz("twist.angular"), (*SPIN, *QUATERNION), write=in_map, read=None),
+        Field(ACCEL, xyz("accel.linear"), ACCELERATION, write=to_ros, read=from_ros),
+        Field(ACCEL, xyz("accel.angular"), (*TURNING, *QUATERNION), write=in_map, read=None),
+        Field(TOP_ACCEL, ("accel.linear.z",), ("body.top_axial_acceleration",)),
+        *_contacts(legs),
+        Field(ODOM, xyz("pose.pose.position"), PLACE, write=to_ros, read=None),
+        Field(ODOM, turned_odom, QUATERNION, write=ros_quaternion, read=None),
+        Field(ODOM, linear, (*SPEED, *QUATERNION), write=in_body, read=None),
+        Field(ODOM, angular, SPIN, write=to_ros, read=from_ros),
+        *_spatial_imu(IMU, spatial_specific_force, (*ACCELERATION, *QUATERNION), ("gravity",)),
+        *_spatial_imu(
+            TOP_IMU,
+            spatial_top_specific_force,
+            (*ACCELERATION, *QUATERNION, *SPIN, *TURNING),
+            ("gravity", "top_height"),
+        ),
+    )

@@ -12,13 +12,16 @@ from rclpy.serialization import serialize_message
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
+from rlv_landing.core.records import Vector
+from rlv_landing.core.vectors import rotation, to_inertial
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import LEGS
+from rlv_landing.quantities import interface_of
 
 from .axes import from_ros, to_ros
-from .fields import indices
-from .legs import leg_points
+from .fields import PLACE, QUATERNION
+from .robot_description import axis_point, leg_points
 from .samples import set_stamp, set_vector
+from .tables import table_of
 from .topics import WORLD_FRAME
 from .wire import SENTINEL_STAMP, MessageLayout, sentinel_numbers
 
@@ -40,21 +43,24 @@ class Wireframe:
             parameters.main_strut,
             parameters.auxiliary_strut,
         )
-        self._top = (0.0, vehicle.top_height, 0.0)
-        self._bottom = (0.0, -max(main.joint_depth, auxiliary.joint_depth), 0.0)
-        # The paper's axes, as the sample's.
-        self._main = [
-            from_ros(*j)
-            for j in leg_points(parameters.drop.mode, main.joint_radius, -main.joint_depth)
+        depth = max(main.joint_depth, auxiliary.joint_depth)
+        # The paper's axes, as the sample's: the body's ends, the struts' joints.
+        own: list[tuple[float, float, float]] = [
+            axis_point(parameters, -depth),
+            axis_point(parameters, vehicle.top_height),
+            *leg_points(parameters, main.joint_radius, -main.joint_depth).values(),
+            *leg_points(parameters, auxiliary.joint_radius, -auxiliary.joint_depth).values(),
         ]
-        self._auxiliary = [
-            from_ros(*j)
-            for j in leg_points(
-                parameters.drop.mode, auxiliary.joint_radius, -auxiliary.joint_depth
-            )
+        self._own = [from_ros(*point) for point in own]
+        interface = interface_of(parameters.drop.mode, int(vehicle.legs))
+        self._legs, self._in_space = len(interface.legs), interface.in_space
+        table = table_of(interface)
+        names = (*PLACE, *QUATERNION) if self._in_space else ("body.x", "body.y", "body.pitch")
+        self._body = table.indices(*names)
+        self._feet = [
+            table.indices(*(f"leg[{leg}].footpad.{axis}" for axis in "xyz"))
+            for leg in interface.legs
         ]
-        self._body = indices("body.x", "body.y", "body.pitch")
-        self._feet = [indices(*(f"leg[{leg}].footpad.{axis}" for axis in "xyz")) for leg in LEGS]
         self._stamp = Time()
         self._points: list[list[Point]] = []
         self._layout: MessageLayout | None = None
@@ -77,7 +83,8 @@ class Wireframe:
         set_vector(
             marker.scale, (width, width, width) if kind == Marker.SPHERE_LIST else (width, 0.0, 0.0)
         )
-        count = 2 if name == "body" else len(LEGS) if kind == Marker.SPHERE_LIST else 2 * len(LEGS)
+        of_legs = self._legs if kind == Marker.SPHERE_LIST else 2 * self._legs
+        count = 2 if name == "body" else of_legs
         points = [Point() for _ in range(count)]
         marker.points = points
         self._points.append(points)
@@ -87,17 +94,24 @@ class Wireframe:
         """The points of a sample in the frame `map`.
 
         Args:
-            values: all outputs in the order of `OUTPUT_NAMES`, SI, the paper's axes.
+            values: all outputs in the order of the vehicle's interface, SI, the paper's axes.
 
         Returns:
             x, y, z [m], ROS axes, one point after the other: the body's lower and upper end, the
             main struts' joints, the auxiliary struts' joints, the footpads; each by leg.
         """
-        x, y, pitch = (values[i] for i in self._body)
-        s, c = sin(pitch), cos(pitch)
         found: list[float] = []
-        for bx, by, bz in (self._bottom, self._top, *self._main, *self._auxiliary):
-            found += to_ros(x + c * bx + s * by, y - s * bx + c * by, bz)
+        if self._in_space:
+            x, y, z, *quaternion = (values[i] for i in self._body)
+            turn = rotation(*quaternion)
+            for own in self._own:
+                at = to_inertial(turn, Vector(*own))
+                found += to_ros(x + at.x, y + at.y, z + at.z)
+        else:
+            x, y, pitch = (values[i] for i in self._body)
+            s, c = sin(pitch), cos(pitch)
+            for bx, by, bz in self._own:
+                found += to_ros(x + c * bx + s * by, y - s * bx + c * by, bz)
         for foot in self._feet:
             found += to_ros(*(values[i] for i in foot))
         return found
@@ -107,14 +121,14 @@ class Wireframe:
 
         Args:
             nanoseconds: simulation time of the sample [ns].
-            values: all outputs in the order of `OUTPUT_NAMES`, SI, the paper's axes.
+            values: all outputs in the order of the vehicle's interface, SI, the paper's axes.
         """
         return self._put(nanoseconds, self.numbers(values))
 
     def _put(self, nanoseconds: int, numbers: Sequence[float]) -> MarkerArray:
         set_stamp(self._stamp, nanoseconds)
         points = list(zip(numbers[::3], numbers[1::3], numbers[2::3]))
-        legs = len(LEGS)
+        legs = self._legs
         body, main, auxiliary, feet = self._points
         joints, footpads = points[len(body) :], points[-legs:]
         for point, end in zip(body, points):

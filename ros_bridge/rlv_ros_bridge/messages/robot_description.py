@@ -6,17 +6,11 @@ import json
 from math import acos, atan2, dist
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
-from rlv_landing.quantities import (
-    INPUT_QUANTITIES,
-    LEGS,
-    OUTPUT_QUANTITIES,
-    PEAK_QUANTITIES,
-    STATISTIC_QUANTITIES,
-)
-from rlv_landing.touchdown import footpad_at_rest
+from rlv_landing.parameters import Parameters, parameters_of
+from rlv_landing.quantities import STATISTIC_QUANTITIES, interface_of
+from rlv_landing.touchdown import footpad_at_rest, leg_directions
 
-from .legs import leg_points
+from .axes import to_ros
 from .topics import BODY_FRAME, TOP_FRAME
 
 Point = tuple[float, float, float]
@@ -27,13 +21,15 @@ NO_LIMIT = {"effort": "1e7", "velocity": "100"}
 ORIGIN: Point = (0.0, 0.0, 0.0)
 
 
-def variables() -> str:
-    """The FMU's variables: for each its name, causality, unit and meaning."""
+def variables(parameters: Parameters) -> str:
+    """The variables of the FMU that lands `parameters`: name, causality, unit and meaning."""
+    mode = parameters.drop.mode
+    interface = interface_of(mode, int(parameters.vehicle.legs))
     groups = (
-        ("parameter", PARAMETER_QUANTITIES.values()),
-        ("input", INPUT_QUANTITIES),
-        ("output", OUTPUT_QUANTITIES),
-        ("local", (*STATISTIC_QUANTITIES, *PEAK_QUANTITIES)),
+        ("parameter", parameters_of(mode).values()),
+        ("input", interface.inputs),
+        ("output", interface.outputs),
+        ("local", (*STATISTIC_QUANTITIES, *interface.peak_quantities)),
     )
     return json.dumps(
         [
@@ -42,6 +38,29 @@ def variables() -> str:
             for q in group
         ]
     )
+
+
+def leg_points(parameters: Parameters, radius: float, height: float) -> dict[int, Point]:
+    """A point of each leg in the body's frame, whose origin is the CG, by the leg's number.
+
+    Args:
+        parameters: the vehicle.
+        radius: of the points from the legs' axis [m].
+        height: of the points above the CG [m].
+
+    Returns:
+        x forward, y left, z up [m] for each leg.
+    """
+    own = parameters.vehicle
+    return {
+        leg: to_ros(radius * cosine - own.cg_offset_x, height, radius * sine - own.cg_offset_z)
+        for leg, (sine, cosine) in leg_directions(parameters).items()
+    }
+
+
+def axis_point(parameters: Parameters, height: float) -> Point:
+    """The point of the legs' axis at a height above the CG [m], in the body's frame."""
+    return to_ros(-parameters.vehicle.cg_offset_x, height, -parameters.vehicle.cg_offset_z)
 
 
 def robot_description(parameters: Parameters) -> str:
@@ -58,12 +77,12 @@ def robot_description(parameters: Parameters) -> str:
         p.vehicle.top_height,
     )
     body = SubElement(robot, "link", name=BODY_FRAME)
-    _cylinder(body, (0.0, 0.0, 0.5 * (top + bottom)), BODY_RADIUS, top - bottom)
+    _cylinder(body, axis_point(p, 0.5 * (top + bottom)), BODY_RADIUS, top - bottom)
     SubElement(robot, "link", name=TOP_FRAME)
     mount = _joint(robot, f"{TOP_FRAME}_mount", "fixed", BODY_FRAME, TOP_FRAME)
     _origin(mount, (0.0, 0.0, top))
     radius, height = footpad_at_rest(p)
-    feet = leg_points(p.drop.mode, radius, height)
+    feet = leg_points(p, radius, height)
     for strut, own, width, travel in (
         ("main_strut", p.main_strut, MAIN_RADIUS, (0.0, p.main_strut.stroke_max)),
         (
@@ -73,9 +92,9 @@ def robot_description(parameters: Parameters) -> str:
             (-0.5 * p.auxiliary_strut.length, 0.5 * p.auxiliary_strut.length),
         ),
     ):
-        joints = leg_points(p.drop.mode, own.joint_radius, -own.joint_depth)
-        for leg, joint, foot in zip(LEGS, joints, feet):
-            _strut(robot, f"leg_{leg}_{strut}", joint, foot, width, travel)
+        joints = leg_points(p, own.joint_radius, -own.joint_depth)
+        for leg, joint in joints.items():
+            _strut(robot, f"leg_{leg}_{strut}", joint, feet[leg], width, travel)
     indent(robot)
     return '<?xml version="1.0"?>\n' + tostring(robot, encoding="unicode") + "\n"
 

@@ -1,6 +1,6 @@
 """A sample of the landing as ROS messages: SI units, REP-103 axes, stamps in simulation time.
 
-Made from `fields.FIELDS`, once as message objects and once, for speed, as serialised bytes.
+Made from the table of fields, once as message objects and once, for speed, as serialised bytes.
 """
 
 from __future__ import annotations
@@ -13,11 +13,10 @@ from typing import Any
 from builtin_interfaces.msg import Time
 from rclpy.serialization import serialize_message
 
-from rlv_landing.quantities import OUTPUT_NAMES
-
-from .fields import FIELDS, Conversion, Vehicle, copied, indices, split, texts
+from .fields import Conversion, Vehicle, copied
 from .message_types import message_class
-from .topics import CLOCK, SAMPLED, Topic
+from .tables import split, table_of, texts
+from .topics import CLOCK, Topic
 from .wire import NANOSECONDS, SENTINEL_STAMP, MessageLayout, sentinel_numbers
 
 
@@ -52,30 +51,34 @@ class SampleMessages:
     """
 
     def __init__(self, vehicle: Vehicle) -> None:
+        table = table_of(vehicle.interface)
+        sampled = table.topics.sampled
         self.messages: dict[Topic, Any] = {
-            topic: message_class(topic.type_name)() for topic in (CLOCK, *SAMPLED)
+            topic: message_class(topic.type_name)() for topic in (CLOCK, *sampled)
         }
         # One stamp object for all: setting it stamps every message.
         self._stamp = Time()
         self.messages[CLOCK].clock = self._stamp
-        for topic in SAMPLED:
+        for topic in sampled:
             message = self.messages[topic]
             message.header.stamp = self._stamp
             for path, text in texts(topic, vehicle).items():
                 _setter(message, path, "")(text)
         self._setters = [
             _setter(self.messages[field.topic], path, 0.0)
-            for field in FIELDS
+            for field in table.fields
             for path in field.paths
         ]
-        self._conversions = [(f.conversion(vehicle), indices(*f.outputs)) for f in FIELDS]
+        self._conversions = [
+            (f.conversion(vehicle), table.indices(*f.outputs)) for f in table.fields
+        ]
 
     def fill(self, nanoseconds: int, values: Sequence[float]) -> None:
         """Puts a sample into the messages.
 
         Args:
             nanoseconds: simulation time of the sample [ns].
-            values: all outputs in the order of `OUTPUT_NAMES`, SI, the paper's axes.
+            values: all outputs in the order of the vehicle's interface, SI, the paper's axes.
         """
         self.put(
             nanoseconds,
@@ -87,7 +90,7 @@ class SampleMessages:
         )
 
     def put(self, nanoseconds: int, numbers: Iterable[float]) -> None:
-        """Puts `numbers` into the messages, one for each path of `FIELDS` in the table's order."""
+        """Puts `numbers` into the messages, one for each path of the table, in its order."""
         set_stamp(self._stamp, nanoseconds)
         for set_number, number in zip(self._setters, numbers, strict=True):
             set_number(float(number))
@@ -122,23 +125,24 @@ class SampleBytes:
         self.slices = self._layout.slices
 
     def _assign_positions(self) -> tuple[list[int], int]:
-        """Which of the packed numbers each path of `FIELDS` holds, and how many are packed.
+        """Which of the packed numbers each path of the table holds, and how many are packed.
 
         Fields that copy outputs hold numbers of the sample; what fields compute alike is packed
         once.
         """
         positions: list[int] = []
-        count = len(OUTPUT_NAMES)
+        table = table_of(self.vehicle.interface)
+        count = len(self.vehicle.interface.outputs)
         computed: dict[tuple[Conversion, tuple[str, ...]], range] = {}
-        for field in FIELDS:
+        for field in table.fields:
             if field.write is copied:
-                positions += indices(*field.outputs)
+                positions += table.indices(*field.outputs)
                 continue
             key = field.write, field.outputs
             if key not in computed:
                 computed[key] = range(count, count + len(field.paths))
                 count += len(field.paths)
-                pick = _picker(indices(*field.outputs))
+                pick = _picker(table.indices(*field.outputs))
                 self._computations.append((field.conversion(self.vehicle), pick))
             positions += computed[key]
         return positions, count
@@ -148,7 +152,7 @@ class SampleBytes:
 
         Args:
             nanoseconds: simulation time of the sample [ns].
-            values: all outputs in the order of `OUTPUT_NAMES`, SI, the paper's axes.
+            values: all outputs in the order of the vehicle's interface, SI, the paper's axes.
             sequence: the number that follows each prefix.
         """
         computed: list[float] = []

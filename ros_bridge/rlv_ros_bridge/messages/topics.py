@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import cache
 
 from rlv_landing.errors import LandingError
 from rlv_landing.quantities import LEGS
@@ -16,12 +17,6 @@ WORLD_FRAME = "map"
 ODOM_FRAME = "odom"
 BODY_FRAME = "base_link"
 TOP_FRAME = "top_sensor"
-# At the footpads, with the axes of the map.
-FOOTPAD_FRAMES: tuple[str, ...] = tuple(f"leg_{leg}_footpad" for leg in LEGS)
-
-JOINTS: tuple[str, ...] = tuple(
-    f"leg_{leg}_{strut}" for leg in LEGS for strut in ("main_strut", "auxiliary_strut")
-)
 
 
 @dataclass(frozen=True)
@@ -47,7 +42,6 @@ ACCEL = Topic("accel", "geometry_msgs/msg/AccelStamped")
 IMU = Topic("imu", "sensor_msgs/msg/Imu")
 TOP_IMU = Topic("top/imu", "sensor_msgs/msg/Imu")
 TOP_ACCEL = Topic("top/accel", "geometry_msgs/msg/AccelStamped")
-CONTACTS = tuple(Topic(f"leg_{leg}/contact", "geometry_msgs/msg/WrenchStamped") for leg in LEGS)
 ODOM = Topic("odom", "nav_msgs/msg/Odometry")
 MARKERS = Topic("markers", "visualization_msgs/msg/MarkerArray", 0.033)
 # Made by ourselves: there is no wheel of tf2_msgs, so it is published only where ROS 2 has it.
@@ -61,19 +55,51 @@ APPLIED_GROUND = Topic("applied/ground", "sensor_msgs/msg/JointState")
 ROBOT_DESCRIPTION = Topic("robot_description", "std_msgs/msg/String")
 VARIABLES = Topic("variables", "std_msgs/msg/String")
 
-# Published at every step, and published at a period of their own.
-SAMPLED: tuple[Topic, ...] = (
-    *(STRUTS, POSE, RPY, TWIST, ACCEL, TOP_ACCEL, *CONTACTS, ODOM),
-    *(IMU, TOP_IMU),
-)
 OCCASIONAL: tuple[Topic, ...] = (MARKERS, TF, DIAGNOSTICS)
 APPLIED: tuple[Topic, ...] = (APPLIED_WRENCH, APPLIED_GROUND)
 # Published once, and kept for subscribers that come later.
 LATCHED: tuple[Topic, ...] = (ROBOT_DESCRIPTION, VARIABLES)
 
-# What is recorded, in the order it is published at one instant. The clock is not: a replay makes
-# its own.
-RECORDED: tuple[Topic, ...] = (*SAMPLED, *OCCASIONAL, *APPLIED, ROBOT_DESCRIPTION)
+
+@dataclass(frozen=True)
+class LegTopics:
+    """What depends on a vehicle's number of legs.
+
+    Attributes:
+        footpad_frames: the frames at the footpads, with the axes of the map.
+        joints: the names of the struts in `struts`.
+        contacts: the topics of the contact forces.
+        sampled: the topics that are published at every step.
+        recorded: what is recorded, in the order in which it is published at one instant. The clock
+            is not: a replay makes its own.
+    """
+
+    footpad_frames: tuple[str, ...]
+    joints: tuple[str, ...]
+    contacts: tuple[Topic, ...]
+    sampled: tuple[Topic, ...]
+    recorded: tuple[Topic, ...]
+
+
+@cache
+def topics_of(legs: tuple[int, ...]) -> LegTopics:
+    """What depends on the `legs`, given by their numbers."""
+    contacts = tuple(Topic(f"leg_{leg}/contact", "geometry_msgs/msg/WrenchStamped") for leg in legs)
+    sampled = (STRUTS, POSE, RPY, TWIST, ACCEL, TOP_ACCEL, *contacts, ODOM, IMU, TOP_IMU)
+    return LegTopics(
+        footpad_frames=tuple(f"leg_{leg}_footpad" for leg in legs),
+        joints=tuple(f"leg_{leg}_{s}" for leg in legs for s in ("main_strut", "auxiliary_strut")),
+        contacts=contacts,
+        sampled=sampled,
+        recorded=(*sampled, *OCCASIONAL, *APPLIED, ROBOT_DESCRIPTION),
+    )
+
+
+# Those of symmetric landings, which have four legs.
+JOINTS: tuple[str, ...] = topics_of(LEGS).joints
+CONTACTS: tuple[Topic, ...] = topics_of(LEGS).contacts
+SAMPLED: tuple[Topic, ...] = topics_of(LEGS).sampled
+RECORDED: tuple[Topic, ...] = topics_of(LEGS).recorded
 
 
 # ROS 2 takes 245 characters, and the name of a topic below them

@@ -12,14 +12,17 @@ from math import cos, sin
 from xml.etree import ElementTree
 
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import LEGS
+from rlv_landing.quantities import interface_of
 
-from .axes import IN_PLANE, pitch_quaternion, to_ros
-from .fields import indices, strut_outputs
+from .axes import IN_PLANE, pitch_quaternion, ros_quaternion, to_ros
+from .fields import PLACE, QUATERNION, strut_outputs
 from .robot_description import robot_description
-from .topics import BODY_FRAME, FOOTPAD_FRAMES, JOINTS, ODOM_FRAME, WORLD_FRAME, framed
+from .tables import table_of
+from .topics import BODY_FRAME, ODOM_FRAME, WORLD_FRAME, framed
 from .wire import NANOSECONDS, SENTINEL_STAMP, MessageLayout, padded, sentinel_numbers
 
+Point = tuple[float, float, float]
+Turn = tuple[float, float, float, float]
 # Encapsulation of plain CDR, little-endian.
 NOWHERE, NO_TURN = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0)
 LITTLE_ENDIAN_CDR = b"\x00\x01\x00\x00"
@@ -48,25 +51,30 @@ class Transforms:
 
     def __init__(self, parameters: Parameters, frame_prefix: str = "") -> None:
         joints = list(ElementTree.fromstring(robot_description(parameters)).iter("joint"))
-        self._body = indices("body.x", "body.y", "body.pitch")
-        self._strokes = indices(*strut_outputs("stroke"))
+        interface = interface_of(parameters.drop.mode, int(parameters.vehicle.legs))
+        table, legs = table_of(interface), interface.legs
+        names, pads = table.topics.joints, table.topics.footpad_frames
+        self._in_space = interface.in_space
+        own = (*PLACE, *QUATERNION) if self._in_space else ("body.x", "body.y", "body.pitch")
+        self._body = table.indices(*own)
+        self._strokes = table.indices(*strut_outputs("stroke", legs))
         self._lengths = [
-            _vector(j, "xyz")[2] for name in JOINTS for j in joints if j.get("name") == name
+            _vector(j, "xyz")[2] for name in names for j in joints if j.get("name") == name
         ]
         self._footpads = [
-            indices(*(f"leg[{leg}].footpad.{axis}" for axis in "xyz")) for leg in LEGS
+            table.indices(*(f"leg[{leg}].footpad.{axis}" for axis in "xyz")) for leg in legs
         ]
-        sentinels = sentinel_numbers(4 + len(JOINTS) + 3 * len(LEGS))
-        x, z, qy, qw = sentinels[:4]
-        moved = dict(zip(JOINTS, sentinels[4:]))
-        feet = sentinels[4 + len(JOINTS) :]
+        count = len(self._pose([1.0] * len(interface.outputs)))
+        sentinels = sentinel_numbers(count + len(names) + 3 * len(legs))
+        moved = dict(zip(names, sentinels[count:]))
+        feet = sentinels[count + len(names) :]
         frames = [
             Transform(WORLD_FRAME, ODOM_FRAME, NOWHERE, NO_TURN),
-            Transform(ODOM_FRAME, BODY_FRAME, (x, 0.0, z), (0.0, qy, 0.0, qw)),
+            Transform(ODOM_FRAME, BODY_FRAME, *self._placed(sentinels[:count])),
             *(_transform(joint, moved) for joint in joints),
             *(
                 Transform(ODOM_FRAME, frame, (feet[i], feet[i + 1], feet[i + 2]), NO_TURN)
-                for frame, i in zip(FOOTPAD_FRAMES, range(0, len(feet), 3))
+                for frame, i in zip(pads, range(0, len(feet), 3))
             ),
         ]
         frames = [
@@ -75,19 +83,34 @@ class Transforms:
         ]
         self._layout = MessageLayout([serialised(frames, SENTINEL_STAMP)], sentinels)
 
+    def _pose(self, values: Sequence[float]) -> list[float]:
+        """The numbers of the body's place and attitude that are not 0 in every sample."""
+        if self._in_space:
+            x, y, z, *quaternion = (values[i] for i in self._body)
+            return [*to_ros(x, y, z), *ros_quaternion(*quaternion)]
+        x, y, pitch = (values[i] for i in self._body)
+        forward, _, up = to_ros(x, y, IN_PLANE)
+        _, qy, _, qw = pitch_quaternion(pitch)
+        return [forward, up, qy, qw]
+
+    def _placed(self, pose: Sequence[float]) -> tuple[Point, Turn]:
+        """Translation and rotation of the body by the numbers of `_pose`."""
+        if self._in_space:
+            x, y, z, qx, qy, qz, qw = pose
+            return (x, y, z), (qx, qy, qz, qw)
+        x, z, qy, qw = pose
+        return (x, 0.0, z), (0.0, qy, 0.0, qw)
+
     def pack(self, nanoseconds: int, values: Sequence[float]) -> bytes:
         """The message of a sample, serialised.
 
         Args:
             nanoseconds: simulation time of the sample [ns].
-            values: all outputs in the order of `OUTPUT_NAMES`, SI, the paper's axes.
+            values: all outputs in the order of the vehicle's interface, SI, the paper's axes.
         """
-        x, y, pitch = (values[i] for i in self._body)
-        forward, _, up = to_ros(x, y, IN_PLANE)
-        _, qy, _, qw = pitch_quaternion(pitch)
         struts = [length - values[i] for length, i in zip(self._lengths, self._strokes)]
         feet = (n for at in self._footpads for n in to_ros(*(values[i] for i in at)))
-        return self._layout.pack(nanoseconds, [forward, up, qy, qw, *struts, *feet])
+        return self._layout.pack(nanoseconds, [*self._pose(values), *struts, *feet])
 
 
 def serialised(transforms: Sequence[Transform], nanoseconds: int) -> bytes:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from rlv_landing.inputs.ground_way import LONGEST_INTERVAL
 
-from ..messages.inputs import JOINTS
+from ..messages.inputs import JOINTS, GroundJoint
 
 # a message after a longer pause must not take that long to act [ns of simulation time]
 LONGEST_SPACING = round(1e9 * LONGEST_INTERVAL)
@@ -15,7 +15,7 @@ LONGEST_SPACING = round(1e9 * LONGEST_INTERVAL)
 
 @dataclass
 class _Joint:
-    """The motion of heave or tilt.
+    """The motion of one of the ground's positions.
 
     `position` [m or rad] is that at the simulation time `since` [ns], `rate` [m/s or rad/s] its
     rate. If `end` [ns] is not None, the rate ends there. `goal` [m or rad] is the position in the
@@ -40,7 +40,7 @@ class _Joint:
 
 
 class CommandedGround:
-    """Heave and tilt of the ground over the simulation time, as messages ask for them.
+    """Positions of the ground over the simulation time, as messages ask for them.
 
     A position with a velocity is the ground's from then on. If it is the last message's position
     again, with a velocity other than 0, the ground goes on from where it is at the velocity.
@@ -51,16 +51,19 @@ class CommandedGround:
 
     Args:
         step_ns: the landing's step [ns].
+        joints: the joints of `ground`.
     """
 
-    def __init__(self, step_ns: int) -> None:
+    def __init__(self, step_ns: int, joints: Mapping[str, GroundJoint] = JOINTS) -> None:
         self._step = step_ns
-        self._joints = {position: _Joint() for position, _ in JOINTS.values()}
+        # (position, rate): the inputs
+        self._names = [(joint.position, joint.rate) for joint in joints.values()]
+        self._joints = {position: _Joint() for position, _ in self._names}
 
     def values(self, now: int) -> dict[str, float]:
         """The inputs that give the ground's motion at the simulation time `now` [ns]."""
         found = {}
-        for position, rate in JOINTS.values():
+        for position, rate in self._names:
             joint = self._joints[position]
             found[position], found[rate] = joint.at(now), joint.rate
         return found
@@ -72,7 +75,7 @@ class CommandedGround:
             now: simulation time [ns].
             values: positions by input name, and their rates if the message has any.
         """
-        for position, rate in JOINTS.values():
+        for position, rate in self._names:
             if position not in values:
                 continue
             joint, goal = self._joints[position], values[position]

@@ -7,16 +7,17 @@ from dataclasses import dataclass
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
-from rlv_landing.quantities import OUTPUT_NAMES
+from rlv_landing.quantities import Interface
 
 from ..logs.landing_record import PHASE, PHASES
+from ..messages.fields import IN_A_PLANE
 from ..messages.samples import set_stamp
 from ..messages.wire import NANOSECONDS
 from .pacer import Pacer
 
 # How long a problem is warned of [ns of simulation time].
 WARN_NS = NANOSECONDS
-BALANCE = OUTPUT_NAMES.index("energy.balance")
+BALANCE = "energy.balance"
 
 
 def phase_name(phase: float) -> str:
@@ -43,9 +44,12 @@ class DiagnosticsMessage:
     Args:
         name: full name of the node.
         mode: landing mode, which is part of the hardware id.
+        interface: the landing's outputs.
     """
 
-    def __init__(self, name: str, mode: str) -> None:
+    def __init__(self, name: str, mode: str, interface: Interface = IN_A_PLANE) -> None:
+        places = interface.output_names.index
+        self._phase, self._balance = places(PHASE), places(BALANCE)
         self._status = DiagnosticStatus(name=name, hardware_id=f"rlv-landing {mode}")
         # by problem: its count, and since when that is so [ns]
         self._risen: dict[str, tuple[int, int]] = {}
@@ -75,8 +79,8 @@ class DiagnosticsMessage:
             "inputs refused": count.refused,
         }
         status = {
-            "phase": phase_name(values[PHASE]),
-            "energy balance [J]": f"{values[BALANCE]:.6g}",
+            "phase": phase_name(values[self._phase]),
+            "energy balance [J]": f"{values[self._balance]:.6g}",
             "samples": str(count.samples),
             **{name: str(number) for name, number in count.of_fmu.items()},
             **pacing_values(pacer, nanoseconds / NANOSECONDS),

@@ -14,8 +14,9 @@ from sensor_msgs.msg import JointState
 from rlv_landing.errors import LandingError
 
 from ..messages.inputs import (
-    JOINTS,
-    WRENCH,
+    PLANAR,
+    InputTable,
+    ground_joints,
     merged,
     out_of_plane,
     read_ground,
@@ -26,7 +27,6 @@ from ..messages.samples import set_stamp, set_vector
 from ..messages.topics import APPLIED_GROUND, APPLIED_WRENCH, WORLD_FRAME, Topic
 from .commanded_ground import CommandedGround
 
-NO_WRENCH = dict.fromkeys(WRENCH, 0.0)
 # Messages that wait while the landing is paused; of more than these the newest are kept.
 LONGEST_QUEUE = 1000
 
@@ -36,24 +36,27 @@ class InputChange:
     """New values of inputs from a simulation time on.
 
     `topic` is the topic `applied/...` on which the change is published. `nanoseconds` is the
-    simulation time from which on it acts [ns]. `values` are inputs by name, SI.
+    simulation time from which on it acts [ns]. `values` are inputs by name, SI. `table` says how
+    messages carry them.
     """
 
     topic: Topic
     nanoseconds: int
     values: Mapping[str, float]
+    table: InputTable = PLANAR
 
     def message(self) -> Any:
         """The message of `topic`, from which `inputs.READINGS` reads the same values."""
         if self.topic is APPLIED_WRENCH:
             message = WrenchStamped()
-            force, torque = wrench_vectors(self.values)
+            force, torque = wrench_vectors(self.values, self.table)
             set_vector(message.wrench.force, force)
             set_vector(message.wrench.torque, torque)
         else:
-            message = JointState(name=list(JOINTS))
-            message.position = [self.values[position] for position, _ in JOINTS.values()]
-            message.velocity = [self.values[rate] for _, rate in JOINTS.values()]
+            message = JointState()
+            message.name, message.position, message.velocity = ground_joints(
+                self.values, self.table
+            )
         message.header.frame_id = WORLD_FRAME
         set_stamp(message.header.stamp, self.nanoseconds)
         return message
@@ -69,13 +72,16 @@ class InputQueue:
         timeout: wall time after a topic's last message [s] after which the wrench becomes 0, or a
             velocity of the ground ends; 0: never.
         warn: called with a text when a message cannot be used, and after a timeout.
+        table: how messages carry the landing's inputs.
     """
 
-    def __init__(self, timeout: float, warn: Callable[[str], None]) -> None:
+    def __init__(
+        self, timeout: float, warn: Callable[[str], None], table: InputTable = PLANAR
+    ) -> None:
         self.timeout = timeout
         self.received = 0
         self.refused = 0
-        self._warn = warn
+        self._warn, self._table = warn, table
         self._arrived: deque[tuple[Topic, dict[str, float]]] = deque(maxlen=LONGEST_QUEUE)
         self.clear(1, lambda values: None)
 
@@ -87,14 +93,14 @@ class InputQueue:
             check_start: raises LandingError for ground inputs that the landing cannot start with.
         """
         self._arrived.clear()
-        self._wrench = dict(NO_WRENCH)
-        self._ground, self._check_start = CommandedGround(step_ns), check_start
+        self._wrench = self._table.no_wrench
+        self._ground, self._check_start = CommandedGround(step_ns, self._table.joints), check_start
         # Arrival of the last message of each topic whose timeout has not passed [s].
         self._last_arrival: dict[Topic, float] = {}
 
     def receive_wrench(self, message: Any) -> None:
         """Takes a message of `external_wrench`."""
-        if out_of_plane(message):
+        if out_of_plane(message, self._table):
             self._warn(
                 "external_wrench: force y and torques x and z are ignored: "
                 "the body moves in its plane"
@@ -105,9 +111,9 @@ class InputQueue:
         """Takes a message of `ground`."""
         self._receive(APPLIED_GROUND, read_ground, message)
 
-    def _receive(self, topic: Topic, read: Callable[[Any], dict[str, float]], message: Any) -> None:
+    def _receive(self, topic: Topic, read: Callable[..., dict[str, float]], message: Any) -> None:
         try:
-            values = read(message)
+            values = read(message, self._table)
         except LandingError as e:
             self._refuse(e)
             return
@@ -131,7 +137,7 @@ class InputQueue:
                 self._wrench = values
                 changed[topic] = None
             else:
-                ground = merged(ground, values)
+                ground = merged(ground, values, self._table)
         if ground and (nanoseconds > 0 or self._can_start(ground)):
             self._ground.command(nanoseconds, ground)
             changed[APPLIED_GROUND] = None
@@ -145,6 +151,7 @@ class InputQueue:
                 topic,
                 nanoseconds,
                 self._wrench if topic is APPLIED_WRENCH else self._ground.values(nanoseconds),
+                self._table,
             )
             for topic in changed
         ]
@@ -168,9 +175,9 @@ class InputQueue:
         The wrench becomes 0, and the ground no longer goes on at a velocity.
         """
         if topic is APPLIED_WRENCH:
-            if self._wrench == NO_WRENCH:
+            if self._wrench == self._table.no_wrench:
                 return False
-            self._wrench = dict(NO_WRENCH)
+            self._wrench = self._table.no_wrench
             self._warn(f"no external_wrench for {self.timeout:g} s: it is set to 0")
             return True
         if not self._ground.stop(nanoseconds):

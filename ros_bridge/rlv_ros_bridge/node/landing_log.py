@@ -18,7 +18,7 @@ from ..logs.peaks import peak_texts
 from ..logs.recorder import RecordedTopic, Recorder
 from ..messages import topics
 from ..messages.samples import SampleBytes
-from ..messages.topics import Topic
+from ..messages.topics import Topic, topics_of
 from ..messages.wire import padded
 from .publishing import Publishing
 from .settings import Settings
@@ -69,6 +69,7 @@ class LandingLog:
         if self._folder is None or self.recorder is not None:
             return None
         names, qos = self._publishing.names, self._publishing.qos
+        of_landing = topics_of(packer.vehicle.interface.legs).recorded
         recorded = [
             RecordedTopic(
                 names[t],
@@ -77,7 +78,7 @@ class LandingLog:
                 # Without its inputs a landing cannot be repeated.
                 kept=t in (topics.ROBOT_DESCRIPTION, *topics.APPLIED),
             )
-            for t in topics.RECORDED
+            for t in of_landing
         ]
         self.recorder = Recorder(
             self._folder,
@@ -89,7 +90,7 @@ class LandingLog:
         sizes = {
             t: part.stop - part.start
             for t, part in zip(packer.topics, packer.slices)
-            if t in topics.RECORDED
+            if t in of_landing
         }
         prefixes = self.recorder.begin_samples({names[t]: size for t, size in sizes.items()})
         return SampleBytes(packer.vehicle, dict(zip(sizes, prefixes)))

@@ -17,10 +17,11 @@ from sensor_msgs.msg import JointState
 
 from rlv_landing.audit.transverse import joint_warning
 from rlv_landing.errors import LandingError, first_of
-from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.quantities import INPUT_QUANTITIES, OUTPUT_QUANTITIES
+from rlv_landing.parameters import parameters_of
+from rlv_landing.quantities import interface_of
 
 from ..messages import topics
+from ..messages.inputs import input_table_of
 from ..messages.qos import INPUT, PROFILES
 from ..messages.rclpy_qos import create_subscription
 from ..ros.rclpy_internals import lifecycle_state
@@ -80,8 +81,11 @@ class LandingNode(LifecycleNode):
         self._landings = 0
         self._last_warning: dict[str, float] = {}
         qos = PROFILES[self.values["qos"]]
-        self._publishing = create_publishing(self, qos, clock=self.values["clock"])
-        self._inputs = InputQueue(self.values["input_timeout"], self._warn)
+        own = self.values.parameters
+        interface = interface_of(own.drop.mode, int(own.vehicle.legs))
+        self._publishing = create_publishing(self, qos, interface.legs, clock=self.values["clock"])
+        inputs = input_table_of(interface)
+        self._inputs = InputQueue(self.values["input_timeout"], self._warn, inputs)
         for kind, name, callback in (
             (WrenchStamped, "external_wrench", self._inputs.receive_wrench),
             (JointState, "ground", self._inputs.receive_ground),
@@ -167,9 +171,10 @@ class LandingNode(LifecycleNode):
     def _describe(self, landing: LandingRun) -> None:
         """Publishes the FMU's variables and the vehicle's description."""
         fmu, publishing = landing.fmu, self._publishing
+        table, interface = parameters_of(landing.settings.mode), fmu.interface
         counts = (
-            f"{len(PARAMETER_QUANTITIES)} parameters, {len(INPUT_QUANTITIES)} inputs, "
-            f"{len(OUTPUT_QUANTITIES)} outputs"
+            f"{len(table)} parameters, {len(interface.inputs)} inputs, "
+            f"{len(interface.outputs)} outputs"
         )
         listed = publishing.names[topics.VARIABLES]
         self.get_logger().info(f"{fmu.path}, version {fmu.version}: {counts}, listed on {listed}")

@@ -14,7 +14,6 @@ from rclpy.serialization import serialize_message
 
 from rlv_landing import Landing
 from rlv_landing.core import Phase
-from rlv_landing.quantities import OUTPUT_NAMES
 
 from ..fmu.runner import FmuRunner
 from ..logs.landing_record import PHASE
@@ -86,10 +85,11 @@ class LandingRun:
         self._publishing, self._inputs = publishing, inputs
         self._queue = publishing.queue
         vehicle = Vehicle.of(settings.parameters, settings.frame_prefix)
+        self._phase = vehicle.interface.output_names.index(PHASE)
         self._set_packer(SampleBytes(vehicle))
         self._wireframe = Wireframe(settings.parameters)
         self._transforms = Transforms(settings.parameters, settings.frame_prefix)
-        self._diagnostics = DiagnosticsMessage(identity.node, settings.mode)
+        self._diagnostics = DiagnosticsMessage(identity.node, settings.mode, vehicle.interface)
         self._markers_every, self._tf_every, self._diagnostics_every = (
             settings.every[t] for t in (topics.MARKERS, topics.TF, topics.DIAGNOSTICS)
         )
@@ -121,7 +121,9 @@ class LandingRun:
         ]
         # The clock comes first, and is not recorded.
         self._recorded = slice(packer.slices[0].stop, None)
-        self._start_clock = packer.pack(1, [0.0] * len(OUTPUT_NAMES))[packer.slices[0]]
+        # any outputs but 0, which are no attitude
+        any_outputs = [1.0] * len(packer.vehicle.interface.outputs)
+        self._start_clock = packer.pack(1, any_outputs)[packer.slices[0]]
 
     def publish_start_clock(self) -> None:
         """Publishes `/clock`, if the node does, with its value until the landing starts.
@@ -208,7 +210,7 @@ class LandingRun:
         if k:
             self.fmu.step(k - 1, s.step_size)
         values = self.fmu.values()
-        toppled = values[PHASE] == Phase.TOPPLED
+        toppled = values[self._phase] == Phase.TOPPLED
         self.end = "toppled" if toppled else "finished" if k == s.steps else ""
         messages = self._packer.pack(k * s.step_ns, values, k)
         self.log.write_sample(k, values, messages[self._recorded])

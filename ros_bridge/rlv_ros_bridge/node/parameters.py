@@ -21,7 +21,7 @@ from rclpy.parameter import Parameter
 from rlv_landing import Parameters
 from rlv_landing.choices import choose_parameters
 from rlv_landing.errors import LandingError, unknown
-from rlv_landing.parameters import PARAMETER_QUANTITIES
+from rlv_landing.parameters import PARAMETER_QUANTITIES, parameters_of
 from rlv_landing.text.values import parse_value
 
 from ..fmu.description import own_vehicle
@@ -34,6 +34,8 @@ BUILT_IN = ("use_sim_time", "start_type_description_service")
 QOS_OVERRIDES = "qos_overrides."
 # The setting `mode` stands for this quantity: it also chooses the values that depend on the mode.
 MODE = "drop.mode"
+# with these the outputs change, and with them the topics
+AT_START = (MODE, "vehicle.legs")
 
 
 class NodeParameters:
@@ -113,14 +115,14 @@ class NodeParameters:
                 s.choices, "" if s.when == "always" else s.when
             )
             node.declare_parameter(name, self._values[name], descriptor, ignore_override=True)
-        for name, value in self.parameters.items():
-            q = PARAMETER_QUANTITIES[name]
+        for name, q in parameters_of(self.parameters.drop.mode).items():
+            value, start = self.parameters[name], name in AT_START
             descriptor = ParameterDescriptor(
                 description=f"{q.meaning} [{q.unit}]" if q.unit else q.meaning,
-                read_only=name == MODE,
+                read_only=start,
             )
             descriptor.additional_constraints = _constraints(
-                q.choices, "start" if name == MODE else "paused"
+                q.choices, "start" if start else "paused"
             )
             if not q.choices:
                 descriptor.floating_point_range = [
@@ -152,7 +154,11 @@ class NodeParameters:
         if p.type_ == Parameter.Type.NOT_SET:
             raise LandingError(f"{p.name} cannot be deleted; set it to a value")
         when = (
-            SETTINGS[p.name].when if p.name in SETTINGS else "start" if p.name == MODE else "paused"
+            SETTINGS[p.name].when
+            if p.name in SETTINGS
+            else "start"
+            if p.name in AT_START
+            else "paused"
         )
         if when == "start":
             raise LandingError(f"{p.name} can only be given when the node is started")

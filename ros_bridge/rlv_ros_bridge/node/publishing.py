@@ -11,13 +11,14 @@ from rclpy.serialization import serialize_message
 from std_msgs.msg import String
 
 from rlv_landing.parameters import Parameters
+from rlv_landing.quantities import LEGS
 
 from ..messages import topics
 from ..messages.message_types import is_installed, message_class
 from ..messages.qos import CLOCK, LATCHED, Qos
 from ..messages.rclpy_qos import create_publisher
 from ..messages.robot_description import robot_description, variables
-from ..messages.topics import Topic, resolve
+from ..messages.topics import Topic, resolve, topics_of
 from .publish_queue import PublishQueue, TopicPublisher
 
 
@@ -41,7 +42,9 @@ class Publishing:
             The serialised message of the description.
         """
         description: bytes = serialize_message(String(data=robot_description(parameters)))
-        self.publishers[topics.VARIABLES].publish(serialize_message(String(data=variables())))
+        self.publishers[topics.VARIABLES].publish(
+            serialize_message(String(data=variables(parameters)))
+        )
         self.publishers[topics.ROBOT_DESCRIPTION].publish(description)
         return description
 
@@ -51,19 +54,22 @@ class Publishing:
         return [p.publisher for topic, p in self.publishers.items() if topic not in left_out]
 
 
-def create_publishing(node: Node, qos: Qos, *, clock: bool) -> Publishing:
+def create_publishing(
+    node: Node, qos: Qos, legs: tuple[int, ...] = LEGS, *, clock: bool
+) -> Publishing:
     """Creates the landing's publishers on `node`.
 
     Args:
         node: has the publishers; its parameters may override their quality of service.
         qos: of what is published at every step.
+        legs: the numbers of the vehicle's legs.
         clock: also create that of `/clock`.
 
     Raises:
         LandingError: an override of the quality of service is not valid.
     """
     # A subscriber that waits for a match on `struts` finds the others matched: it comes last.
-    others = reversed([t for t in topics.RECORDED if t not in topics.LATCHED])
+    others = reversed([t for t in topics_of(legs).recorded if t not in topics.LATCHED])
     profiles = {**dict.fromkeys(topics.LATCHED, LATCHED), **dict.fromkeys(others, qos)}
     if clock:
         profiles[topics.CLOCK] = CLOCK

@@ -58,7 +58,9 @@ SETTINGS: dict[str, Setting] = {
         f"preset of parameters; empty: the FMU's own vehicle, else {DEFAULT_PRESET}",
         when="start",
     ),
-    "mode": Setting("", "landing mode 2-2 or 1-2-1; empty: the parameters' own", when="start"),
+    "mode": Setting(
+        "", "landing mode 2-2, 1-2-1 or space; empty: the parameters' own", when="start"
+    ),
     "parameters_file": Setting("", "TOML file of parameters, instead of a preset", when="start"),
     "realtime_factor": Setting(
         1.0,

@@ -13,11 +13,12 @@ from rclpy.node import Node
 from rclpy.parameter_client import AsyncParameterClient
 
 from rlv_landing.errors import LandingError
+from rlv_landing.parameters import Parameters
 from rlv_landing.quantities import LEGS, MODES
+from rlv_landing.touchdown import leg_directions
 
 from ..messages.axes import to_ros
 from ..messages.columns import READINGS
-from ..messages.legs import leg_points
 from ..messages.message_types import message_class
 from ..messages.qos import Qos
 from ..messages.rclpy_qos import qos_profile
@@ -201,10 +202,10 @@ def mode_of(markers: Any) -> str:
     across = [p.y for p in markers.markers[1].points[::2]]
     radius = max(map(abs, across))
     for mode in MODES:
-        reach = max(abs(y) for _, y, _ in leg_points(mode, 1.0, 0.0))
-        if np.allclose(
-            across, [y * radius / reach for _, y, _ in leg_points(mode, 1.0, 0.0)], atol=1e-6
-        ):
+        sines = [sine for sine, _ in leg_directions(Parameters().for_mode(mode)).values()]
+        reach = max(map(abs, sines))
+        fits = len(across) == len(sines)
+        if fits and np.allclose(across, [-s * radius / reach for s in sines], atol=1e-6):
             return mode
     joints = ", ".join(f"{y:.3g}" for y in across)
     raise LandingError(

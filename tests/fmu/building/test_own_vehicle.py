@@ -16,7 +16,7 @@ from lxml import etree
 
 from rlv_landing import Landing, Parameters
 from rlv_landing.cli import run
-from rlv_landing.parameters import PARAMETER_QUANTITIES
+from rlv_landing.parameters import parameters_of
 from rlv_landing.presets import read_toml
 from rlv_landing.quantities import OUTPUT_NAMES, flat_name
 from rlv_ros_bridge.commands.group import main
@@ -152,7 +152,7 @@ def test_its_description_is_of_the_vehicle(stage, parameters):
     assert "2.736e+04 kg on four legs, 1-2-1 at 4.2 m/s (stage.toml)" in description.description
     assert float(description.defaultExperiment.stopTime) == 2.0
     variables = {v.name: v for v in description.modelVariables}
-    for name, q in PARAMETER_QUANTITIES.items():
+    for name, q in parameters_of("1-2-1").items():
         start = variables[name].start
         assert (start if q.choices else float(start)) == parameters[name]
     binaries = [n for n in ZipFile(stage).namelist() if n.startswith("binaries/linux64/")]

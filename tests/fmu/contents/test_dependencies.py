@@ -12,16 +12,11 @@ from zipfile import ZipFile
 from lxml import etree
 
 from rlv_landing import Landing, Parameters, load_preset
-from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.parameters.space import ONLY_IN_SPACE
-from rlv_landing.parameters.table import GROUPS
-from rlv_landing.quantities import INPUT_QUANTITIES, MODES, OUTPUT_NAMES, OUTPUT_QUANTITIES, SPACE
+from rlv_landing.parameters import PARAMETER_QUANTITIES, parameters_of
+from rlv_landing.quantities import INPUT_QUANTITIES, MODES, OUTPUT_NAMES, OUTPUT_QUANTITIES
 
-# parameters that a symmetric landing refuses, or does not depend on
-ONLY_SPACE = {
-    f"{group}.{name}" for group, owner in GROUPS.items() for name in ONLY_IN_SPACE.get(owner, ())
-}
-
+# of the symmetric landings
+TABLE = parameters_of(min(MODES))
 FIGURES = "yue2022-figures"
 SCALE = {q.name: q.nominal if q.kind == "real" else 1.0 for q in OUTPUT_QUANTITIES}
 # large enough to move a vehicle at rest
@@ -98,11 +93,9 @@ def start(values: dict[str, float | str], inputs: dict[str, float]) -> list[floa
 
 def others(name: str, value: float | str) -> list[float | str]:
     """Values of a parameter near `value`, or its other choices."""
-    q = PARAMETER_QUANTITIES[name]
+    q = TABLE[name]
     if isinstance(value, str):
-        return [c for c in q.choices if c not in (value, SPACE)]
-    if name in ONLY_SPACE:
-        return []
+        return [c for c in q.choices if c != value]
     near = [value * 1.01 + (1e-4 if value == 0.0 else 0.0), value * 0.99]
     return [v for v in near if q.lo <= v <= q.hi]
 
@@ -114,7 +107,7 @@ def observe_parameters(
 ) -> None:
     """Change one parameter after the other and record which outputs change at time 0."""
     base, before = Parameters().with_values(values), start(values, inputs)
-    for name in PARAMETER_QUANTITIES:
+    for name in TABLE:
         for value in others(name, base[name]):
             record_changes(name, changed(before, start({**values, name: value}, inputs)))
 

@@ -47,12 +47,13 @@ def test_fmpy_finds_no_problem_and_both_files_follow_the_schemas(fmu3, archive):
 def test_flat_names_are_those_of_the_same_arrays(fmu, fmu3, tmp_path):
     from fmu_build.fmi3.description import describe3
     from fmu_build.terminals import terminals_and_icons
+    from fmu_build.wanted import Wanted
 
     root = ElementTree.fromstring(ZipFile(fmu).read("modelDescription.xml"))
     root.set("variableNamingConvention", "flat")
     for variable in root.iter("ScalarVariable"):
         variable.set("name", flat_name(variable.attrib["name"]))
-    made = describe3(root)
+    made = describe3(root, Wanted())
     file = tmp_path / "modelDescription.xml"
     file.write_bytes(ElementTree.tostring(made))
     flat, structured = (fmpy.read_model_description(str(f)) for f in (file, fmu3))
@@ -61,7 +62,7 @@ def test_flat_names_are_those_of_the_same_arrays(fmu, fmu3, tmp_path):
     ]
     assert places(flat, file) == places(structured, fmu3)
     assert ElementTree.tostring(made.find("ModelStructure")) == ElementTree.tostring(
-        describe3(ElementTree.fromstring(ZipFile(fmu).read("modelDescription.xml"))).find(
+        describe3(ElementTree.fromstring(ZipFile(fmu).read("modelDescription.xml")), Wanted()).find(
             "ModelStructure"
         )
     )

@@ -15,7 +15,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
 
 from rlv_landing import Landing, __version__, load_preset
-from rlv_landing.parameters import PARAMETER_QUANTITIES
+from rlv_landing.parameters import parameters_of
 from rlv_landing.quantities import (
     INPUT_QUANTITIES,
     OUTPUT_NAMES,
@@ -32,7 +32,7 @@ def drop_values(mode: str) -> dict[str, float | str]:
     return {
         name: value
         for name, value in load_preset(FIGURES, mode).items()
-        if name.startswith("drop.")
+        if name.startswith("drop.") and name in parameters_of(mode)
     }
 
 
@@ -44,10 +44,12 @@ def test_every_quantity_is_a_variable_with_its_unit_causality_and_start(descript
     variables = {v.name: v for v in description.modelVariables}
     calculated = (*OUTPUT_QUANTITIES, *STATISTIC_QUANTITIES, *PEAK_QUANTITIES)
     others = [q.name for q in (*INPUT_QUANTITIES, *calculated)]
-    assert list(variables) == [*PARAMETER_QUANTITIES, *others]
+    table = parameters_of("2-2")
+    assert list(variables) == [*table, *others]
+    assert not [name for name in variables if "roll" in name or "legs" in name]
     units = {u.name for u in description.unitDefinitions}
     for causality, quantities in (
-        ("parameter", PARAMETER_QUANTITIES.values()),
+        ("parameter", table.values()),
         ("input", INPUT_QUANTITIES),
         ("output", OUTPUT_QUANTITIES),
         ("local", (*STATISTIC_QUANTITIES, *PEAK_QUANTITIES)),
@@ -64,8 +66,9 @@ def test_every_quantity_is_a_variable_with_its_unit_causality_and_start(descript
             )
             assert v.unit == ((q.unit or "1") if q.kind == "real" else None)
             assert v.unit is None or v.unit in units
-    for name, value in load_preset(FIGURES, "2-2").items():
-        start = variables[name].start
+    preset = load_preset(FIGURES, "2-2")
+    for name in table:
+        start, value = variables[name].start, preset[name]
         assert (start if isinstance(value, str) else float(start)) == value
     assert all(variables[q.name].start == "0.0" for q in INPUT_QUANTITIES)
 

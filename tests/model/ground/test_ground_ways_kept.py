@@ -8,8 +8,8 @@ from interrupting import interrupted_after
 from pytest import approx
 
 from rlv_landing import Landing, LandingError, load_preset
-from rlv_landing.inputs.driven import RATE_INPUTS
 from rlv_landing.inputs.ground_way import Way
+from rlv_landing.quantities import interface_of
 from rlv_landing.state import StateHeader
 
 RESTED = 12.0
@@ -85,7 +85,7 @@ def on_the_way():
     return landing
 
 
-@pytest.mark.parametrize("which", range(len(RATE_INPUTS)))
+@pytest.mark.parametrize("which", range(len(interface_of("2-2").positions)))
 @pytest.mark.parametrize(
     ("field", "value", "message"),
     [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
+from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import Any
@@ -11,8 +12,9 @@ from rlv_landing import Landing, Parameters
 from rlv_landing.errors import LandingError
 from rlv_landing.text.units import parse_number
 
-from ...messages.fields import FIELDS, Vehicle
-from ...messages.inputs import READINGS
+from ...messages.fields import Vehicle
+from ...messages.inputs import READINGS, input_table_of
+from ...messages.tables import table_of
 from ...messages.topics import APPLIED, resolve
 from ...messages.wire import NANOSECONDS
 from ..peaks import landing_peaks
@@ -20,8 +22,6 @@ from ..reader import Decoder, LogReader
 
 # Inputs by the number of the sample from which on they act.
 Inputs = dict[int, list[dict[str, float]]]
-# An FMU that repeats a run has these, and may be of an older version, which lacks other quantities.
-NEEDED = frozenset(output for field in FIELDS for output in field.outputs)
 
 
 class RepeatedRun:
@@ -90,7 +90,9 @@ class RepeatedRun:
             return
         from ...fmu.runner import FmuRunner
 
-        with FmuRunner(self._fmu, dict(self.parameters.items()), NEEDED) as runner:
+        # it may be of an older version, which lacks quantities that no message has
+        needed = table_of(self.vehicle.interface).needed
+        with FmuRunner(self._fmu, dict(self.parameters.items()), needed) as runner:
             self._peaks = runner.peaks
             yield from self._samples(
                 lambda: dict(zip(runner.output_names, runner.values())),
@@ -133,6 +135,7 @@ def _inputs(reader: LogReader, step_ns: int, refusal: str) -> Inputs:
                 "another program has written it"
             )
     decode = Decoder(reader)
+    table = input_table_of(reader.interface)
     found: Inputs = {}
     for message in reader.messages(names):
         at = f"{refusal}its input {message.topic} at {message.log_time / 1e9:.9g} s "
@@ -147,7 +150,8 @@ def _inputs(reader: LogReader, step_ns: int, refusal: str) -> Inputs:
                 at + f"is not at a sample: those are {step_ns / 1e9:g} s apart; it was changed"
             )
         try:
-            found.setdefault(k, []).append(decode.read(message, names[message.topic]))
+            values = decode.read(message, partial(names[message.topic], table=table))
+            found.setdefault(k, []).append(values)
         except LandingError as e:
             raise LandingError(at + f"cannot be: {e}") from None
     return found

@@ -14,7 +14,7 @@ from rlv_landing.errors import LandingError
 
 from ...fmu.builds import inexact_reason
 from ...messages import topics
-from ...messages.fields import TOPIC_FIELDS, expected_fields, expected_numbers, leaves
+from ...messages.tables import expected_fields, expected_numbers, leaves, table_of
 from ...messages.topics import resolve
 from ..peaks import read_peaks
 from ..reader import Decoder, LogMessage, LogReader
@@ -36,7 +36,7 @@ SAMPLE_BYTES = 64
 def verify(reader: LogReader, fmu: Path | None = None) -> Verification:
     """Repeats the run of the log, and compares all messages that follow from it.
 
-    These are those of every step, `topics.SAMPLED`; markers, transforms and diagnostics are not
+    These are those of every step, `LegTopics.sampled`; markers, transforms and diagnostics are not
     compared. Inputs in the log act again at their times.
 
     Args:
@@ -79,7 +79,8 @@ class _Comparison:
         self._run = run
         self._found = found
         self._most_instants = most_instants
-        self._topics = {resolve(reader.namespace, name): name for name in TOPIC_FIELDS}
+        carried = table_of(run.vehicle.interface).fields_of
+        self._topics = {resolve(reader.namespace, name): name for name in carried}
         logged = {channel.topic for channel in reader.channels.values()}
         later = [t for t, name in self._topics.items() if name in ADDED_LATER and t not in logged]
         for topic in later:
@@ -241,9 +242,10 @@ class _Comparison:
 
 def _largest_values(run: RepeatedRun, count: int) -> dict[tuple[str, str], float]:
     scales: dict[tuple[str, str], float] = {}
+    carried = table_of(run.vehicle.interface).fields_of
     with closing(run.samples()) as samples:
         for values in islice(samples, count):
-            for topic in TOPIC_FIELDS:
+            for topic in carried:
                 for path, value in expected_numbers(topic, values, run.vehicle).items():
                     scales[topic, path] = max(scales.get((topic, path), 0.0), abs(value))
     return scales

@@ -1,0 +1,101 @@
+"""Dependencies of the outputs of a landing in space: see `dependencies.py`.
+
+Positions of the ground change no output at once: it moves to a new one from the next step on.
+"""
+
+from __future__ import annotations
+
+from rlv_landing.quantities import SPACE_INPUTS
+
+LOADS = frozenset(q.name for q in SPACE_INPUTS if q.name.startswith("external."))
+GROUND = frozenset(q.name for q in SPACE_INPUTS if q.name.startswith("ground."))
+RATES = frozenset(name for name in GROUND if name.endswith("_rate"))
+
+LEG = frozenset(
+    f"{strut}.{what}"
+    for strut in ("main_strut", "auxiliary_strut")
+    for what in ("joint_radius", "joint_depth", "length")
+)
+# the rigid vehicle, which tumbles until its first contact
+MASSES = frozenset(
+    f"vehicle.{what}"
+    for what in (
+        *("mass", "footpad_mass", "cg_offset_x", "cg_offset_z"),
+        *(f"inertia{axes}" for axes in ("", "_roll", "_yaw", "_xy", "_xz", "_yz")),
+    )
+)
+TURN = frozenset(
+    f"drop.{what}"
+    for what in ("heading", "roll", "tilt", "roll_rate", "yaw_rate", "pitch_rate", "contact_time")
+)
+MOTION = LEG | MASSES | TURN
+VX = MOTION | {"drop.horizontal_velocity"}
+VY = MOTION | {"drop.vertical_velocity", "ground.gravity"}
+VZ = MOTION | {"drop.lateral_velocity"}
+FEET = frozenset({"vehicle.leg_azimuth"})
+HEIGHT = VY | FEET | {"ground.slope", "ground.slope_direction"}
+CHARGE = frozenset(
+    f"main_strut.{what}"
+    for what in ("kind", "charge_pressure", "ambient_pressure", "area_upper", "area_lower")
+)
+LOADED = MOTION | CHARGE | {"vehicle.transverse_load_at"}
+PRESSURE = frozenset({"main_strut.kind", "main_strut.charge_pressure"})
+LIQUID = PRESSURE | {
+    f"main_strut.{what}"
+    for what in (
+        *("volume_upper", "volume_lower", "ambient_pressure", "air_fraction", "air_exponent"),
+        *("bulk_modulus", "bulk_modulus_slope"),
+    )
+}
+ACCELERATIONS = tuple(
+    f"body.{kind}{axis}" for kind in ("a", "spin_acceleration_") for axis in "xyz"
+)
+ATTITUDE = ("q_w", "q_x", "q_y", "q_z", "pitch", "roll", "heading", "spin_x", "spin_y", "spin_z")
+
+INPUTS: dict[str, frozenset[str]] = {
+    **dict.fromkeys(ACCELERATIONS, LOADS | RATES),
+    "body.top_axial_acceleration": LOADS | RATES,
+    "status.phase": LOADS | RATES,
+    "contact.force_x": RATES,
+    "contact.force_y": RATES,
+    "contact.force_z": RATES,
+    "contact.force": RATES,
+    "auxiliary_strut.transverse_force": LOADS | RATES,
+}
+
+START_INPUTS: dict[str, frozenset[str]] = {
+    **dict.fromkeys(ACCELERATIONS, LOADS),
+    "body.y": GROUND,
+    "body.top_axial_acceleration": LOADS,
+    "energy.potential": GROUND,
+    "auxiliary_strut.transverse_force": LOADS,
+    "footpad.y": GROUND,
+    "contact.penetration": GROUND - {"ground.heave"},
+}
+
+PARAMETERS: dict[str, frozenset[str]] = {
+    **{f"body.{what}": MOTION for what in ATTITUDE},
+    **dict.fromkeys(ACCELERATIONS, LOADED),
+    "body.x": VX,
+    "body.y": HEIGHT,
+    "body.z": VZ,
+    "body.vx": VX,
+    "body.vy": VY,
+    "body.vz": VZ,
+    "body.ay": LOADED | {"ground.gravity"},
+    "body.top_axial_acceleration": LOADED | {"vehicle.top_height", "ground.gravity"},
+    "energy.kinetic": VX | VY | VZ,
+    "energy.potential": HEIGHT,
+    "energy.liquid": LIQUID,
+    "status.phase": MOTION | FEET,
+    "status.stability_margin": MOTION | FEET,
+    "main_strut.force": CHARGE,
+    "main_strut.pressure_upper": PRESSURE,
+    "main_strut.pressure_lower": PRESSURE,
+    "main_strut.liquid_mass": LIQUID | {"main_strut.fluid_density"},
+    "auxiliary_strut.transverse_force": LOADED | FEET,
+    "footpad.x": VX | FEET,
+    "footpad.y": HEIGHT,
+    "footpad.z": VZ | FEET,
+    "contact.penetration": VX | VZ | HEIGHT,
+}

@@ -1,0 +1,122 @@
+"""Dependencies of a landing in space, compared with what the model does.
+
+What is declared may be more than what one vehicle shows, for few outputs.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+
+import pytest
+from five_legs import DECK, FIVE_LEGS
+
+from fmu_build.dependencies import IN_SPACE
+from rlv_landing import Landing, Parameters
+from rlv_landing.parameters import parameters_of
+from rlv_landing.quantities import interface_of
+
+SPACE = interface_of("space", 5)
+SCALE = {q.name: q.nominal if q.kind == "real" else 1.0 for q in SPACE.outputs}
+TURNS = ("roll", "yaw", "tilt")
+MOVED = FIVE_LEGS | {
+    "vehicle.inertia_xy": 20.0,
+    "vehicle.inertia_xz": 15.0,
+    "vehicle.inertia_yz": -10.0,
+    "vehicle.cg_offset_x": 0.1,
+    "vehicle.cg_offset_z": -0.08,
+    "drop.tilt": 0.1,
+    "drop.pitch_rate": 0.5,
+    "drop.roll_rate": 0.6,
+    "drop.yaw_rate": -0.8,
+    "drop.vertical_velocity": -3.0,
+    "drop.contact_time": 0.15,
+    "main_strut.charge_pressure": 2e6,
+    "auxiliary_strut.play_tension": 5e-3,
+}
+# the deck's place and way count in these through the rigid vehicle's attitude, all but not at all
+MORE_DECLARED = {"status.phase", "energy.potential", "body.y", "body.q_w", "contact.force_y"}
+
+
+def of_any_leg(name: str) -> str:
+    return re.sub(r"^leg\[\d+\]\.", "", name)
+
+
+def step_of(name: str, *, start: bool) -> float:
+    """A change of an input, large enough to move a vehicle at rest; at the start it still lands."""
+    group, what = name.split(".")
+    if group == "external":
+        return 1e4 if "force" in what else 1e3
+    if not what.endswith("_rate"):
+        return 0.05
+    return (0.05 if what.startswith(TURNS) else 0.2) if start else 1.0
+
+
+def changed(before: list[float], after: list[float]) -> Iterator[str]:
+    """Outputs that differ by more than rounding, those of all legs alike."""
+    for name, a, b in zip(SPACE.output_names, before, after):
+        if abs(a - b) > 1e-9 * SCALE[name]:
+            yield of_any_leg(name)
+
+
+def observe_inputs(landing: Landing, found: dict[str, set[str]], *, start: bool) -> None:
+    state, before = landing.state(), landing.values()
+    for name in SPACE.input_names:
+        for sign in (1.0, -1.0):
+            landing.restore(state)
+            landing.set_inputs({name: sign * step_of(name, start=start)})
+            for output in changed(before, landing.values()):
+                found.setdefault(output, set()).add(name)
+    landing.restore(state)
+
+
+def compare(found: Mapping[str, set[str]], declared: Mapping[str, frozenset[str]]) -> None:
+    assert found.keys() == declared.keys()
+    for name, causes in found.items():
+        assert causes <= declared[name], (name, causes - declared[name])
+        assert name in MORE_DECLARED or causes == declared[name], (name, declared[name] - causes)
+
+
+def test_outputs_depend_at_once_on_the_inputs_that_are_declared():
+    found: dict[str, set[str]] = {}
+    landing = Landing(Parameters().with_values(FIVE_LEGS))
+    for time in (0.05, 0.12, 0.2, 0.35, 0.6, 4.0):
+        landing.advance_to(time)
+        observe_inputs(landing, found, start=False)
+    assert landing.get("status.phase") == 2.0
+    compare(found, IN_SPACE.inputs_of)
+
+
+@pytest.fixture(scope="module")
+def at_start() -> tuple[dict[str, set[str]], dict[str, set[str]]]:
+    """The parameters and the inputs that change an output at time 0."""
+    parameters: dict[str, set[str]] = {}
+    inputs: dict[str, set[str]] = {}
+    base = Parameters().with_values(MOVED)
+    table = parameters_of("space")
+    for own in ({}, DECK):
+        before = Landing(base, inputs=own).values()
+        for name, q in table.items():
+            value = base[name]
+            if isinstance(value, str):
+                others = [c for c in q.choices if c != value]
+            else:
+                # these count by little in the short flight
+                part = 0.8 if "inertia" in name or "offset" in name else 0.99
+                others = [] if name == "vehicle.legs" else [value * part + 1e-4 * (value == 0.0)]
+            for other in others:
+                after = Landing(base.with_values({name: other}), inputs=own).values()
+                for output in changed(before, after):
+                    parameters.setdefault(output, set()).add(name)
+        observe_inputs(Landing(base, inputs=own), inputs, start=True)
+    return parameters, inputs
+
+
+def test_initial_values_depend_on_the_parameters_that_are_declared(at_start):
+    found = at_start[0]
+    # a vehicle that stands beyond its feet has another phase: not this one
+    compare({"status.phase": set(), **found}, IN_SPACE.parameters_of)
+
+
+def test_initial_values_depend_on_the_inputs_that_are_declared(at_start):
+    compare(at_start[1], IN_SPACE.start_inputs_of)

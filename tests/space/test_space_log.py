@@ -1,0 +1,132 @@
+"""Logs of landings in space: recorded, shown, verified bit for bit, read back, replayed."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from random import Random
+
+import bridge_tools
+import numpy as np
+import pytest
+from five_legs import DECK, five_legs
+from rclpy.serialization import serialize_message
+
+from rlv_landing import Landing
+from rlv_landing.presets import to_toml
+from rlv_landing.quantities import interface_of
+from rlv_ros_bridge.fmu.builds import build_metadata
+from rlv_ros_bridge.logs.history import log_history
+from rlv_ros_bridge.logs.peaks import landing_peaks, peak_texts
+from rlv_ros_bridge.logs.reader import LogReader
+from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.logs.verification.verify import verify
+from rlv_ros_bridge.messages.columns import readings_of
+from rlv_ros_bridge.messages.fields import Vehicle
+from rlv_ros_bridge.messages.inputs import input_table_of
+from rlv_ros_bridge.messages.qos import TELEMETRY
+from rlv_ros_bridge.messages.samples import SampleBytes
+from rlv_ros_bridge.messages.topics import APPLIED, APPLIED_GROUND, APPLIED_WRENCH, topics_of
+from rlv_ros_bridge.node.input_queue import InputChange
+
+SPACE = interface_of("space", 5)
+STOP_TIME = 0.4
+COLUMNS = [name for names, _ in readings_of(SPACE).values() for name in names]
+
+
+@pytest.fixture(scope="module")
+def recorded(space_fmu: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The log of a landing of the FMU on five legs, by the node."""
+    folder = tmp_path_factory.mktemp("log") / "space"
+    return bridge_tools.record(space_fmu, folder, "--stop-time", STOP_TIME)
+
+
+def test_the_node_records_a_landing_of_the_fmu_in_space(recorded: Path) -> None:
+    history, landing = log_history(recorded), Landing(five_legs()).run(STOP_TIME, 1e-3)
+    assert list(history.names) == COLUMNS
+    assert {"body.q_w", "body.spin_y", "leg[5].contact.force_z"} <= set(COLUMNS)
+    for name in COLUMNS:
+        assert np.array_equal(history[name], landing[name]), name
+    assert history.extremes is not None
+    assert (
+        history.extremes["leg[5].contact.force"][2:] == landing.extreme("leg[5].contact.force")[2:]
+    )
+
+
+def test_it_is_verified_bit_for_bit_by_landing_and_by_the_fmu(
+    recorded: Path, space_fmu: Path
+) -> None:
+    for fmu in (None, space_fmu):
+        found = verify(LogReader(recorded), fmu)
+        assert (found.same, found.other_bits, found.first) == (True, 0, None)
+        assert (found.instants, found.peaks) == (401, len(SPACE.peaks))
+
+
+def test_it_is_shown_and_exported(recorded: Path, command, tmp_path: Path) -> None:
+    shown = command("log", "info", str(recorded))
+    assert shown.code == 0
+    assert "/landing/leg_5/contact" in shown.out
+    assert "  5   " in shown.out
+    file = tmp_path / "landing.csv"
+    exported = command("log", "export", str(recorded), str(file))
+    assert exported.code == 0, exported.err
+    with file.open() as text:
+        assert next(csv.reader(text)) == ["time", *COLUMNS]
+
+
+def test_the_planar_fmu_does_not_repeat_it(recorded: Path, fmu: Path, command) -> None:
+    done = command("log", "verify", str(recorded), "--fmu", str(fmu))
+    assert done.code == 2
+    assert "drop.mode = space" in done.err
+    assert done.err.count("\n") == 1
+
+
+def log_with_inputs(folder: Path) -> LogReader:
+    """A log as the node writes it, of a landing on a deck and in gusts, in all directions."""
+    parameters, random = five_legs(), Random(7)
+    table, names = input_table_of(SPACE), topics_of(SPACE.legs)
+    packer, landing = SampleBytes(Vehicle.of(parameters)), Landing(parameters)
+    entries = [
+        RecordedTopic(f"/landing/{t.name}", t.type_name, TELEMETRY)
+        for t in (*names.sampled, *APPLIED)
+    ]
+    metadata = {
+        "mode": "space",
+        "namespace": "/landing",
+        "step_size": "0.001",
+        "stop_time": repr(STOP_TIME),
+        **build_metadata(Path("none")),
+    }
+    attachments = {"parameters.toml": to_toml(parameters).encode()}
+    recorder = Recorder(folder, entries, metadata, attachments)
+    wanted = [(t, part) for t, part in zip(packer.topics, packer.slices) if t in names.sampled]
+
+    def change_inputs(k: int) -> None:
+        for topic, prefix in ((APPLIED_WRENCH, "external."), (APPLIED_GROUND, "ground.")):
+            if k == 0 or random.random() < 0.1:
+                sizes = {n: DECK.get(n, 0.01) for n in SPACE.input_names if n.startswith(prefix)}
+                values = {name: random.uniform(0.5, 1.0) * size for name, size in sizes.items()}
+                landing.set_inputs(values)
+                message = InputChange(topic, k * 1_000_000, values, table).message()
+                data = serialize_message(message)
+                recorder.write(f"/landing/{topic.name}", k * 1_000_000, data)
+
+    change_inputs(0)
+    for k in range(round(STOP_TIME * 1e3) + 1):
+        landing.advance_to(k * 1e-3)
+        messages = packer.pack(k * 1_000_000, landing.values())
+        for topic, part in wanted:
+            recorder.write(f"/landing/{topic.name}", k * 1_000_000, messages[part])
+        if k:
+            change_inputs(k)
+    recorder.close(peak_texts(landing_peaks(landing), STOP_TIME))
+    return LogReader(folder)
+
+
+def test_a_run_with_all_inputs_is_repeated_bit_for_bit(space_fmu: Path, tmp_path: Path) -> None:
+    reader = log_with_inputs(tmp_path / "log")
+    for fmu in (None, space_fmu):
+        found = verify(reader, fmu)
+        assert (found.first, found.other_bits) == (None, 0)
+        assert found.inputs > 40
+        assert found.peaks == len(SPACE.peaks)
