@@ -92,7 +92,7 @@ static bool check_arguments(const struct instance *c, const char *name, fmi2Type
         log_message(c, STATUS_ERROR, "fmi2Instantiate: this FMU is for co-simulation only");
     else if (strcmp(guid, GUID) != 0)
         log_message(c, STATUS_ERROR,
-                    "fmi2Instantiate: fmuGUID = %s, but this FMU's is %s; description and binary "
+                    "fmi2Instantiate: fmuGUID = %.100s, but this FMU's is %s; description and binary "
                     "are of different builds",
                     guid, GUID);
     else

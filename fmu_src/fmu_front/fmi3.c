@@ -52,7 +52,7 @@ static bool check_arguments(const struct instance *c, const char *name, const ch
         log_message(c, STATUS_ERROR, "%s: instanceName is not UTF-8", instantiate.name);
     else if (strcmp(token, GUID) != 0)
         log_message(c, STATUS_ERROR,
-                    "%s: instantiationToken = %s, but this FMU's is %s; description and binary are "
+                    "%s: instantiationToken = %.100s, but this FMU's is %s; description and binary are "
                     "of different builds",
                     instantiate.name, token, GUID);
     else

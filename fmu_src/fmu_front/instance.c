@@ -32,13 +32,14 @@ static bool find_resources(struct instance *c, const char *location)
         const char *given = location ? location : "NULL";
         if (!resources_of_library(folder)) {
             log_message(c, STATUS_ERROR,
-                        "the location of the FMU's resources, %s, does not lead to them (no %s.py "
-                        "there), and they are not beside the folder of its binary",
+                        "the location of the FMU's resources, %.3000s, does not lead to them (no "
+                        "%s.py there), and they are not beside the folder of its binary",
                         given, SLAVE_MODULE);
             return false;
         }
         log_message(c, STATUS_WARNING,
-                    "the location of the FMU's resources, %s, does not lead to them; %s is taken",
+                    "the location of the FMU's resources, %.1900s, does not lead to them; %.1900s is "
+                    "taken",
                     given, folder);
     }
     c->resources = copy_of(folder);
@@ -104,7 +105,7 @@ enum status instance_set_logging(struct instance *c, const struct function *f, b
             continue;
         }
         c->worst_status = STATUS_WARNING;
-        log_message(c, STATUS_WARNING, "%s: %s is no log category of this FMU", f->name,
+        log_message(c, STATUS_WARNING, "%s: %.100s is no log category of this FMU", f->name,
                     categories[i] ? categories[i] : "NULL");
     }
     /* if none of them exists, none is logged */

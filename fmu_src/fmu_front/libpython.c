@@ -174,6 +174,17 @@ static bool find_python(const char *resources, struct message *reason)
     return false;
 }
 
+static bool has_streams_for_python(struct message *reason)
+{
+    const char *name = stream_that_is_a_directory();
+    if (name)
+        append_text(reason,
+                    "%s%s of this process is a directory, with which Python does not start; "
+                    "redirect it to a file or /dev/null",
+                    *reason->text ? "; " : "", name);
+    return !name;
+}
+
 /* Start the Python that the process has in it. */
 static bool start_own_python(int minor, struct message *reason)
 {
@@ -199,9 +210,12 @@ bool python_ready(const char *resources, struct message *reason)
             return false;
         }
         return python_find_functions(reason) &&
-               (py.Py_IsInitialized() || start_own_python(minor, reason));
+               (py.Py_IsInitialized() ||
+                (has_streams_for_python(reason) && start_own_python(minor, reason)));
     }
     struct message tried = {""};
+    if (!has_streams_for_python(reason))
+        return false;
     if (find_python(resources, &tried))
         return true;
     append_text(reason,

@@ -9,8 +9,8 @@
 #include <string.h>
 
 const char *const PYTHON_LIBRARY = "libpython3.%d.so.1.0";
-const char *const STANDARD_LIBRARIES[] = {"%s/lib/python3.%d/os.py", "%s/lib64/python3.%d/os.py",
-                                          NULL};
+const char *const STANDARD_LIBRARIES[] = {"%s/lib/python3.%d/encodings/utf_8.py",
+                                          "%s/lib64/python3.%d/encodings/utf_8.py", NULL};
 const char *const INSTALLED_PYTHON_SOURCE = "python3 on PATH:";
 
 bool usual_python(int oldest, int newest, char path[PATH_SIZE])

@@ -44,6 +44,7 @@ void log_message(const struct instance *c, enum status status, const char *forma
     va_start(arguments, format);
     vsnprintf(message.text, sizeof message.text, format, arguments);
     va_end(arguments);
+    make_utf8(message.text); /* the host's own texts need not be, and long ones are cut */
     send_message(c, status, NULL, message.text);
 }
 

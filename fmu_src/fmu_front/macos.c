@@ -8,7 +8,7 @@
 #include <string.h>
 
 const char *const PYTHON_LIBRARY = "libpython3.%d.dylib";
-const char *const STANDARD_LIBRARIES[] = {"%s/lib/python3.%d/os.py", NULL};
+const char *const STANDARD_LIBRARIES[] = {"%s/lib/python3.%d/encodings/utf_8.py", NULL};
 const char *const INSTALLED_PYTHON_SOURCE = "python.org's, Homebrew's, or that of python3 on PATH:";
 /* python.org's, Homebrew's on Apple silicon and on Intel */
 static const char *const FRAMEWORKS[] = {

@@ -55,13 +55,20 @@ bool usual_python(int oldest, int newest, char path[PATH_SIZE]);
 void lock_process(void);
 void unlock_process(void);
 
+/*
+ * The name of a standard stream that is a directory; NULL if none is.
+ *
+ * Python would end the process when it starts with such a stream. It starts without streams.
+ */
+const char *stream_that_is_a_directory(void);
+
 /* Save and restore the program's LC_CTYPE, which the start of Python changes. */
 void save_locale(void);
 void restore_locale(void);
 
 /* Format of libpython's name for the loader; argument: minor version. */
 extern const char *const PYTHON_LIBRARY;
-/* Formats of files that a Python's home must hold; arguments: home, minor version. NULL ends. */
+/* Formats of a file of the home that Python needs to start; arguments: home, minor version. NULL ends. */
 extern const char *const STANDARD_LIBRARIES[];
 /* The place where installed_python looks, for messages. */
 extern const char *const INSTALLED_PYTHON_SOURCE;

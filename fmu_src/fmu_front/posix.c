@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static const char ASK_PYTHON3_COMMAND[] =
@@ -86,6 +87,17 @@ void lock_process(void)
 void unlock_process(void)
 {
     funlockfile(stderr);
+}
+
+const char *stream_that_is_a_directory(void)
+{
+    static const char *const names[] = {"standard input", "standard output", "standard error"};
+    for (int i = 0; i < 3; i++) {
+        struct stat status;
+        if (fstat(i, &status) == 0 && S_ISDIR(status.st_mode))
+            return names[i];
+    }
+    return NULL;
 }
 
 void save_locale(void)

@@ -24,28 +24,48 @@ void double_character(const char *text, char character, char *to, size_t size)
     *to = '\0';
 }
 
+/* Length of the UTF-8 character at `s`, and its code point; 0 if there is none. */
+static int character_at(const unsigned char *s, uint32_t *point)
+{
+    static const uint32_t shortest[] = {0, 0x80, 0x800, 0x10000};
+    int more = *s < 0x80             ? 0
+               : (*s & 0xe0) == 0xc0 ? 1
+               : (*s & 0xf0) == 0xe0 ? 2
+               : (*s & 0xf8) == 0xf0 ? 3
+                                     : -1;
+    if (more < 0)
+        return 0;
+    *point = more == 0 ? *s : *s & (0x3fu >> more);
+    for (int i = 1; i <= more; i++) {
+        if ((s[i] & 0xc0) != 0x80)
+            return 0;
+        *point = *point << 6 | (s[i] & 0x3fu);
+    }
+    bool exists = *point >= shortest[more] && *point <= 0x10ffff &&
+                  !(*point >= 0xd800 && *point < 0xe000);
+    return exists ? more + 1 : 0;
+}
+
+void make_utf8(char *text)
+{
+    while (*text) {
+        uint32_t point;
+        int length = character_at((const unsigned char *)text, &point);
+        if (!length)
+            *text = '?';
+        text += length ? length : 1;
+    }
+}
+
 bool decode_utf8(const char *text, wchar_t *wide, size_t size)
 {
-    const unsigned char *s = (const unsigned char *)text;
     size_t n = 0;
-    while (*s) {
-        int more = *s < 0x80             ? 0
-                   : (*s & 0xe0) == 0xc0 ? 1
-                   : (*s & 0xf0) == 0xe0 ? 2
-                   : (*s & 0xf8) == 0xf0 ? 3
-                                         : -1;
-        if (more < 0)
+    while (*text) {
+        uint32_t point;
+        int length = character_at((const unsigned char *)text, &point);
+        if (!length)
             return false;
-        uint32_t point = more == 0 ? *s : *s & (0x3fu >> more);
-        s++;
-        for (int i = 0; i < more; i++, s++) {
-            if ((*s & 0xc0) != 0x80)
-                return false;
-            point = point << 6 | (*s & 0x3fu);
-        }
-        static const uint32_t shortest[] = {0, 0x80, 0x800, 0x10000};
-        if (point < shortest[more] || point > 0x10ffff || (point >= 0xd800 && point < 0xe000))
-            return false;
+        text += length;
         if (wide) {
             if (n + 2 >= size)
                 return false;

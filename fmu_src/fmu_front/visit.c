@@ -43,6 +43,7 @@ void add_note(struct visit *v, enum status status, const char *category, const c
         free(note);
         return;
     }
+    make_utf8(note->text); /* a long one is cut */
     note->status = status;
     note->category = category ? copy_of(category) : NULL;
     *v->last = note;

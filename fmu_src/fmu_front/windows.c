@@ -10,7 +10,8 @@
 #include <psapi.h>
 
 const char *const PYTHON_LIBRARY = "python3%d.dll";
-const char *const STANDARD_LIBRARIES[] = {"%s/Lib/os.py", "%s/python3%d.zip", NULL};
+const char *const STANDARD_LIBRARIES[] = {"%s/Lib/encodings/utf_8.py", "%s/python3%d.zip",
+                                          NULL};
 const char *const INSTALLED_PYTHON_SOURCE = "registry (PythonCore):";
 
 static HMODULE python; /* the Python library; on Linux and macOS its symbols are global instead */
@@ -172,6 +173,11 @@ bool installed_python(int oldest, int newest, char path[PATH_SIZE])
                 return true;
         }
     return false;
+}
+
+const char *stream_that_is_a_directory(void)
+{
+    return NULL; /* Windows opens no directories as streams */
 }
 
 bool is_in_own_namespace(const void *address)

@@ -13,6 +13,7 @@ import pytest
 
 from rlv_landing import Landing
 from rlv_landing.core import compiled
+from rlv_landing.quantities import OUTPUT_NAMES
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -125,6 +126,28 @@ def test_the_compiled_core_needs_nothing_new_and_gives_the_same_digits(compiler,
     landing = Landing()
     landing.advance_to(0.4)
     assert values == [float(value).hex() for value in landing.values()]
+
+
+def test_other_last_bits_of_the_c_librarys_functions_move_a_landing_within_its_tolerance(tmp_path):
+    """So do those of another system: its C library rounds other results in the other direction."""
+    library = tmp_path / "last_bits.so"
+    source = Path(__file__).with_name("last_bits.c")
+    command = ["gcc", "-O2", "-fno-builtin", "-shared", "-fPIC", "-o", library, source]
+    subprocess.run([*command, "-ldl", "-lm"], check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", LAND],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        env={**os.environ, "LD_PRELOAD": str(library)},
+    )
+    assert done.returncode == 0, done.stderr
+    values = dict(zip(OUTPUT_NAMES, map(float.fromhex, done.stdout.split()[1:])))
+    landing = Landing()
+    landing.advance_to(0.4)
+    assert list(values.values()) != landing.values()
+    for name in ("body.x", "body.y", "body.pitch"):
+        assert values[name] == pytest.approx(landing.get(name), rel=0, abs=1e-5), name
 
 
 def test_the_built_fmu_needs_no_libstdcpp_and_with_zig_no_new_glibc(unpacked, binary):

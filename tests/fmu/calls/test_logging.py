@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ctypes import c_char_p
+from ctypes import byref, c_char_p
 
 import pytest
 from fmpy import fmi2
@@ -50,3 +50,14 @@ def test_only_the_categories_asked_for_are_logged(instance):
 def test_a_percent_sign_in_a_message_does_not_reach_the_hosts_printf(instance):
     instance.status("fmi2SetDebugLogging", 1, 1, (c_char_p * 1)(b"100%n"))
     assert "100%%n is no log category" in instance.reason()
+
+
+@pytest.mark.parametrize("text", [b"x" * 10_000, b"\xff" * 10_000, "ü".encode() * 10_000])
+def test_a_message_is_utf8_and_has_its_end_whatever_text_the_host_gives(instance, text):
+    """The log's `decode` would fail."""
+    instance.status("fmi2SetDebugLogging", 1, 1, (c_char_p * 1)(text))
+    assert instance.reason().endswith(" is no log category of this FMU")
+    assert not instance.slave.dll.fmi2Instantiate(
+        b"one", fmi2.fmi2CoSimulation, text, b"file:///x", byref(instance.callbacks), 0, 1
+    )
+    assert instance.reason().endswith("description and binary are of different builds")

@@ -24,7 +24,11 @@ def land(host, unpacked, description):
     first = {v.name: v.valueReference for v in description.modelVariables}["body.x"]
 
     def run(
-        folder: Path = unpacked, uri: str = "", steps: int = STEPS, **environment: str
+        folder: Path = unpacked,
+        uri: str = "",
+        steps: int = STEPS,
+        stdin: int | None = None,
+        **environment: str,
     ) -> subprocess.CompletedProcess[str]:
         command = [
             host("land"),
@@ -34,6 +38,7 @@ def land(host, unpacked, description):
         numbers = [description.guid, str(steps), str(min(steps, EVERY)), str(first), "10"]
         return subprocess.run(
             [*command, *numbers],
+            stdin=stdin,
             capture_output=True,
             text=True,
             env=BARE | environment,
@@ -160,6 +165,19 @@ def test_a_bad_library_is_an_error_that_names_it_and_the_remedy(land, library, f
         f"{MISSING}; RLV_LANDING_LIBPYTHON = {library}: {fault}; "
         "set RLV_LANDING_LIBPYTHON to the path of one" in done.stdout
     )
+
+
+@pytest.mark.skipif(not python_libraries(), reason="no libpython that could be started")
+def test_a_stream_that_ends_python_is_an_error_and_does_not_end_the_host(land, tmp_path):
+    """Python before 3.14 exits the process where standard input is a directory."""
+    folder = os.open(tmp_path, os.O_RDONLY)
+    try:
+        done = land(stdin=folder)
+    finally:
+        os.close(folder)
+    assert done.returncode == 1
+    assert "standard input of this process is a directory" in done.stdout
+    assert done.stderr == ""
 
 
 @pytest.mark.parametrize(
