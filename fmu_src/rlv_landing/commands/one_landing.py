@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from ..text.durable import writing
-from .number_types import Number
-from .options import Option, add_options, force_option, json_option, plot_option
+from .options import Option, add_options, every_option, force_option, json_option, plot_option
 from .printing import json_text
 
 if TYPE_CHECKING:
@@ -28,14 +27,7 @@ def landing_options(files: str) -> Option:
         files: What `--output` writes, for the help: `FILE.csv`.
     """
     options: tuple[Option, ...] = (
-        click.option(
-            "--every",
-            type=Number("s"),
-            default=1e-3,
-            show_default=True,
-            metavar="S",
-            help="Time between samples [s].",
-        ),
+        every_option(1e-3),
         click.option(
             "-o",
             "--output",

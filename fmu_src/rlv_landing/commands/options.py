@@ -70,6 +70,18 @@ def plot_option() -> Option:
     )
 
 
+def every_option(default: float) -> Option:
+    """Declare `--every`, the time between samples [s]."""
+    return click.option(
+        "--every",
+        type=Number("s"),
+        default=default,
+        show_default=True,
+        metavar="S",
+        help="Time between samples [s].",
+    )
+
+
 def start_option() -> Option:
     """`--start` of the part of a landing that is drawn or written [s]."""
     return click.option(

@@ -10,7 +10,14 @@ import click
 from ..errors import LandingError
 from ..text.durable import writing
 from .number_types import Number
-from .options import HELP_NAMES, check_writable, chosen_parameters, force_option, set_option
+from .options import (
+    HELP_NAMES,
+    check_writable,
+    chosen_parameters,
+    every_option,
+    force_option,
+    set_option,
+)
 
 if TYPE_CHECKING:
     from ..figures.landing_report.sections import Landed
@@ -34,14 +41,7 @@ ENDINGS = (".html", ".pdf")
 @click.option(
     "--until", type=Number("s"), metavar="S", help="End time [s] [default: at rest, or lost]."
 )
-@click.option(
-    "--every",
-    type=Number("s"),
-    default=5e-4,
-    show_default=True,
-    metavar="S",
-    help="Time between samples [s].",
-)
+@every_option(5e-4)
 @click.option("--audit/--no-audit", default=True, show_default=True, help="Audit each vehicle.")
 @force_option("Overwrite the report if it exists.")
 def report(
