@@ -61,6 +61,8 @@ def extensions() -> list[Extension]:
             translated[0].sources,
             extra_compile_args=[*COMPILE_ARGS, *compiler.flags, *own_args],
             define_macros=[("Py_LIMITED_API", LIMITED_API)] if LIMITED else [],
+            # linked, so that its functions are the newest, without the wrappers of old ones
+            libraries=[] if sys.platform == "win32" else ["m"],
             py_limited_api=LIMITED,
             optional=True,
         )

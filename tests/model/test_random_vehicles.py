@@ -132,6 +132,13 @@ def test_what_a_loose_tolerance_hides_is_judged(seed):
     assert_kept(Landing(parameters, rtol=1e-3, method=method), until=0.3, most_steps=2500)
 
 
+@pytest.mark.parametrize(("seed", "until"), [(334, 0.23), (1065, 0.2)])
+def test_what_dissipation_that_is_kept_from_falling_costs_is_judged(seed, until):
+    """Its interpolant without the fourth-order part is off inside the step, not at its ends."""
+    landing = Landing(some_vehicle(random.Random(seed)), rtol=1e-4, method="dormand-prince")
+    assert_kept(landing, until=until, most_steps=2500)
+
+
 @pytest.mark.parametrize("seed", [10, 144])
 def test_a_landing_of_many_seconds_keeps_the_energy_asleep_and_awake(seed):
     # the first falls asleep far from its rest, the second loses a little in each second

@@ -14,12 +14,14 @@ from .memory import Doubles, Records
 from .records import (
     Accounts,
     Attitude,
+    BodyAcceleration,
     BodyModel,
     BodyOutputs,
     BodyState,
     DeckTurn,
     EnergyOutputs,
     FootLoads,
+    FootMotion,
     Inputs,
     LegForces,
     LegLoadOutputs,
@@ -39,6 +41,7 @@ from .records import (
     SpatialState,
     StatusOutputs,
     StiffPair,
+    Turn,
 )
 
 # how many numbers a record takes
@@ -47,10 +50,13 @@ LEG = len(LegState._fields)
 ACCOUNTS = len(Accounts._fields)
 INPUTS = len(Inputs._fields)
 FOOT_LOADS = len(FootLoads._fields)
+FOOT_MOTION = len(FootMotion._fields)
 LEG_FORCES = len(LegForces._fields)
 LEG_STATUS = len(LegStatus._fields)
 PLANAR_LOADS = len(PlanarLoads._fields)
 ATTITUDE = len(Attitude._fields)
+TURN = len(Turn._fields)
+BODY_ACCELERATION = len(BodyAcceleration._fields)
 SPATIAL_STATE = len(SpatialState._fields)
 SPATIAL_INPUTS = len(SpatialInputs._fields)
 SPATIAL_LOADS = len(SpatialLoads._fields)
@@ -150,12 +156,27 @@ def foot_loads_of(kept: Records[FootLoads], i: int) -> FootLoads:
     return kept[i]
 
 
+def foot_motion_of(kept: Records[FootMotion], i: int) -> FootMotion:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
 def planar_loads_of(kept: Records[PlanarLoads], i: int) -> PlanarLoads:
     """The `i`-th record of those kept."""
     return kept[i]
 
 
 def attitude_of(kept: Records[Attitude], i: int) -> Attitude:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def turn_of(kept: Records[Turn], i: int) -> Turn:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def body_acceleration_of(kept: Records[BodyAcceleration], i: int) -> BodyAcceleration:
     """The `i`-th record of those kept."""
     return kept[i]
 

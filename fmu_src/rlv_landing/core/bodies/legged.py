@@ -11,6 +11,7 @@ from ..access import (
     DISSIPATED,
     ENERGY_OUTPUTS,
     FOOT_LOADS,
+    FOOT_MOTION,
     FRICTION,
     KINETIC,
     LEG,
@@ -36,6 +37,7 @@ from ..records import (
     Accounts,
     EnergyOutputs,
     FootLoads,
+    FootMotion,
     LegForces,
     LegModel,
     LegOutputs,
@@ -90,6 +92,7 @@ class Legged(System):
     _energies: int  # their place in the outputs, behind the body's
     _places: Records[LegPlace]
     _legs: Records[LegModel]
+    _motions: Records[FootMotion]
     _forces: Records[LegForces]
     _feet: Records[FootLoads]
     _status: Records[LegStatus]
@@ -114,6 +117,7 @@ class Legged(System):
         self._energies = 0
         self._places = stored(places)
         self._legs = stored(legs)
+        self._motions = room(groups, FOOT_MOTION)
         self._forces = room(groups, LEG_FORCES)
         self._feet = room(groups, FOOT_LOADS)
         self._status = room(groups, LEG_STATUS)

@@ -22,7 +22,7 @@ from ..access import (
     put,
 )
 from ..memory import Doubles
-from ..records import BodyOutputs, StatusOutputs, Turn
+from ..records import BodyOutputs, StatusOutputs
 from .planar_legs import footpad_kinetic_energy, footpad_moment
 from .planar_motion import PlanarMotion
 from .status import phase_of
@@ -102,12 +102,11 @@ class Planar(PlanarMotion):
         p = body_model(self._body, 0)
         body = body_state(y, 0)
         stands = attitude_of(self._attitude, 0)
-        turn = Turn(stands.sin_p, stands.cos_p, 0.0, 1.0)
         height = p.m_u * body.y
         for i in range(self.groups):
             leg = leg_state(y, BODY + LEG * i)
             m_d = leg_model(self._legs, i).m_d
-            height += footpad_moment(body, leg, leg_place(self._places, i), turn, m_d)
+            height += footpad_moment(body, leg, leg_place(self._places, i), stands, m_d)
         return p.g * height
 
     def _put_status(

@@ -8,12 +8,14 @@ from __future__ import annotations
 from math import cos, sin
 
 from ..records import (
+    Attitude,
     BodyAcceleration,
     BodyModel,
     BodyState,
     FootLoads,
     FootMotion,
     FootPoint,
+    FrameAcceleration,
     Inputs,
     LegForces,
     LegModel,
@@ -103,7 +105,7 @@ def transverse_height(h: float, p: BodyModel, leg: LegModel) -> float:
 
 def frame_acceleration(
     leg: LegState, place: LegPlace, rate: float, a: BodyAcceleration
-) -> BodyAcceleration:
+) -> FrameAcceleration:
     """Acceleration along the body's x and y of a footpad at rest in its leg's plane.
 
     What moves with vr, vh themselves is left out.
@@ -111,7 +113,7 @@ def frame_acceleration(
     bx = leg.r * place.cos_g
     x = a.x + a.pitch * leg.h - rate * rate * bx + 2.0 * rate * leg.vh
     y = a.y - a.pitch * bx - rate * rate * leg.h - 2.0 * rate * leg.vr * place.cos_g
-    return BodyAcceleration(x, y, a.pitch)
+    return FrameAcceleration(x, y)
 
 
 def leg_rates(
@@ -119,7 +121,7 @@ def leg_rates(
     forces: LegForces,
     loads: PlanarLoads,
     place: LegPlace,
-    frame: BodyAcceleration,
+    frame: FrameAcceleration,
     m_d: float,
 ) -> LegState:
     """The rates of a leg's state."""
@@ -149,7 +151,7 @@ def footpad_kinetic_energy(
 
 
 def footpad_moment(
-    body: BodyState, leg: LegState, place: LegPlace, turn: Turn, m_d: float
+    body: BodyState, leg: LegState, place: LegPlace, stands: Attitude, m_d: float
 ) -> float:
     """Mass times height [kg m] above the inertial origin of all footpads of the group."""
-    return place.legs * m_d * (body.y - leg.r * place.cos_g * turn.sin_p + leg.h * turn.cos_p)
+    return place.legs * m_d * (body.y - leg.r * place.cos_g * stands.sin_p + leg.h * stands.cos_p)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from ..access import (
     ATTITUDE,
     BODY,
+    BODY_ACCELERATION,
     BODY_OUTPUTS,
     ENERGY_OUTPUTS,
     INPUTS,
@@ -14,9 +15,12 @@ from ..access import (
     LEG_OUTPUTS,
     PLANAR_LOADS,
     STATUS_OUTPUTS,
+    TURN,
+    body_acceleration_of,
     body_model,
     body_state,
     foot_loads_of,
+    foot_motion_of,
     inputs,
     keep,
     leg_forces_of,
@@ -25,6 +29,7 @@ from ..access import (
     leg_state,
     planar_loads_of,
     put,
+    turn_of,
 )
 from ..leg import leg_forces
 from ..memory import Buffer, Doubles, Records, room, stored
@@ -58,6 +63,8 @@ class PlanarMotion(Legged):
     _body: Records[BodyModel]
     _loads: Records[PlanarLoads]
     _attitude: Records[Attitude]
+    _turn: Records[Turn]
+    _acceleration: Records[BodyAcceleration]
 
     def __init__(
         self,
@@ -74,6 +81,8 @@ class PlanarMotion(Legged):
         self._body = stored([body])
         self._loads = room(len(legs), PLANAR_LOADS)
         self._attitude = room(1, ATTITUDE)
+        self._turn = room(1, TURN)
+        self._acceleration = room(1, BODY_ACCELERATION)
 
     def inputs_after(self, u: Doubles, rates: Doubles, dt: float, now: Doubles) -> None:
         """Loads go on at their rates, heave and tilt at their own, which change at theirs.
@@ -105,10 +114,12 @@ class PlanarMotion(Legged):
         p = body_model(self._body, 0)
         body = body_state(y, 0)
         now = inputs(u, 0)
-        turn = turned(body.pitch, p.alpha + now.tilt)
+        keep(turned(body.pitch, p.alpha + now.tilt), self._turn, 0)
+        turn = turn_of(self._turn, 0)
         for i in range(self.groups):
             self._load(i, y, body, now, turn)
-        a = self._acceleration(y, body, now, turn)
+        keep(self._accelerated(y, body, now, turn), self._acceleration, 0)
+        a = body_acceleration_of(self._acceleration, 0)
         keep(Attitude(turn.sin_p, turn.cos_p, a.y), self._attitude, 0)
         put(
             BodyState(
@@ -134,7 +145,8 @@ class PlanarMotion(Legged):
         place = leg_place(self._places, i)
         model = leg_model(self._legs, i)
         point = foot_point(body, leg, place, u, turn)
-        foot = foot_motion(point, u, turn)
+        keep(foot_motion(point, u, turn), self._motions, i)
+        foot = foot_motion_of(self._motions, i)
         keep(leg_forces(leg, foot, model), self._forces, i)
         forces = leg_forces_of(self._forces, i)
         keep(foot_loads(forces, point, foot.depth, turn), self._feet, i)
@@ -143,7 +155,7 @@ class PlanarMotion(Legged):
             planar_loads(forces, foot_loads_of(self._feet, i), place, turn, weight), self._loads, i
         )
 
-    def _acceleration(self, y: Doubles, body: BodyState, u: Inputs, turn: Turn) -> BodyAcceleration:
+    def _accelerated(self, y: Doubles, body: BodyState, u: Inputs, turn: Turn) -> BodyAcceleration:
         """The body's acceleration under the legs' loads.
 
         Two coupled equations for a_x and the pitch acceleration, because the transverse force that

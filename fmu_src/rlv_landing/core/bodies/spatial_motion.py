@@ -19,6 +19,7 @@ from ..access import (
     SPATIAL_OUTPUTS,
     STATUS_OUTPUTS,
     deck_turn_of,
+    foot_motion_of,
     keep,
     leg_forces_of,
     leg_model,
@@ -244,7 +245,8 @@ class SpatialMotion(Legged):
         above = from_origin(now, point)
         ground = deck_velocity(now, rolling, above)
         velocity = less(added(Vector(s.vx, s.vy, s.vz), to_inertial(turn, moved)), ground)
-        motion = motion_on_ground(axes, above, velocity)
+        keep(motion_on_ground(axes, above, velocity), self._motions, i)
+        motion = foot_motion_of(self._motions, i)
         keep(leg_forces(leg, motion, model), self._forces, i)
         forces = leg_forces_of(self._forces, i)
         contact = to_inertial(axes, Vector(forces.f1, forces.normal, forces.f2))

@@ -36,7 +36,14 @@ from .outputs import (
     SpatialOutputs,
     StatusOutputs,
 )
-from .planar import Attitude, BodyAcceleration, FootPoint, PlanarLoads, Turn
+from .planar import (
+    Attitude,
+    BodyAcceleration,
+    FootPoint,
+    FrameAcceleration,
+    PlanarLoads,
+    Turn,
+)
 from .spatial import (
     DeckTurn,
     FootPlace,
@@ -71,6 +78,7 @@ __all__ = [
     "FootMotion",
     "FootPlace",
     "FootPoint",
+    "FrameAcceleration",
     "Friction",
     "FrictionBound",
     "FrictionForce",

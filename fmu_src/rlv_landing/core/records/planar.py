@@ -50,3 +50,10 @@ class BodyAcceleration(NamedTuple):
     x: float  # [m/s2]
     y: float  # [m/s2]
     pitch: float  # [rad/s2]
+
+
+class FrameAcceleration(NamedTuple):
+    """Acceleration along the body's axes of a footpad at rest in its leg's plane."""
+
+    x: float  # [m/s2]
+    y: float  # [m/s2]

@@ -37,8 +37,7 @@ class Trial(Rest):
     Attributes:
         rhs_calls: Calls of the right-hand side so far.
         ceiling: [n] how large the error of each state may be at any tolerance.
-        flattened: Whether slopes of the interpolant written last were limited to keep a state
-            monotonic.
+        flattened: Whether the interpolant written last was changed to keep a state monotonic.
     """
 
     rhs_calls: float
@@ -190,13 +189,14 @@ class Trial(Rest):
             elif d[4 * n + j] != 0.0:
                 middle = 0.5 * change + (early - late + d[4 * n + j]) / 6.0
                 if middle < 0.25 * early or middle > change - 0.25 * late:
+                    self.flattened = True
                     d[4 * n + j] = 0.0
 
     def _loses_inside(self, h: float) -> bool:
         """Whether the step loses more than it may at its quarters.
 
-        They are judged if the interpolant overshoots the step's ends or its slopes were limited, or
-        the tolerance is loose. As for outputs, the states there are brought back first to what the
+        They are judged if the interpolant overshoots the step's ends or was flattened, or the
+        tolerance is loose. As for outputs, the states there are brought back first to what the
         system conserves.
         """
         if self.rtol <= LOOSE and not self.flattened and not self._bulges():
