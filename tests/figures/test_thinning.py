@@ -70,7 +70,7 @@ def test_measures_have_every_row_from_the_first_contact_on_and_few_before_and_be
     assert np.array_equal(found.data, whole[rows])
     assert (rows[0], rows[-1]) == (0, 500 * PART - 1)
     assert set(range(3501, 3501 + MOST - PART)) <= set(rows.tolist())
-    assert len(found) <= 2 * MOST
+    assert len(found) <= 3 * (MOST + PART)
     for i, name in enumerate(NAMES):
         column = found[name]
         assert (column.min(), column.max()) == (whole[:, i].min(), whole[:, i].max()), name

@@ -53,7 +53,7 @@ def thinned(
 
 
 def measured(parts: Iterable[History], most: int = MOST_ROWS, spans: int = SPANS) -> History:
-    """One history of all `parts` for measures, of at most some twice `most` rows.
+    """One history of all `parts` for measures, of at most some three times `most` rows.
 
     Times, energies and peaks of the first compression and rebound need each row. So `most` rows
     from the first contact of a footpad on are kept; those before and behind as `thinned` does.
@@ -82,9 +82,9 @@ def measured(parts: Iterable[History], most: int = MOST_ROWS, spans: int = SPANS
                 return
 
     # One after the other, as they share the parts.
-    found = _kept(before(), None, most // 3, spans)
+    found = _kept(before(), None, most, spans)
     found += within()
-    found += _kept(following, None, most // 3, spans)
+    found += _kept(following, None, most, spans)
     return joined(found)
 
 
