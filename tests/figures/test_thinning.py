@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rlv_landing.figures.thinning import CONTACTS, DRAWN, thinned
+from rlv_landing.figures.thinning import CONTACTS, DRAWN, measured, thinned
 from rlv_landing.history import History
 
 NAMES = (*DRAWN, *CONTACTS)
@@ -60,3 +60,22 @@ def test_what_a_moving_picture_shows_has_a_row_for_each_instant() -> None:
     shown = found.time[(found.time >= 20.0) & (found.time <= 20.9)]
     assert len(shown) >= 900
     assert len(found) <= MOST + PART
+
+
+def test_measures_have_every_row_from_the_first_contact_on_and_few_before_and_behind() -> None:
+    whole = np.concatenate([p.data for p in parts(500)])
+    found = measured(parts(500), most=MOST, spans=SPANS)
+    rows = np.rint(found.time / 1e-3).astype(int)
+    assert np.all(np.diff(rows) > 0)
+    assert np.array_equal(found.data, whole[rows])
+    assert (rows[0], rows[-1]) == (0, 500 * PART - 1)
+    assert set(range(3501, 3501 + MOST - PART)) <= set(rows.tolist())
+    assert len(found) <= 3 * (MOST + PART)
+    for i, name in enumerate(NAMES):
+        column = found[name]
+        assert (column.min(), column.max()) == (whole[:, i].min(), whole[:, i].max()), name
+
+
+def test_measures_of_a_short_landing_have_all_its_rows() -> None:
+    found = measured(parts(40), most=MOST, spans=SPANS)
+    assert np.array_equal(found.data, np.concatenate([p.data for p in parts(40)]))

@@ -5,11 +5,17 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
+import numpy as np
 import pytest
+from bridge_tools import record
 from log_tools import messages_of, small_log
 
 from rlv_landing.errors import LandingError
-from rlv_ros_bridge.logs.indexed import last_time, messages_between
+from rlv_landing.summary import summarise
+from rlv_landing.tables.landing import sampling_note
+from rlv_ros_bridge.logs.history import HistoryParts, log_history, measured_history, with_parts
+from rlv_ros_bridge.logs.indexed import holds, last_time, messages_between
+from rlv_ros_bridge.logs.instants import RowChoice
 from rlv_ros_bridge.logs.mcap_files.summary import read_summary
 from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.replay.selection import ReplayOptions, Selection
@@ -68,6 +74,80 @@ def test_a_file_whose_end_was_changed_in_any_byte_has_no_summary(tmp_path: Path)
     for length in range(0, len(data), 7):
         file.write_bytes(data[:length])
         assert read_summary(file) is None
+
+
+@pytest.fixture(scope="module")
+def long_log(fmu: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A log of 200 s in steps of 0.05 s, in many chunks."""
+    folder = tmp_path_factory.mktemp("long") / "log"
+    return record(fmu, folder, "--step", 0.05, "--stop-time", 200)
+
+
+def rows_of(log: Path, **choice: float) -> tuple[list[float], bool]:
+    """The times [s] of the rows that are chosen, and whether damage was met."""
+    reader = LogReader(log)
+
+    def times(parts: HistoryParts) -> list[float]:
+        return [time for part in parts for time in part.time.tolist()]
+
+    return with_parts(reader, ["rpy"], RowChoice(**choice), times), reader.cut
+
+
+@pytest.mark.parametrize(
+    "choice",
+    [
+        {"start": 150.0, "end": 152.0},
+        {"start": 199.9},
+        {"every": 0.12},
+        {"every": 30.0},
+        {"start": 10.02, "every": 7.0},
+        {"start": 10.0, "end": 100.0, "every": 20.0},
+    ],
+)
+def test_chosen_rows_are_those_that_reading_the_whole_log_finds(
+    long_log: Path, choice: dict[str, float]
+) -> None:
+    whole, _ = rows_of(long_log)
+    assert len(whole) == 4001
+    wanted = RowChoice(**choice)
+    assert rows_of(long_log, **choice) == ([t for t in whole if wanted.takes(t)], False)
+
+
+def test_only_the_chunks_are_read_that_hold_chosen_rows(long_log: Path, tmp_path: Path) -> None:
+    (file,) = long_log.glob("*.mcap")
+    summary = read_summary(file)
+    assert summary is not None
+    hit = next(c for c in summary.chunks if c.first > 60_100_000_000)
+    data = bytearray(file.read_bytes())
+    data[hit.position + hit.length - 1] ^= 1
+    damaged = tmp_path / "damaged.mcap"
+    damaged.write_bytes(data)
+    assert rows_of(damaged)[1]
+    span = {"start": hit.first / 1e9, "end": hit.last / 1e9}
+    assert rows_of(damaged, **{**span, "end": span["end"] + 10.0})[1]
+    for choice in ({"start": span["end"] + 1.0}, {"end": span["start"] - 1.0}, {"every": 150.0}):
+        assert rows_of(damaged, **choice) == rows_of(long_log, **choice)
+        assert not rows_of(damaged, **choice)[1]
+
+
+def test_the_summary_of_a_long_landing_needs_few_of_its_rows(long_log: Path) -> None:
+    few, whole = measured_history(LogReader(long_log)), log_history(long_log)
+    assert 1200 < len(few) < 2400
+    until = int(np.flatnonzero(few.time > 60.0)[0])
+    assert np.array_equal(few.data[:until], whole.data[:until])
+    assert np.array_equal(few.data[-20:], whole.data[-20:])
+    assert summarise(few) == summarise(whole)
+    assert sampling_note(few) == sampling_note(whole)
+
+
+@pytest.mark.parametrize("topic", ["/landing/applied/ground", "/landing/struts", "/landing/none"])
+def test_whether_a_topic_has_messages_is_known_from_the_summary(
+    long_log: Path, tmp_path: Path, topic: str
+) -> None:
+    (file,) = long_log.glob("*.mcap")
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(file.read_bytes()[:-1])
+    assert holds(LogReader(file), topic) == holds(LogReader(cut), topic) == (topic[9:] == "struts")
 
 
 @pytest.mark.parametrize("cut", [False, True])

@@ -8,9 +8,11 @@ import socket
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from ipaddress import ip_address
 from pathlib import Path
 from typing import Any
-from urllib.request import urlopen
+from urllib.error import HTTPError
+from urllib.request import Request, urlopen
 
 import numpy as np
 import psutil
@@ -102,6 +104,9 @@ def test_live_topics_are_recorded_as_the_log_has_them(
     processes.append(view)
     assert view.stdout is not None
     assert view.stdout.readline().startswith("waiting for a landing below /landing")
+    # What the view says how to start a landing of which it misses nothing.
+    program, command, *options = view.stdout.readline().split()
+    assert (program, command) == ("rlv-landing", "node")
     node = (
         "node",
         "--fmu",
@@ -115,7 +120,7 @@ def test_live_topics_are_recorded_as_the_log_has_them(
         "--set",
         "ground.slope=0.02",
     )
-    done = run(*node, "--wait-for-subscribers", 1, domain=domain)
+    done = run(*node, *options, domain=domain)
     assert done.returncode == 0, done.stderr
     view.send_signal(signal.SIGINT)
     _, stderr = view.communicate(timeout=TIMEOUT)
@@ -148,14 +153,22 @@ def test_the_viewer_is_served_on_this_machine_only_sends_no_data_and_ends_with_t
         json.loads((configuration / "rerun" / "analytics.json").read_text())["analytics_enabled"]
         is False
     )
-    listening = [
-        c.laddr
+    ours, theirs = (
+        [c.laddr for c in who.net_connections() if c.status == psutil.CONN_LISTEN]
         for who in (psutil.Process(view.pid), program)
-        for c in who.net_connections()
-        if c.status == psutil.CONN_LISTEN
-    ]
-    assert {port, port + 1} < {place.port for place in listening}
-    assert {place.ip for place in listening} == {"127.0.0.1"}
+    )
+    assert {(place.ip, place.port) for place in ours} == {
+        ("127.0.0.1", port),
+        ("127.0.0.1", port + 1),
+    }
+    # Rerun's own server answers any host: it is where no site's page finds it.
+    (hidden,) = {ip_address(place.ip) for place in theirs}
+    assert hidden.is_loopback
+    assert hidden != ip_address("127.0.0.1")
+    for served in (port, port + 1):
+        asked = Request(f"http://127.0.0.1:{served}/", headers={"Host": "evil.example"})
+        with pytest.raises(HTTPError, match="403"):
+            urlopen(asked)
     view.send_signal(number)
     assert view.wait(TIMEOUT) == (-number if number is signal.SIGKILL else 128 + number)
     program.wait(TIMEOUT)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,18 +49,62 @@ def thinned(
         most: Rows from which on some are left out.
         spans: Spans of time.
     """
+    return joined(_kept(parts, shown, most, spans))
+
+
+def measured(parts: Iterable[History], most: int = MOST_ROWS, spans: int = SPANS) -> History:
+    """One history of all `parts` for measures, of at most some three times `most` rows.
+
+    Times, energies and peaks of the first compression and rebound need each row. So `most` rows
+    from the first contact of a footpad on are kept; those before and behind as `thinned` does.
+
+    Args:
+        parts: At least one, all with the same columns.
+        most: Rows from the first contact on that are kept.
+        spans: As in `thinned`.
+    """
+    following = iter(parts)
+    first_contact: list[History] = []
+
+    def before() -> Iterator[History]:
+        for part in following:
+            if any((part[name] > 0.0).any() for name in CONTACTS if name in part):
+                first_contact.append(part)
+                return
+            yield part
+
+    def within() -> Iterator[History]:
+        rows = 0
+        for part in chain(first_contact, following):
+            yield part
+            rows += len(part)
+            if rows >= most:
+                return
+
+    # One after the other, as they share the parts.
+    found = _kept(before(), None, most, spans)
+    found += within()
+    found += _kept(following, None, most, spans)
+    return joined(found)
+
+
+def _kept(
+    parts: Iterable[History], shown: tuple[float, float] | None, most: int, spans: int
+) -> list[History]:
+    """What `thinned` keeps of `parts`, of which there may be none."""
     kept: list[History] = []
     rows = 0
     for part in parts:
         kept.append(part)
         rows += len(part)
         if rows > most:
-            kept = [_thin(_joined(kept), shown, spans)]
+            kept = [_thin(joined(kept), shown, spans)]
             rows = len(kept[0])
-    return _joined(kept)
+    return kept
 
 
-def _joined(parts: list[History]) -> History:
+def joined(parts: list[History]) -> History:
+    """One history of `parts`, which follow each other in time, without extremes."""
     first = parts[0]
     if len(parts) == 1:
         return first

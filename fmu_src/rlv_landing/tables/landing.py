@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+import numpy as np
+
 from ..history import History
 from ..parameters import PARAMETER_QUANTITIES, Parameters
 from ..quantities import Quantity
@@ -70,7 +72,7 @@ def sampling_note(history: History) -> str:
     """Note on the interval of the samples that numbers are read from; empty for a single one."""
     if len(history) < 2:
         return ""
-    step = 1e3 * float(history.time[-1] - history.time[0]) / (len(history) - 1)
+    step = 1e3 * float(np.median(np.diff(history.time)))
     return f"samples are {step:.3g} ms apart; a peak between them is not seen\n"
 
 

@@ -87,25 +87,27 @@ def read_landing(
     require_log_readers()
     from ..logs.bag_reader import open_log
     from ..logs.history import drawn_history
+    from ..logs.indexed import holds
     from ..messages.topics import APPLIED_GROUND, resolve
 
     reader = open_log(path)
     history, _ = drawn_history(reader, shown=shown)
+    cut = reader.cut
     ground = resolve(reader.namespace, APPLIED_GROUND.name)
-    if ground in reader.channels and next(iter(reader.messages([ground])), None) is not None:
+    if holds(reader, ground):
         click.echo("warning: the ground was moved in this landing; it is drawn at rest", err=True)
     if history.parameters is not None:
         if vehicle.is_given:
             raise LandingError(
                 f"{path} carries its parameters; leave --preset, --parameters, --mode and --set out"
             )
-        return history, history.parameters, reader.cut
+        return history, history.parameters, cut
     if not vehicle.is_given:
         raise LandingError(
             f"{path} does not carry the vehicle's parameters; "
             "name them by --parameters FILE.toml, or --preset and --mode"
         )
-    return history, vehicle.parameters(), reader.cut
+    return history, vehicle.parameters(), cut
 
 
 def warn_incomplete(log: Path) -> None:

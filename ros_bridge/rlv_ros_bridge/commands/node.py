@@ -214,12 +214,12 @@ def _print_report(folder: Path) -> None:
     from rlv_landing.figures.plots import save_overview
     from rlv_landing.tables.landing import comparison_table, summary_table
 
-    from ..logs.history import history_of
+    from ..logs.history import measured_history
     from ..logs.info import log_info
     from ..logs.reader import LogReader
 
     reader = LogReader(folder)
-    history = history_of(reader)
+    history = measured_history(reader)
     mode = reader.metadata["mode"]
     landing = log_info(reader).landing or {}
     click.echo(summary_table(history, f"{mode} landing", landing.get("outcome", "")))

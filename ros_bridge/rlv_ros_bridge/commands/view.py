@@ -20,7 +20,7 @@ from ..ros.setup import StopFlag, require_ros
 from .landing_source import VehicleOptions, read_landing, warn_incomplete
 from .log import EXIT_CUT
 
-PORT = 9090
+PORT, NAMESPACE = 9090, "landing"
 # Period of checking for signals [s].
 POLL_SECONDS = 0.1
 
@@ -39,7 +39,7 @@ class ServerOptions:
 @click.option(
     "--namespace",
     metavar="NAME",
-    default="landing",
+    default=NAMESPACE,
     show_default=True,
     help="Without LOG: where the landing publishes.",
 )
@@ -179,7 +179,7 @@ def _save_live(namespace: str, save: Path) -> int:
             if landings == 1:
                 saved.begin(scene)
 
-        click.echo(f"{_waiting_text(namespace)}; Ctrl-C ends the recording")
+        click.echo(f"{_waiting_text(namespace)}\nCtrl-C ends the recording")
         samples = watch(namespace, save_first, lambda: landings < 2, stop)
         if not landings:
             raise LandingError(
@@ -192,9 +192,13 @@ def _save_live(namespace: str, save: Path) -> int:
 
 
 def _waiting_text(namespace: str) -> str:
+    """What to start in another terminal, so that nothing of a landing is missed."""
+    name = namespace.strip("/")
+    chosen = "" if name == NAMESPACE else f" --namespace {name}"
     return (
-        f"waiting for a landing below /{namespace.strip('/')}; started with "
-        "--wait-for-subscribers 1, node and replay wait for this view"
+        f"waiting for a landing below /{name}; one that waits for this view is seen whole:\n"
+        f"  rlv-landing node{chosen} --wait-for-subscribers 1\n"
+        "  rlv-landing replay LOG --wait-for-subscribers 1"
     )
 
 

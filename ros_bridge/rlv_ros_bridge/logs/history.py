@@ -5,6 +5,7 @@ Values are SI, in the paper's axes.
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from pathlib import Path
@@ -13,21 +14,31 @@ from typing import Any, TypeVar
 import numpy as np
 
 from rlv_landing.errors import LandingError
-from rlv_landing.figures.thinning import thinned
+from rlv_landing.figures.thinning import SPANS, joined, measured, thinned
 from rlv_landing.history import History
 from rlv_landing.text.units import parse_number
 
 from ..fmu.peaks import Found, known_extremes
 from ..messages.columns import readings_of
 from ..messages.topics import resolve, topics_of
+from ..messages.wire import NANOSECONDS
 from .bag_reader import open_log
-from .instants import OrderError, RowChoice, instants
+from .indexed import is_seekable, messages_between, span_of
+from .instants import MARGIN, OrderError, RowChoice, instants
+from .landing_record import read_landing
 from .lost import lost_text
+from .mcap_files.summary import ChunkPlace
 from .peaks import read_peaks
-from .reader import Decoder, LogReader
+from .reader import Decoder, LogMessage, LogReader
 
 # Rows of a part of a history.
 ROWS_AT_ONCE = 1000
+# Instants by which messages of our own logs may be out of order.
+FEW_INSTANTS = 4
+# What follows the last contact by more than this is no part of a first stroke [s].
+MEASURED_SECONDS = 60.0
+# The last rows of which none is left out [s].
+TAIL_SECONDS = 1.0
 Result = TypeVar("Result")
 
 
@@ -90,6 +101,45 @@ def drawn_history(
 
     topics = needed if columns is not None else ()
     return with_parts(reader, topics, choice or RowChoice(), read)
+
+
+def measured_history(reader: LogReader) -> History:
+    """As `history_of`, for a summary: of a landing of more than a minute some rows are left out.
+
+    Those from the first contact on are there for a minute, and every curve's peaks. Where the log
+    has a record of the peaks, no more of it is read than it takes.
+    """
+
+    def read(parts: HistoryParts) -> History:
+        return parts.complete(measured(parts))
+
+    until, last = _measured_span(reader)
+    if until >= last:
+        return with_parts(reader, (), RowChoice(), read)
+    every = (last - until) / SPANS
+    choices = (
+        RowChoice(end=until),
+        RowChoice(start=until + every, end=last - TAIL_SECONDS - MARGIN, every=every),
+        RowChoice(start=last - TAIL_SECONDS),
+    )
+    history = joined([with_parts(reader, (), choice, read) for choice in choices])
+    history.extremes = known_extremes(read_peaks(reader.peaks, str(reader.path))[0], history)
+    return history
+
+
+def _measured_span(reader: LogReader) -> tuple[float, float]:
+    """Up to when each row is needed for measures, and the log's last time [s].
+
+    The first is infinite where the log's records do not say what follows, or where little does.
+    """
+    span = span_of(reader) if reader.read_summary() and is_seekable(reader) else None
+    landing = read_landing(reader.landing) if reader.peaks and not reader.gaps else None
+    if span is None or landing is None:
+        return math.inf, 0.0
+    first, last = (nanoseconds / NANOSECONDS for nanoseconds in span)
+    contacts = [leg["contact_time"] for leg in landing["legs"] if leg["contact_time"] is not None]
+    until = max(contacts, default=first) + MEASURED_SECONDS
+    return (until if until + MEASURED_SECONDS < last else math.inf), last
 
 
 def with_parts(
@@ -157,13 +207,16 @@ class HistoryParts:
         rows: list[list[float]] = []
         decode = Decoder(self._reader)
         self._incomplete, count = 0, 0
-        for nanoseconds, messages in instants(self._reader, self._chosen, decode, self._size):
+        found, window = self._messages()
+        for nanoseconds, messages in instants(found, decode, window):
+            time = _seconds(self._reader, nanoseconds)
+            self._choice.note(time)
+            if not self._choice.wants(time):
+                continue
             if len(messages) < len(self._chosen):
                 self._incomplete += 1
                 continue
-            time = _seconds(self._reader, nanoseconds)
-            if not self._choice.takes(time):
-                continue
+            self._choice.takes(time)
             row: dict[str, float] = {}
             for topic, message in messages.items():
                 columns, reading = self._readings[self._chosen[topic]]
@@ -183,6 +236,24 @@ class HistoryParts:
                 f"{self._reader.path} holds no landing: no instant has all of "
                 f"{', '.join(self._chosen.values())}"
             )
+
+    def _messages(self) -> tuple[Iterator[LogMessage], int]:
+        """The messages of the topics, and by how many instants they may be out of order.
+
+        Of our logs, in which the time of each message is its stamp, only the chunks are read whose
+        instants may be chosen.
+        """
+        reader, choice = self._reader, self._choice
+        if choice.is_all or self._size > ROWS_AT_ONCE or not is_seekable(reader):
+            return reader.messages(self._chosen), self._size
+        for nanoseconds in span_of(reader) or ():
+            choice.note(nanoseconds / NANOSECONDS)
+
+        def is_not_needed(chunk: ChunkPlace) -> bool:
+            return chunk.last < choice.first
+
+        found = messages_between(reader, self._chosen, choice.first, choice.last, is_not_needed)
+        return found, FEW_INSTANTS
 
     def _history(self, times: list[float], stamps: list[int], rows: list[list[float]]) -> History:
         history = History(np.array(times), self.names, np.array(rows), self.parameters)

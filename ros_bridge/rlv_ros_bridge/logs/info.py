@@ -16,7 +16,7 @@ from rlv_landing.tables.landing import decimals
 from rlv_landing.text.terminal import legible_lines
 
 from ..messages.topics import DIAGNOSTICS
-from .history import choose_topics, read_history
+from .history import choose_topics, measured_history
 from .landing_record import PHASES, landing_summary, read_landing
 from .lost import lost_text
 from .reader import Decoder, LogReader
@@ -249,7 +249,7 @@ def _by_messages(reader: LogReader, *, checked: bool) -> LogInfo:
     found = _info(reader, counts, first or 0, last, read=read)
     try:
         outcome = OUTCOMES[PHASES.index(phase)] if phase in PHASES else ""
-        found.landing = landing_summary(read_history(reader)[0], outcome)
+        found.landing = landing_summary(measured_history(reader), outcome)
     except LandingError as e:
         found.no_landing = str(e)
     return found

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 import struct
-from collections.abc import Collection, Iterator
+from collections.abc import Iterable, Iterator
 
 from rlv_landing.errors import LandingError
 
 from ..messages.wire import ENCAPSULATION, NANOSECONDS
-from .reader import Decoder, LogMessage, LogReader
+from .reader import Decoder, LogMessage
 
 # Instants are whole nanoseconds; a bound given in s may miss one by its last digit [s].
 TIME_TOLERANCE = 1e-9
+# Messages are looked for from this much before a span to as much behind it, as times in s are
+# rounded; and no later than what can be a time at all [s].
+MARGIN, LATEST = 1e-6, 1e10
 STAMP_BYTES = ENCAPSULATION + 8
 
 
@@ -54,20 +57,51 @@ class RowChoice:
         """Whether it is of a part of the log's span."""
         return self._start is not None or self._end is not None
 
-    def takes(self, time: float) -> bool:
-        """Whether to take the instant at `time` [s], which is after all before it."""
-        self._seen = (time if self._seen is None else self._seen[0], time)
+    @property
+    def is_all(self) -> bool:
+        """Whether it takes every instant."""
+        return not self.is_part and self._every is None
+
+    @property
+    def first(self) -> int:
+        """No instant before this time is taken from now on [ns]."""
+        if self._every is not None and self._origin is not None:
+            return _nanoseconds(self._origin + (self._period + 1) * self._every - MARGIN)
+        return 0 if self._start is None else _nanoseconds(self._start - MARGIN)
+
+    @property
+    def last(self) -> float:
+        """No instant after this time is taken [ns]."""
+        return math.inf if self._end is None else _nanoseconds(self._end + MARGIN)
+
+    def wants(self, time: float) -> bool:
+        """Whether `takes` would take the instant at `time` [s]."""
         if self._start is not None and time < self._start - TIME_TOLERANCE:
             return False
         if self._end is not None and time > self._end + TIME_TOLERANCE:
             return False
-        if self._every is None:
-            return True
-        if self._origin is None:
-            self._origin = time
-        before = self._period
-        self._period = math.floor((time - self._origin + TIME_TOLERANCE) / self._every)
-        return self._period > before
+        return self._every is None or self._origin is None or self._at(time) > self._period
+
+    def _at(self, time: float) -> int:
+        """The period in which `time` [s] lies."""
+        assert self._every is not None
+        assert self._origin is not None
+        return math.floor((time - self._origin + TIME_TOLERANCE) / self._every)
+
+    def takes(self, time: float) -> bool:
+        """Whether to take the instant at `time` [s], which is after all before it."""
+        self.note(time)
+        if not self.wants(time):
+            return False
+        if self._every is not None:
+            self._origin = time if self._origin is None else self._origin
+            self._period = self._at(time)
+        return True
+
+    def note(self, time: float) -> None:
+        """Notes that there is an instant at `time` [s], for `refuse`."""
+        first, last = self._seen or (time, time)
+        self._seen = min(first, time), max(last, time)
 
     def refuse(self) -> None:
         """Refuses the span if there were instants, and none was in it.
@@ -85,14 +119,17 @@ class RowChoice:
             )
 
 
+def _nanoseconds(seconds: float) -> int:
+    return math.floor(min(max(seconds, -LATEST), LATEST) * NANOSECONDS)
+
+
 def instants(
-    reader: LogReader, topics: Collection[str], decode: Decoder, window: int
+    messages: Iterable[LogMessage], decode: Decoder, window: int
 ) -> Iterator[tuple[int, dict[str, LogMessage]]]:
-    """The messages of `topics` by their stamps [ns], in the order of these.
+    """Messages by their stamps [ns], in the order of these.
 
     Args:
-        reader: the log.
-        topics: full names; each message begins with a header.
+        messages: each begins with a header.
         decode: decodes the log's messages.
         window: instants by which they may be out of order.
 
@@ -102,7 +139,7 @@ def instants(
     """
     pending: dict[int, dict[str, LogMessage]] = {}
     given: int | None = None
-    for message in reader.messages(topics):
+    for message in messages:
         stamp = _stamp(message, decode)
         if given is not None and stamp <= given:
             raise OrderError

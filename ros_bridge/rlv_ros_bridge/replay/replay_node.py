@@ -27,7 +27,7 @@ from ..logs.bag_reader import open_log
 from ..logs.reader import LogMessage
 from ..messages import topics as landing_topics
 from ..messages.message_types import message_class
-from ..messages.qos import CLOCK, parse_qos
+from ..messages.qos import CLOCK, parse_qos, resending
 from ..messages.rclpy_qos import create_publisher
 from ..messages.samples import set_stamp
 from ..node.pacer import lateness_percentiles
@@ -104,9 +104,8 @@ class ReplayNode(Node):
             name = selection.names[c.topic]
             if name not in publishers:
                 _check_name(name)
-                publishers[name], _ = create_publisher(
-                    self, message_class(c.type_name), name, parse_qos(c.qos)
-                )
+                qos = resending(parse_qos(c.qos), options.rate)
+                publishers[name], _ = create_publisher(self, message_class(c.type_name), name, qos)
         self._publisher_of = {c.topic: publishers[selection.names[c.topic]] for c in channels}
         self._types = {c.topic: c.type_name for c in channels}
         self._match_topic = channels[-1].topic

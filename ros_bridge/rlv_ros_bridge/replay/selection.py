@@ -10,7 +10,7 @@ from pathlib import Path
 
 from rlv_landing.errors import LandingError
 
-from ..logs.indexed import last_time, messages_between
+from ..logs.indexed import last_time, messages_between, span_of
 from ..logs.reader import LogMessage, LogReader
 from ..messages.message_types import is_installed
 from ..messages.topics import TF, resolve
@@ -195,15 +195,10 @@ def _indexed_span(reader: LogReader) -> tuple[int, int]:
     Raises:
         LandingError: it has no message.
     """
-    times = [
-        time
-        for s in reader.summaries or ()
-        if s.statistics.message_count
-        for time in (s.statistics.message_start_time, s.statistics.message_end_time)
-    ]
-    if not times:
+    span = span_of(reader)
+    if span is None:
         raise _nothing_in(reader)
-    return min(times), max(times)
+    return span
 
 
 def _nothing_in(reader: LogReader) -> LandingError:

@@ -19,8 +19,9 @@ from .parameter_files import shared_names
 if TYPE_CHECKING:
     from rclpy.publisher import Publisher
 
-# Longest wait for acknowledgements [s]. Fast DDS asks its readers for them every 3 s.
-ACKNOWLEDGE_SECONDS = 4.0
+# Longest wait for acknowledgements [s]. Fast DDS asks its readers for them every 3 s; on a busy
+# machine one may answer the second time.
+ACKNOWLEDGE_SECONDS = 7.0
 ACKNOWLEDGE_INTERRUPTED_SECONDS = 0.2
 # Periods of checking for a signal and for matched subscriptions [s].
 SIGNAL_POLL_SECONDS = 0.05

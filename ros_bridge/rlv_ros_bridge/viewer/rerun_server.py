@@ -1,15 +1,17 @@
 """Serves a Rerun viewer to browsers on this machine, without connections to other machines.
 
-Rerun's program, from its wheel, keeps the data and the viewer's files. It listens on the loopback
-address only and sends no statistics. The viewer in a browser would fetch news and report its use.
-So a server here passes on its files with a content security policy, by which the browser connects
-it to the data only.
+Rerun's program, from its wheel, keeps the data and the viewer's files. It sends no statistics, and
+listens at one of this machine's own addresses only, a random one of 127.0.0.0/8, since it answers
+every site's page that finds it. The viewer in a browser would fetch news and report its use. So a
+server here passes on its files with a content security policy, by which the browser connects it to
+the data only, and another passes on the data.
 """
 
 from __future__ import annotations
 
 import ctypes
 import os
+import random
 import re
 import signal
 import socket
@@ -25,12 +27,13 @@ import rerun_cli
 from rlv_landing.errors import LandingError, reason_of
 
 from ..fmu.folder import ProcessFolder
+from .data_server import DataServer
 from .page_server import LOOPBACK, PageServer
 
 PR_SET_PDEATHSIG = 1
 FOLDER_PREFIX = "rlv-landing-view-"
 # What Rerun's program prints with the address of the viewer's files.
-ADDRESS_LINE = re.compile(rf"web-viewer at (http://{re.escape(LOOPBACK)}:\d+)")
+ADDRESS_LINE = re.compile(r"web-viewer at (http://127\.\d+\.\d+\.\d+:\d+)")
 # Memory for the data that a browser gets which connects late.
 MEMORY_LIMIT = "1GiB"
 # Longest wait for Rerun's program to end [s].
@@ -71,6 +74,8 @@ def content_security_policy(data_port: int) -> str:
 class ViewerServer:
     """A viewer at `address`, to be entered, for the data that is sent to `data`.
 
+    `data` is Rerun's own address. A browser gets them at the data's port of the loopback address.
+
     Args:
         port: of the page, on the loopback address; the data's port is the next one.
 
@@ -82,12 +87,15 @@ class ViewerServer:
         self.port, self.data_port = port, port + 1
         for wanted in (self.port, self.data_port):
             require_free(wanted)
-        self.data = f"rerun+http://{LOOPBACK}:{self.data_port}/proxy"
-        self._query = f"url={quote(self.data, safe='')}&hide_welcome_screen&theme=light"
+        address = _own_address()
+        self._source = address, _free_port(address)
+        self.data = _data_address(*self._source)
+        shown = _data_address(LOOPBACK, self.data_port)
+        self._query = f"url={quote(shown, safe='')}&hide_welcome_screen&theme=light"
         self.address = f"http://{LOOPBACK}:{self.port}/?{self._query}"
         self._folder = ProcessFolder(FOLDER_PREFIX)
         self._process: subprocess.Popen[str] | None = None
-        self._page_server: PageServer | None = None
+        self._servers: list[PageServer | DataServer] = []
 
     def __enter__(self) -> ViewerServer:
         try:
@@ -100,8 +108,8 @@ class ViewerServer:
             )
             files = self._start(environment)
             policy = content_security_policy(self.data_port)
-            server = self._page_server = PageServer(self.port, files, policy, self._query)
-            threading.Thread(target=server.serve_forever, name="viewer", daemon=True).start()
+            self._serve(PageServer(self.port, files, policy, self._query))
+            self._serve(DataServer(self.data_port, self._source))
         except (OSError, subprocess.CalledProcessError) as e:
             self.close()
             raise LandingError(
@@ -113,11 +121,15 @@ class ViewerServer:
             raise
         return self
 
+    def _serve(self, server: PageServer | DataServer) -> None:
+        self._servers.append(server)
+        threading.Thread(target=server.serve_forever, name="viewer", daemon=True).start()
+
     def _start(self, environment: Mapping[str, str]) -> str:
         """Starts Rerun's program; the address of the viewer's files."""
         options = {
-            "--bind": LOOPBACK,
-            "--port": str(self.data_port),
+            "--bind": self._source[0],
+            "--port": str(self._source[1]),
             "--web-viewer-port": "0",
             "--server-memory-limit": MEMORY_LIMIT,
         }
@@ -158,9 +170,10 @@ class ViewerServer:
 
     def close(self) -> None:
         """Ends everything that was started."""
-        if self._page_server is not None:
-            self._page_server.shutdown()
-            self._page_server.server_close()
+        for server in self._servers:
+            server.shutdown()
+            server.server_close()
+        self._servers.clear()
         if self._process is not None:
             self._process.terminate()
             try:
@@ -177,6 +190,23 @@ class ViewerServer:
         trace: TracebackType | None,
     ) -> None:
         self.close()
+
+
+def _own_address() -> str:
+    """An address of 127.0.0.0/8, all of which are this machine's, that none can guess."""
+    drawn = random.SystemRandom()
+    return ".".join(["127", *(str(drawn.randint(1, 254)) for _ in range(3))])
+
+
+def _free_port(address: str) -> int:
+    """A port of `address` that is free."""
+    with socket.socket() as probe:
+        probe.bind((address, 0))
+        return int(probe.getsockname()[1])
+
+
+def _data_address(address: str, port: int) -> str:
+    return f"rerun+http://{address}:{port}/proxy"
 
 
 def require_free(port: int) -> None:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import struct
 import zlib
+from collections import deque
 from collections.abc import Generator, Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import pairwise
+from itertools import islice, pairwise
 from pathlib import Path
 from typing import IO, Any
 
@@ -199,12 +200,12 @@ def _other(file: IO[bytes], position: int, size: int, *, ours: bool) -> Any:
 
 
 def open_chunks(
-    summary: Summary, places: Sequence[ChunkPlace]
+    summary: Summary, places: Iterable[ChunkPlace]
 ) -> Generator[tuple[ChunkPlace, OpenChunk | None], None, None]:
     """The chunks at `places`, opened; None for one that is damaged.
 
     A thread opens them ahead of their use, so that who plays them in time does not wait for the
-    disk and for zstd.
+    disk and for zstd. `places` is asked for no more than these.
     """
     with summary.file.open("rb") as file, ThreadPoolExecutor(1) as reader:
         size = file.seek(0, 2)
@@ -219,12 +220,16 @@ def open_chunks(
             except DamageError:
                 return None
 
-        pending: list[Future[OpenChunk | None]] = []
+        pending: deque[tuple[ChunkPlace, Future[OpenChunk | None]]] = deque()
+        following = iter(places)
         try:
-            for i, place in enumerate(places):
-                while len(pending) <= AHEAD and i + len(pending) < len(places):
-                    pending.append(reader.submit(read, places[i + len(pending)]))
-                yield place, pending.pop(0).result()
+            while True:
+                for place in islice(following, AHEAD + 1 - len(pending)):
+                    pending.append((place, reader.submit(read, place)))
+                if not pending:
+                    return
+                place, opened = pending.popleft()
+                yield place, opened.result()
         finally:
-            for future in pending:
+            for _, future in pending:
                 future.cancel()

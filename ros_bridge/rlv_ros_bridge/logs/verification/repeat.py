@@ -17,6 +17,7 @@ from ...messages.inputs import READINGS, input_table_of
 from ...messages.tables import table_of
 from ...messages.topics import APPLIED, resolve
 from ...messages.wire import NANOSECONDS
+from ..indexed import messages_of
 from ..peaks import landing_peaks
 from ..reader import Decoder, LogReader
 
@@ -137,7 +138,7 @@ def _inputs(reader: LogReader, step_ns: int, refusal: str) -> Inputs:
     decode = Decoder(reader)
     table = input_table_of(reader.interface)
     found: Inputs = {}
-    for message in reader.messages(names):
+    for message in messages_of(reader, names):
         at = f"{refusal}its input {message.topic} at {message.log_time / 1e9:.9g} s "
         seconds, nanoseconds = decode.read(message, _stamp)
         k, rest = divmod(message.log_time, step_ns)

@@ -16,6 +16,7 @@ from ...fmu.builds import inexact_reason
 from ...messages import topics
 from ...messages.tables import expected_fields, expected_numbers, leaves, table_of
 from ...messages.topics import resolve
+from ..mcap_files.chunks import FILE_RECORDS, RECORDS_PER_BYTE
 from ..peaks import read_peaks
 from ..reader import Decoder, LogMessage, LogReader
 from .repeat import RepeatedRun
@@ -46,8 +47,7 @@ def verify(reader: LogReader, fmu: Path | None = None) -> Verification:
     Raises:
         LandingError: the log cannot be repeated.
     """
-    # A log has at least as many messages as instants, whatever its times say.
-    most_instants = sum(1 for _ in reader.messages())
+    most_instants = _count_messages(reader)
     run = RepeatedRun(reader, fmu)
     not_exact = inexact_reason(reader.metadata, fmu)
     found = Verification(
@@ -238,6 +238,17 @@ class _Comparison:
         self, topic: str, field: str, time: float, recorded: Any, repeated: Any
     ) -> None:
         raise _DifferenceError(Difference(topic, field, time, recorded, repeated))
+
+
+def _count_messages(reader: LogReader) -> int:
+    """The messages of a log, which are at least as many as its instants, whatever its times say.
+
+    The summary tells them, as far as its chunks can hold so many. Without one the log is read.
+    """
+    if not reader.read_summary():
+        return sum(1 for _ in reader.messages())
+    told = sum(summary.statistics.message_count for summary in reader.summaries or ())
+    return int(min(told, FILE_RECORDS + RECORDS_PER_BYTE * reader.size))
 
 
 def _largest_values(run: RepeatedRun, count: int) -> dict[tuple[str, str], float]:
