@@ -13,7 +13,8 @@ CORE := $(shell find fmu_src/rlv_landing/core -name '*.py')
 SOURCES := fmu_src/fmu_build/sources.py
 MODULES := $(shell sed -n '/^MODULES = /,/^.$$/s/^ *"\(.*\)",/\1/p' $(SOURCES))
 FOLDERS := $(shell sed -n '/^FOLDERS = /s/[^"]*"\([^"]*\)"[^"]*/\1 /gp' $(SOURCES))
-FMU_FILES := fmu_src/landing_fmu.py CHANGELOG.md LICENSE fmu_src/rlv_landing/figures/plots.py \
+FMU_FILES := fmu_src/landing_fmu.py CHANGELOG.md LICENSE \
+  $(addprefix fmu_src/rlv_landing/figures/,plots.py style.py) \
   $(addprefix fmu_src/rlv_landing/,$(MODULES)) \
   $(shell find $(addprefix fmu_src/rlv_landing/,$(FOLDERS)) -name '*.py') \
   $(shell find fmu_src/fmu_build fmu_src/fmu_front -name '*.py' -o -name '*.j2' -o -name '*.[ch]')

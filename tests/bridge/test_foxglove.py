@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from rlv_landing.figures.plots import COLOURS
+from rlv_landing.figures.style import COLOURS
 from rlv_landing.quantities import MODES
 from rlv_ros_bridge.logs.reader import LogReader
 

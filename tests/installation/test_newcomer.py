@@ -39,7 +39,12 @@ def run(site: Path, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[s
     return subprocess.run(
         [sys.executable, "-W", "error::RuntimeWarning", *arguments],
         cwd=cwd,
-        env={**os.environ, "PYTHONPATH": str(site), "XDG_CACHE_HOME": str(cwd / "cache")},
+        env={
+            **os.environ,
+            "PYTHONPATH": str(site),
+            "XDG_CACHE_HOME": str(cwd / "cache"),
+            "RLV_LANDING_PURE": "",
+        },
         capture_output=True,
         text=True,
         timeout=300,

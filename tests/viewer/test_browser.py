@@ -23,7 +23,7 @@ from page_pixels import (
 from playwright.sync_api import Browser, Page
 from pytest import approx
 
-from rlv_landing.figures.plots import COLOURS
+from rlv_landing.figures.style import COLOURS
 from rlv_ros_bridge.logs.history import log_history
 from rlv_ros_bridge.viewer.rerun_scene import FORCE, GROUND, INK
 

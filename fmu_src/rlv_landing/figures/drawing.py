@@ -10,13 +10,13 @@ from ..parameters import PARAMETER_QUANTITIES, Parameters
 from ..quantities import DISPLAY_UNITS
 from ..touchdown import footpad_at_rest
 from .plots import save_whole
+from .style import AREA, AUXILIARY, BODY, INK, MAIN
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 Point = tuple[float, float]
-BODY, MAIN, AUXILIARY, INK = "#5a6672", "#0b6e99", "#c8553d", "#30363d"
 # what the table says beside the lengths
 UNDRAWN = (
     *("vehicle.mass", "vehicle.footpad_mass", "vehicle.inertia"),
@@ -136,9 +136,7 @@ def _draw_vehicle(ax: Axes, parameters: Parameters) -> None:
     main, auxiliary, foot = _leg(parameters)
     half = min(main[0], auxiliary[0])
     bottom, top = min(main[1], auxiliary[1]), parameters.vehicle.top_height
-    ax.fill(
-        (-half, half, half, -half), (bottom, bottom, top, top), facecolor="#eef1f4", edgecolor=BODY
-    )
+    ax.fill((-half, half, half, -half), (bottom, bottom, top, top), facecolor=AREA, edgecolor=BODY)
     for side in (-1.0, 1.0):
         for joint, colour in ((main, MAIN), (auxiliary, AUXILIARY)):
             ax.plot(

@@ -12,7 +12,8 @@ from ..studies.envelope.results import lost_text, stretches
 from ..studies.envelope.search import Envelope, Family
 from ..studies.sweep.factors import value_text
 from .envelope_sides import name_stable_side, shade, stable_word
-from .plots import COLOURS, save_whole
+from .plots import save_whole
+from .style import AREA, COLOURS, FAINT, plain_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -53,7 +54,7 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
             _draw(ax, envelope, family, markers, styles[_name(family)])
         name_stable_side(ax, envelope, families)
         ax.set_title(title, loc="left", fontsize="medium")
-        ax.grid(visible=True, linewidth=0.3)
+        plain_axes(ax, zero=False)
     _name_axes(list(axes), len(panels), columns, envelope)
     _add_legend(figure, styles, markers, stable_word(envelope))
     title = (
@@ -112,13 +113,13 @@ def _add_legend(
 
     across = 1 if len(figure.axes) == 1 else 2
 
-    grey: dict[str, Any] = {"color": "#666666", "linestyle": "none"}
+    grey: dict[str, Any] = {"color": FAINT, "linestyle": "none"}
     named: dict[str, Any] = {name: Line2D([], [], **style) for name, style in styles.items()}
     shared = len(markers) > len(MARKERS)
     for name, marker in markers.items():
         text = OTHERS if shared and marker == MARKERS[-1] else name
         named[text] = Line2D([], [], marker=marker, **grey)
-    named[f"shaded: {stable}"] = Patch(facecolor="#d5dde3")
+    named[f"shaded: {stable}"] = Patch(facecolor=AREA, edgecolor=FAINT)
     figure.legend(
         named.values(),
         named.keys(),

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ..quantities import shown
 from ..studies.envelope.search import Envelope, Family
+from .style import INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -53,7 +54,7 @@ def name_stable_side(ax: Axes, envelope: Envelope, families: Sequence[Family]) -
     row, column = places[int(np.argmax(far))]
     ax.text(
         float(x[column]), float(y[row]), stable_word(envelope),
-        ha="center", va="center", color="#30363d",
+        ha="center", va="center", color=INK,
     )  # fmt: skip
 
 

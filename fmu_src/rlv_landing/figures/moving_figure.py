@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 
 from ..history import History
 from ..quantities import LEGS, groups_of
-from .plots import COLOURS, MAIN_FORCE, MAIN_STROKE
+from .plots import MAIN_FORCE, MAIN_STROKE
+from .style import COLOURS, FAINT, GROUND, INK
 from .wireframe import ground_height, wireframe
 
 if TYPE_CHECKING:
     from ..parameters import Parameters
 
 WIDTH, HEIGHT = 9.6, 5.28
-INK, FAINT, GROUND = "#222222", "#999999", "#555555"
 CURVES = (MAIN_FORCE, MAIN_STROKE)
 WIDTHS = {"hull": 0.6, "outline": 1.4, "main": 2.2, "auxiliary": 1.2}
 

@@ -13,22 +13,12 @@ import numpy as np
 from ..history import History
 from ..quantities import LEGS, SPACE, touchdown_groups
 from ..text.durable import whole_file
+from .style import COLOURS, FILES, INK, plain_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-COLOURS = (
-    "#0b6e99",
-    "#c8553d",
-    "#5b8c3e",
-    "#8a4fa0",
-    "#c79a1e",
-    "#3f3f8f",
-    "#17a398",
-    "#7a5c3e",
-)
-# outputs of a leg, and the factor to the unit of their axis
 # what is drawn of a leg, and of the body: the column, its factor from SI, and the axis's label
 MAIN_FORCE = ("main_strut.force", 1e-3, "main strut force [kN]")
 MAIN_STROKE = ("main_strut.stroke", 1e3, "main strut stroke [mm]")
@@ -88,12 +78,11 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
             for ax in axes:
                 ax.axvline(history.time[touching[0]], color=colour, linestyle=":", linewidth=0.8)
     column, factor, _ = TOP_ACCELERATION
-    axes[3].plot(history.time, factor * history[column], color="#333333", linewidth=1.0)
-    draw_peaks(axes[3], history, column, factor, "#333333")
+    axes[3].plot(history.time, factor * history[column], color=INK, linewidth=1.0)
+    draw_peaks(axes[3], history, column, factor, INK)
     for ax, (_, _, label) in zip(axes, (*DRAWN_OF_A_LEG, TOP_ACCELERATION)):
         ax.set_ylabel(label)
-        ax.axhline(0.0, color="#999999", linewidth=0.6)
-        ax.grid(visible=True, linewidth=0.3)
+        plain_axes(ax)
         ax.margins(x=0.0)
     # above the curves, beside the title: inside, some vehicle's curves would cross it
     above = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.2}
@@ -124,8 +113,7 @@ def save_whole(figure: Figure, path: Path, **options: Any) -> None:
     dates = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
     if path.suffix in dates:
         options["metadata"] = dates[path.suffix]
-    texts: Any = {"svg.fonttype": "none", "svg.hashsalt": "rlv-landing"}
-    with rc_context(texts), whole_file(path) as file:
+    with rc_context(FILES), whole_file(path) as file:
         figure.savefig(file, format=path.suffix[1:], **options)
 
 
@@ -143,7 +131,7 @@ def inline_svg(
     import matplotlib as mpl
 
     out = io.StringIO()
-    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": prefix}):
+    with mpl.rc_context({**FILES, "svg.hashsalt": prefix}):
         figure.savefig(
             out,
             format="svg",

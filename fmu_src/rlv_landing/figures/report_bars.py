@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .plots import COLOURS
-from .report_marks import PAPER, TEST
+from .report_marks import PAPER
+from .style import COLOURS, FAINT, TEST
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -82,7 +82,7 @@ def error_figure(found: Validation) -> Figure:
     y = -np.arange(len(comparisons), dtype=float)
     for level, shade in ((20, "#f3f6f8"), (10, "#e6edf1"), (5, "#d5e1e8")):
         ax.axvspan(-level, level, color=shade, linewidth=0)
-    ax.axvline(0.0, color="#999999", linewidth=0.6)
+    ax.axvline(0.0, color=FAINT, linewidth=0.6)
     ours = _shown([c.error for c in comparisons])
     test = _shown([c.error_test for c in comparisons])
     paper = _shown([c.scalar.paper_error_test for c in comparisons])

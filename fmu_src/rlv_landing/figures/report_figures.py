@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 from ..history import History
 from ..quantities import touchdown_groups
-from .plots import COLOURS, draw_peaks
-from .report_marks import ACCELERATION, PAPER, TEST, Curve, draw_marks, marks
+from .plots import draw_peaks
+from .report_marks import ACCELERATION, PAPER, Curve, draw_marks, marks
+from .style import BEHIND, COLOURS, FAINT, MEASURED, TEST
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..validation.validate import Validation
 
-MEASURED = "#777777"
 ORDINALS = ("first", "second", "third")
 # each mode's figure numbers in the paper, in this order: force, stroke, loop, auxiliary force,
 # acceleration, movement
@@ -73,7 +73,7 @@ def loop_figure(found: Validation, mode: str) -> tuple[Figure, dict[str, str]]:
             ax.plot(
                 [0, 1e3 * work.stroke_max, 1e3 * work.stroke_max],
                 [1e-3 * work.force_max] * 2 + [0],
-                color="#999999",
+                color=FAINT,
                 linewidth=0.8,
                 linestyle=":",
             )
@@ -106,11 +106,11 @@ def acceleration_figure(found: Validation, mode: str) -> tuple[Figure, dict[str,
     ax.plot(
         raw.time,
         raw[ACCELERATION.column],
-        color="#9db8c6",
+        color=BEHIND,
         linewidth=0.9,
         label="this landing, raw",
     )
-    draw_peaks(ax, raw, ACCELERATION.column, 1.0, "#9db8c6")
+    draw_peaks(ax, raw, ACCELERATION.column, 1.0, BEHIND)
     ax.plot(
         sensed.time,
         sensed[ACCELERATION.column],
@@ -141,7 +141,7 @@ def _set_up(ax: Any, title: str, x: str, y: str) -> None:
     ax.set_title(title, loc="left", fontsize=10)
     ax.set_xlabel(x)
     ax.set_ylabel(y)
-    ax.axhline(0.0, color="#999999", linewidth=0.6)
+    ax.axhline(0.0, color=FAINT, linewidth=0.6)
     ax.grid(visible=True, linewidth=0.3)
     ax.spines[["top", "right"]].set_visible(False)
 

@@ -11,8 +11,9 @@ import numpy as np
 from ..history import History
 from ..validation.paper import Comparison
 from .plots import AUXILIARY_FORCE, MAIN_FORCE, MAIN_STROKE, TOP_ACCELERATION
+from .style import INK, TEST
 
-PAPER, TEST = "#111111", "#b5379a"
+PAPER = INK
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ import numpy as np
 
 from ..history import History
 from ..parameters import Parameters
-from .plots import COLOURS
 from .report_marks import PITCH, draw_marks, marks
+from .style import COLOURS, GROUND, plain_axes
 from .wireframe import Lines, ground_height, wireframe
 
 if TYPE_CHECKING:
@@ -73,8 +73,7 @@ def sequence(history: History, longest: float) -> tuple[Figure, Any, Any]:
     below.set_xlabel("time [s]; bars: the instants drawn on the left")
     below.set_ylabel("pitch [deg], clockwise positive")
     for each in (ax, below):
-        each.grid(visible=True, linewidth=0.3)
-        each.spines[["top", "right"]].set_visible(False)
+        plain_axes(each, zero=False)
     return figure, ax, below
 
 
@@ -89,5 +88,5 @@ def _draw(ax: Any, lines: dict[str, Lines], shade: Any) -> None:
 
 def _ground(ax: Any, parameters: Parameters) -> None:
     ends = np.array(ax.get_xlim())
-    ax.plot(ends, ground_height(parameters, ends), color="#555555", linewidth=1.2, zorder=0)
+    ax.plot(ends, ground_height(parameters, ends), color=GROUND, linewidth=1.2, zorder=0)
     ax.set_xlim(*ends)

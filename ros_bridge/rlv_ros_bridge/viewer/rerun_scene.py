@@ -16,7 +16,8 @@ import rerun as rr
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from rlv_landing.figures.plots import COLOURS, DRAWN_OF_A_LEG
+from rlv_landing.figures.plots import DRAWN_OF_A_LEG
+from rlv_landing.figures.style import COLOURS
 from rlv_landing.quantities import LEGS, touchdown_groups
 from rlv_landing.text.durable import whole_file, writing
 

@@ -9,13 +9,13 @@ from ...quantities import touchdown_groups
 from ..drawing import vehicle_drawing
 from ..plots import (
     AUXILIARY_FORCE,
-    COLOURS,
     MAIN_FORCE,
     MAIN_STROKE,
     TOP_ACCELERATION,
     draw_peaks,
 )
 from ..report_movement import sequence
+from ..style import COLOURS, plain_axes
 from .sections import Landed
 
 if TYPE_CHECKING:
@@ -94,9 +94,7 @@ def _panels(count: int) -> tuple[Figure, list[Axes]]:
 def _finish(ax: Axes, found: Landed) -> None:
     ax.set_xlabel("time [s]")
     ax.set_xlim(0.0, _end(found))
-    ax.axhline(0.0, color="#999999", linewidth=0.6)
-    ax.grid(visible=True, linewidth=0.3)
-    ax.spines[["top", "right"]].set_visible(False)
+    plain_axes(ax)
 
 
 def _of_legs(ax: Axes, found: Landed, column: Column) -> None:
