@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 from ..landing import Landing
 from ..parameters import Parameters
-from ..quantities import LEGS
 
 
 class Case(NamedTuple):
@@ -51,7 +50,7 @@ def cases(parameters: Parameters) -> tuple[Case, ...]:
 
 def mass(parameters: Parameters) -> float:
     """Mass [kg] of body and footpads."""
-    return parameters.vehicle.mass + len(LEGS) * parameters.vehicle.footpad_mass
+    return parameters.vehicle.mass + parameters.vehicle.legs * parameters.vehicle.footpad_mass
 
 
 def weight(parameters: Parameters) -> float:

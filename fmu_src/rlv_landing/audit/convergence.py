@@ -15,7 +15,6 @@ from ..errors import LandingError
 from ..history import History
 from ..landing import Landing
 from ..parameters import Parameters
-from ..quantities import LEGS
 
 REFERENCE_RTOLS = (1e-12, 1e-11, 1e-10)
 RTOLS = (1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
@@ -127,7 +126,7 @@ def smooth_arc(history: History) -> tuple[float, float]:
     extension.
     """
     signs = []
-    for leg in LEGS:
+    for leg in history.legs:
         strut = f"leg[{leg}].main_strut"
         signs += [
             history[f"leg[{leg}].contact.active"],
@@ -138,7 +137,7 @@ def smooth_arc(history: History) -> tuple[float, float]:
             np.sign(history[f"{strut}.stroke"]),
         ]
     changes = np.any(np.diff(np.array(signs), axis=1) != 0.0, axis=0)
-    touching = np.any([history[f"leg[{leg}].contact.active"] > 0.0 for leg in LEGS], axis=0)
+    touching = np.any([history[f"leg[{leg}].contact.active"] > 0.0 for leg in history.legs], axis=0)
     events = np.flatnonzero(changes | ~touching[1:])
     ends = np.concatenate(([0], events, [len(history) - 1]))
     i = int(np.argmax(np.diff(ends)))
@@ -151,7 +150,7 @@ def _errors(
     landing: Landing, found: History, reference: History, whole: History, rtol: float, before: int
 ) -> Errors:
     def worst(what: str) -> float:
-        names = [f"leg[{leg}].main_strut.{what}" for leg in LEGS]
+        names = [f"leg[{leg}].main_strut.{what}" for leg in found.legs]
         size = max(float(np.abs(whole[name]).max()) for name in names)
         return (
             max(float(np.abs(found[name] - reference[name]).max()) for name in names) / size

@@ -6,7 +6,6 @@ import numpy as np
 
 from ..history import History
 from ..landing import DEFAULT_RTOL
-from ..quantities import LEGS
 from .bounds import TIGHT_RTOL, Check
 from .cases import Case
 
@@ -59,7 +58,7 @@ def largest_fall(history: History) -> float:
 
 def mass_change(history: History) -> float:
     """Largest change of a damper's liquid mass, of that at the start."""
-    masses = (history[f"leg[{leg}].main_strut.liquid_mass"] for leg in LEGS)
+    masses = (history[f"leg[{leg}].main_strut.liquid_mass"] for leg in history.legs)
     return max(float(np.abs(m / m[0] - 1.0).max()) for m in masses)
 
 

@@ -16,10 +16,11 @@ from scipy.integrate import cumulative_simpson
 from ..history import History
 from ..landing import Landing
 from ..parameters import Parameters
-from ..quantities import LEGS, OUTPUT_NAMES, azimuth, groups_of
+from ..quantities import LEGS, SPACE, azimuth, groups_of
 from ..touchdown import footpad_at_rest
 from .bounds import TIGHT_RTOL, Check
 from .cases import mass
+from .spatial_momentum import spatial_impulse, spatial_momentum
 
 Array = NDArray[np.float64]
 FLIGHT = 0.3
@@ -126,6 +127,37 @@ def impulse(history: History, parameters: Parameters) -> Momentum:
     return Momentum(x, y, turn, np.zeros(len(t)))
 
 
+@dataclass(frozen=True)
+class _Balance:
+    """Momentum at every sample, and the impulse that it must have got, in whichever mode.
+
+    Each is (found, given), with an array (n,) or in space (n, components).
+    """
+
+    across: tuple[Array, Array]
+    up: tuple[Array, Array]
+    turning: tuple[Array, Array]
+    about_cg: Array
+
+
+def _balance(history: History, parameters: Parameters) -> _Balance:
+    if parameters.drop.mode == SPACE:
+        whole, got = spatial_momentum(history, parameters), spatial_impulse(history, parameters)
+        return _Balance(
+            (whole.linear[:, ::2], got.linear[:, ::2]),
+            (whole.linear[:, 1], got.linear[:, 1]),
+            (whole.about_origin, got.about_origin),
+            whole.about_cg,
+        )
+    found, given = momentum(history, parameters), impulse(history, parameters)
+    return _Balance(
+        (found.x, given.x),
+        (found.y, given.y),
+        (found.about_origin, given.about_origin),
+        found.about_cg,
+    )
+
+
 def flight(parameters: Parameters) -> list[Check]:
     """Momentum in 0.3 s of turning free flight.
 
@@ -134,18 +166,16 @@ def flight(parameters: Parameters) -> list[Check]:
     drop, g = parameters.drop, parameters.ground.gravity
     rate = drop.pitch_rate if abs(drop.pitch_rate) > 0.1 else 0.2
     speed = max(drop.vertical_velocity - g * FLIGHT, -50.0)
-    flying = replace(
-        parameters,
-        drop=replace(drop, contact_time=FLIGHT, vertical_velocity=speed, pitch_rate=rate),
-        by_mode={},
-    )
+    drop = replace(drop, contact_time=FLIGHT, vertical_velocity=speed, pitch_rate=rate)
+    if drop.mode == SPACE:
+        drop = replace(drop, roll_rate=drop.roll_rate or 0.15, yaw_rate=drop.yaw_rate or 0.1)
+    flying = replace(parameters, drop=drop, by_mode={})
     history = Landing(flying, rtol=TIGHT_RTOL).run(0.95 * FLIGHT)
-    found, given = momentum(history, flying), impulse(history, flying)
+    found = _balance(history, flying)
     size = mass(parameters) * max(g, 1.0) * FLIGHT
-    linear = (
-        max(np.abs(a - a[0] - b).max() for a, b in ((found.x, given.x), (found.y, given.y))) / size
-    )
-    angular = np.ptp(found.about_cg) / np.abs(found.about_cg).max()
+    linear = max(np.abs(a - a[0] - b).max() for a, b in (found.across, found.up)) / size
+    cg = found.about_cg
+    angular = np.ptp(cg, axis=0).max() / np.abs(cg).max()
     consistent = parameters.vehicle.transverse_load_at == "footpad"
     return [
         Check("flight_momentum", float(linear)),
@@ -158,7 +188,7 @@ def contact(parameters: Parameters, until: float) -> list[Check]:
     landing = Landing(parameters, rtol=TIGHT_RTOL)
     coarse = np.arange(int(until / SAMPLE_STEP) + 1) * SAMPLE_STEP
     history = _sample(landing, coarse)
-    active = np.array([history[f"leg[{leg}].contact.active"] for leg in LEGS])
+    active = np.array([history[f"leg[{leg}].contact.active"] for leg in history.legs])
     changes = np.flatnonzero(np.any(np.diff(active, axis=1) != 0.0, axis=0))
     fine = [
         np.arange(coarse[i] - FINE_BEFORE, coarse[i + 1] + FINE_AFTER, FINE_STEP) for i in changes
@@ -166,20 +196,20 @@ def contact(parameters: Parameters, until: float) -> list[Check]:
     times = np.unique(np.round(np.concatenate([coarse, *fine]), 9))
     landing.reset()
     history = _sample(landing, times[(times >= 0.0) & (times <= until)])
-    found, given = momentum(history, parameters), impulse(history, parameters)
+    found = _balance(history, parameters)
 
     # of a level landing the horizontal and the angular momentum do not change but for rounding
-    least = LEAST_CHANGE * float(np.ptp(found.y))
+    least = LEAST_CHANGE * float(np.ptp(found.up[0]))
 
-    def left(a: Any, b: Any, least: float = 0.0) -> float:
-        return float(np.abs(a - a[0] - b).max() / max(np.ptp(a), least))
+    def left(a: Array, b: Array, least: float = 0.0) -> float:
+        return float(np.abs(a - a[0] - b).max() / max(np.ptp(a, axis=0).max(), least))
 
     return [
-        Check("momentum_x", left(found.x, given.x, least)),
-        Check("momentum_y", left(found.y, given.y)),
+        Check("momentum_x", left(*found.across, least)),
+        Check("momentum_y", left(*found.up)),
         Check(
             "angular",
-            left(found.about_origin, given.about_origin, least * footpad_at_rest(parameters)[0]),
+            left(*found.turning, least * footpad_at_rest(parameters)[0]),
             parameters.vehicle.transverse_load_at == "footpad",
         ),
     ]
@@ -191,5 +221,8 @@ def _sample(landing: Landing, times: Any) -> History:
         return landing.values()
 
     return History(
-        times, OUTPUT_NAMES, np.array([values(t) for t in times.tolist()]), landing.parameters
+        times,
+        landing.interface.output_names,
+        np.array([values(t) for t in times.tolist()]),
+        landing.parameters,
     )

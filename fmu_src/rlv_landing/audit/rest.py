@@ -10,7 +10,6 @@ import numpy as np
 
 from ..history import History
 from ..landing import Landing
-from ..quantities import LEGS
 from .bounds import TIGHT_RTOL, Check
 from .cases import Case, weight
 from .energy import largest_fall
@@ -39,10 +38,13 @@ def rest(case: Case) -> tuple[dict[str, float], list[Check]]:
         "settled_since": since,
         "pitch": float(history["body.pitch"][-1]),
         "stability_margin": float(history["status.stability_margin"][-1]),
-        **{f"stroke_{leg}": float(history[f"leg[{leg}].main_strut.stroke"][-1]) for leg in LEGS},
+        **{
+            f"stroke_{leg}": float(history[f"leg[{leg}].main_strut.stroke"][-1])
+            for leg in history.legs
+        },
     }
     whole = weight(case.parameters)
-    carried = sum(float(history[f"leg[{leg}].contact.force_y"][-1]) for leg in LEGS)
+    carried = sum(float(history[f"leg[{leg}].contact.force_y"][-1]) for leg in history.legs)
     return state, [
         Check("dissipated", largest_fall(parts[0])),
         Check("rest_weight", abs(carried - whole) / whole if whole > 0.0 else float("nan")),
@@ -80,7 +82,7 @@ def _stands(parts: list[History]) -> bool:
 
 def feet(history: History, at: int) -> np.ndarray:
     """Footpads' places [m] along inertial x and z at a sample."""
-    return np.array([history[f"leg[{leg}].footpad.{a}"][at] for leg in LEGS for a in "xz"])
+    return np.array([history[f"leg[{leg}].footpad.{a}"][at] for leg in history.legs for a in "xz"])
 
 
 def settled_since(history: History) -> float:
@@ -90,9 +92,15 @@ def settled_since(history: History) -> float:
 
 
 def _speed(history: History) -> float:
+    across = ["body.vz"] if "body.vz" in history else []
     rates = [
         "body.vx",
         "body.vy",
-        *(f"leg[{leg}].{s}_strut.stroke_rate" for leg in LEGS for s in ("main", "auxiliary")),
+        *across,
+        *(
+            f"leg[{leg}].{s}_strut.stroke_rate"
+            for leg in history.legs
+            for s in ("main", "auxiliary")
+        ),
     ]
     return max(abs(float(history[name][-1])) for name in rates)

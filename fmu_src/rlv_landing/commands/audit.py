@@ -22,7 +22,8 @@ def audit(name: str | None, *, as_json: bool, **choice: Any) -> int:
     audited on a slope of 5 deg and under a steady side load of a tenth of the weight. Momentum is
     audited in free flight and in contact, against the integral of contact forces and weight. Every
     value has a bound, which is printed with its reason. Both drop tests are audited unless --mode
-    names one. The exit code is 1 when a bound is missed.
+    names one, or the parameters are of a landing in space. The exit code is 1 when a bound is
+    missed.
 
     \b
     rlv-landing audit yue2022-figures

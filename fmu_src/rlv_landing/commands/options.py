@@ -132,7 +132,7 @@ def parameter_options(command: F) -> F:
         click.option(
             "--mode",
             metavar="MODE",
-            help="Landing mode: 2-2 or 1-2-1 (legs that touch first, second, third).",
+            help="Landing mode: 2-2 or 1-2-1 (legs that touch first, second, third), or space.",
         ),
         set_option(),
     )
@@ -166,17 +166,19 @@ def choose(
 ) -> tuple[Parameters, tuple[str, ...], str]:
     """The parameters, modes and label for a command that runs both modes unless one is named.
 
+    A vehicle of landings in space has that mode alone.
+
     Raises:
         LandingError: An option names what does not exist or cannot be.
     """
     from ..choices import choose_parameters, parse_pairs
     from ..parameters import PARAMETER_QUANTITIES
     from ..presets import DEFAULT_PRESET
-    from ..quantities import MODES
+    from ..quantities import MODES, SPACE
 
     values = parse_pairs(pairs, PARAMETER_QUANTITIES, "parameter")
     parameters = choose_parameters(preset, file, mode, values)
-    wanted = mode or values.get("drop.mode")
+    wanted = mode or values.get("drop.mode") or parameters.drop.mode == SPACE
     name = Path(file).name if file is not None else preset or DEFAULT_PRESET
     label = name + "".join(f", {pair}" for pair in pairs)
     return parameters, (parameters.drop.mode,) if wanted else tuple(MODES), label

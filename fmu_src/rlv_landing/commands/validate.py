@@ -64,6 +64,7 @@ def validate(
     rlv-landing validate --html report.html
     rlv-landing validate --parameters mine.toml --require none --mode 2-2 --test-data drop7.csv
     """
+    from ..quantities import groups_of
     from ..validation.required_counts import (
         STATED,
         STATED_OF_TESTS,
@@ -77,6 +78,8 @@ def validate(
     check_writable(html, ".html", force=force)
     of_tests = options["preset"] == TESTS_PRESET
     parameters, modes, label = choose(**options)
+    for mode in modes:
+        groups_of(mode)
     bounds = (
         None
         if require == "none"

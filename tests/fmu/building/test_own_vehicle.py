@@ -296,7 +296,8 @@ def test_simulate_is_simulate_of_the_same_vehicle(command, stage, flat, tmp_path
 def test_the_node_lands_the_fmus_vehicle_unless_another_is_given(stage, parameters, fmu, tmp_path):
     assert own_vehicle(fmu) is None
     assert own_vehicle(tmp_path / "nosuch.fmu") is None
-    assert own_vehicle(stage) == Parameters().with_values(dict(parameters.items()))
+    own = {name: parameters[name] for name in parameters_of("1-2-1")}
+    assert own_vehicle(stage) == Parameters().with_values(own)
     short = ("node", "--fmu", stage, "--realtime-factor", "0", "--stop-time", "0.01")
     for options, mass in (((), 25e3), (("--set", "vehicle.mass=26000"), 26e3)):
         log = tmp_path / f"log{mass:g}"

@@ -1,0 +1,125 @@
+"""Momentum of the whole vehicle in space: see `momentum.py`.
+
+It comes from a history's outputs alone. No kernel of the core is used, so that the result is an
+independent check.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import cumulative_simpson
+from scipy.spatial.transform import Rotation
+
+from ..history import History
+from ..parameters import Parameters
+from ..touchdown import leg_directions
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class SpatialMomentum:
+    """Momentum of body and footpads at every sample, inertial axes, arrays (n, 3).
+
+    Attributes:
+        linear: Linear momentum [N s].
+        about_origin: Angular momentum about the inertial origin [N m s].
+        about_cg: Angular momentum about the whole vehicle's CG [N m s].
+    """
+
+    linear: Array
+    about_origin: Array
+    about_cg: Array
+
+
+def inertia_tensor(parameters: Parameters) -> Array:
+    """The upper mass's inertia tensor about its CG [kg m2], body axes, (3, 3)."""
+    v = parameters.vehicle
+    roll = v.inertia_roll or v.inertia
+    yaw = v.inertia_yaw or v.mass * parameters.main_strut.joint_radius**2
+    return np.array(
+        [
+            [roll, v.inertia_xy, v.inertia_xz],
+            [v.inertia_xy, yaw, v.inertia_yz],
+            [v.inertia_xz, v.inertia_yz, v.inertia],
+        ]
+    )
+
+
+def spatial_momentum(history: History, parameters: Parameters) -> SpatialMomentum:
+    """The momentum at every sample.
+
+    The history needs the landing's own columns, stroke rates included.
+    """
+    v = parameters.vehicle
+    turn, spin = _attitude(history), _columns(history, "body.spin_")
+    place, speed = _place(history), _columns(history, "body.v")
+    points = [(v.mass, place, speed)]
+    for leg, azimuth in leg_directions(parameters).items():
+        foot = _columns(history, f"leg[{leg}].footpad.")
+        from_cg = turn.inv().apply(foot - place)
+        own = _in_plane(history, parameters, leg, azimuth, from_cg) + np.cross(spin, from_cg)
+        points.append((v.footpad_mass, foot, speed + turn.apply(own)))
+    linear: Array = np.sum([m * u for m, _, u in points], axis=0)
+    turning: Array = np.sum([m * np.cross(x, u) for m, x, u in points], axis=0)
+    about_origin = turning + turn.apply(spin @ inertia_tensor(parameters))
+    centre = np.sum([m * x for m, x, _ in points], axis=0) / sum(m for m, *_ in points)
+    return SpatialMomentum(linear, about_origin, about_origin - np.cross(centre, linear))
+
+
+def spatial_impulse(history: History, parameters: Parameters) -> SpatialMomentum:
+    """The impulse of contact forces and weight since the first sample.
+
+    It is integrated by Simpson's rule over the samples; `about_cg` is left 0.
+    """
+    v, g = parameters.vehicle, parameters.ground.gravity
+    down = np.array([0.0, -g, 0.0])
+    loads = [(_place(history), np.tile(v.mass * down, (len(history), 1)))]
+    for leg in history.legs:
+        force = _columns(history, f"leg[{leg}].contact.force_") + v.footpad_mass * down
+        loads.append((_columns(history, f"leg[{leg}].footpad."), force))
+    force = np.sum([f for _, f in loads], axis=0)
+    moment = np.sum([np.cross(x, f) for x, f in loads], axis=0)
+    linear, turn = (
+        np.asarray(cumulative_simpson(f, x=history.time, axis=0, initial=0.0))
+        for f in (force, moment)
+    )
+    return SpatialMomentum(linear, turn, np.zeros_like(linear))
+
+
+def _columns(history: History, name: str) -> Array:
+    """The vector whose columns' names begin with `name`, (n, 3)."""
+    return np.column_stack([history[f"{name}{axis}"] for axis in "xyz"])
+
+
+def _place(history: History) -> Array:
+    return _columns(history, "body.")
+
+
+def _attitude(history: History) -> Rotation:
+    return Rotation.from_quat(np.column_stack([history[f"body.q_{part}"] for part in "xyzw"]))
+
+
+def _in_plane(
+    history: History,
+    parameters: Parameters,
+    leg: int,
+    azimuth: tuple[float, float],
+    from_cg: Array,
+) -> Array:
+    """Velocity of a footpad in the leg's plane from both struts' rates, body axes, (n, 3)."""
+    own, m, a = parameters.vehicle, parameters.main_strut, parameters.auxiliary_strut
+    sine, cosine = azimuth
+    r = (from_cg[:, 0] + own.cg_offset_x) * cosine + (from_cg[:, 2] + own.cg_offset_z) * sine
+    h = from_cg[:, 1]
+    main_r, main_h = r - m.joint_radius, h + m.joint_depth
+    aux_r, aux_h = r - a.joint_radius, h + a.joint_depth
+    main_rate = -history[f"leg[{leg}].main_strut.stroke_rate"] * np.hypot(main_r, main_h)
+    aux_rate = -history[f"leg[{leg}].auxiliary_strut.stroke_rate"] * np.hypot(aux_r, aux_h)
+    determinant = main_r * aux_h - main_h * aux_r
+    vr = (main_rate * aux_h - aux_rate * main_h) / determinant
+    vh = (main_r * aux_rate - aux_r * main_rate) / determinant
+    return np.column_stack([vr * cosine, vh, vr * sine])
