@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from pytest import approx
 
 from rlv_landing import Landing, LandingError
+from rlv_landing.core import Phase
 from rlv_landing.sizing import LIKE, leg_geometry, needs_like, size_damper, size_vehicle
 from rlv_landing.studies.outcome import outcome
 from rlv_landing.studies.whole_landing import whole_landing
@@ -116,3 +117,15 @@ def test_every_parameter_of_a_vehicle_has_its_rule():
     without = {name for name, r in rules.items() if not re.match("user$|derived: |closure: ", r)}
     assert without == set()
     assert size_vehicle(replace(LIKE["hopper"], mass=70.0))["vehicle.mass"] == 70.0
+
+
+@pytest.mark.parametrize("mode", ["2-2", "1-2-1"])
+def test_a_stage_on_a_slope_that_has_settled_stops_for_good(mode):
+    """Its liquid evens out within seconds of the last 2 mm/s, and then nothing moves any more."""
+    values = {"ground.slope": 0.1, "ground.friction": 0.5}
+    landing = Landing(size_vehicle(LIKE["stage"]).for_mode(mode).with_values(values))
+    landing.advance_to(40.0)
+    before = landing.outputs()
+    landing.advance_to(1e5)
+    assert before["status.phase"] == landing.get("status.phase") == float(Phase.SETTLED)
+    assert landing.outputs() == before
