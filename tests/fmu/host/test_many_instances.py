@@ -79,7 +79,7 @@ def test_instances_states_and_messages_leave_nothing_behind(run, what, count, mo
 @pytest.mark.parametrize("library", python_libraries())
 @pytest.mark.parametrize("what", ["instance", "message"])
 def test_very_many_instances_and_messages_leave_nothing_behind(run, many, what, library):
-    """100 000 under torture, within one arena of Python's in all, if all grew as the least part."""
+    """100 000 under torture: within one arena of Python's, if each part grew as the least."""
     count = many(2000) if "RLV_TORTURE" in os.environ else 400
     assert float(run("many", count, what, library=library)) * count <= 2**20
 
