@@ -40,7 +40,7 @@ def release(tmp_path_factory) -> Path:
         [sys.executable, "-m", "fmu_build.build", "--platforms", "all", str(folder / "all.fmu")],
         cwd=ROOT / "fmu_src",
         check=True,
-        timeout=1800,
+        timeout=3600,
     )
     return Path(fmpy.extract(str(folder / "all.fmu"), str(folder / "fmu")))
 
