@@ -43,6 +43,8 @@ STEP = 1e-3
 FAST_SECONDS, REPEATS = 10.0, 5
 ROUND_SECONDS, ROUNDS = 2.5, 4
 SPIN_SECONDS = 300e-6
+# So that nobody else's landing or listener in the ROS domain is taken for one of these.
+NAMESPACE = f"bench_{os.getpid()}"
 
 LAND = """
 import json, sys, time
@@ -65,7 +67,7 @@ def measured(run, interrupted):
 
 LandingRun.run = measured
 with StopFlag() as stop:
-    summary = land(json.loads(sys.argv[1]), [], stop)
+    summary = land(json.loads(sys.argv[1]), [], stop, sys.argv[2])
 found.update(samples=summary.samples, factor=summary.realtime_factor, late_steps=summary.late_steps)
 print(json.dumps(found))
 """
@@ -98,7 +100,7 @@ received = []
 qos = QoSProfile(depth=10000)
 with rclpy.init():
     node = Node("bench_listener")
-    node.create_subscription(JointState, "/landing/struts", received.append, qos, raw=True)
+    node.create_subscription(JointState, f"/{sys.argv[2]}/struts", received.append, qos, raw=True)
     executor = SingleThreadedExecutor()
     executor.add_node(node)
     while len(received) < int(sys.argv[1]):
@@ -131,13 +133,19 @@ def run(code: str, options: dict[str, Any], listen: int = 0) -> dict[str, Any]:
         listen: number of samples for which the subscriber waits.
     """
     listener = (
-        subprocess.Popen(worker(LISTEN, listen), env=environment(), stdout=subprocess.PIPE)
+        subprocess.Popen(
+            worker(LISTEN, listen, NAMESPACE), env=environment(), stdout=subprocess.PIPE
+        )
         if listen
         else None
     )
     try:
         done = subprocess.run(
-            worker(code, options), env=environment(), stdout=subprocess.PIPE, text=True, check=True
+            worker(code, options, NAMESPACE),
+            env=environment(),
+            stdout=subprocess.PIPE,
+            text=True,
+            check=True,
         )
         if listener is not None:
             listener.wait(30.0)

@@ -13,7 +13,13 @@ from log_tools import messages_of, small_log
 from rlv_landing.errors import LandingError
 from rlv_landing.summary import summarise
 from rlv_landing.tables.landing import sampling_note
-from rlv_ros_bridge.logs.history import HistoryParts, log_history, measured_history, with_parts
+from rlv_ros_bridge.logs.history import (
+    HistoryParts,
+    drawn_history,
+    log_history,
+    measured_history,
+    with_parts,
+)
 from rlv_ros_bridge.logs.indexed import holds, last_time, messages_between
 from rlv_ros_bridge.logs.instants import RowChoice
 from rlv_ros_bridge.logs.mcap_files.summary import read_summary
@@ -138,6 +144,17 @@ def test_the_summary_of_a_long_landing_needs_few_of_its_rows(long_log: Path) -> 
     assert np.array_equal(few.data[-20:], whole.data[-20:])
     assert summarise(few) == summarise(whole)
     assert sampling_note(few) == sampling_note(whole)
+
+
+def test_what_a_film_shows_is_read_and_little_more(long_log: Path) -> None:
+    whole = log_history(long_log)
+    few, _ = drawn_history(LogReader(long_log), shown=(100.0, 102.0))
+    rows = (whole.time >= 99.0) & (whole.time <= 103.0)
+    assert np.array_equal(few.time, whole.time[rows])
+    assert np.array_equal(few.data, whole.data[rows])
+    # A span that the log does not have is refused with all that it has.
+    all_rows, _ = drawn_history(LogReader(long_log), shown=(199.0, 201.0))
+    assert np.array_equal(all_rows.time, whole.time)
 
 
 @pytest.mark.parametrize("topic", ["/landing/applied/ground", "/landing/struts", "/landing/none"])

@@ -37,7 +37,7 @@ ROWS_AT_ONCE = 1000
 FEW_INSTANTS = 4
 # What follows the last contact by more than this is no part of a first stroke [s].
 MEASURED_SECONDS = 60.0
-# The last rows of which none is left out [s].
+# The last rows of which none is left out, and those before and behind what a film shows [s].
 TAIL_SECONDS = 1.0
 Result = TypeVar("Result")
 
@@ -84,13 +84,16 @@ def drawn_history(
 
     Args:
         reader: the log.
-        choice: the rows to take; None: all.
+        choice: the rows to take; None: all, or those around `shown` where they are quickly found.
         shown: as in `figures.thinning.thinned`.
         columns: the columns that are needed; None: all. Others may be there.
     """
 
     def read(parts: HistoryParts) -> tuple[History, list[str]]:
         return parts.complete(thinned(parts, shown)), parts.notes()
+
+    if choice is None and shown is not None:
+        choice = _around(reader, *shown)
 
     def needed() -> list[str]:
         return [
@@ -101,6 +104,17 @@ def drawn_history(
 
     topics = needed if columns is not None else ()
     return with_parts(reader, topics, choice or RowChoice(), read)
+
+
+def _around(reader: LogReader, start: float, end: float) -> RowChoice | None:
+    """The rows from `start` to `end` [s] and some more; None where the log does not have them all.
+
+    Who then needs all rows says what it has.
+    """
+    span = span_of(reader) if reader.read_summary() and is_seekable(reader) else None
+    if span is None or not span[0] <= start * NANOSECONDS < end * NANOSECONDS <= span[1]:
+        return None
+    return RowChoice(start=start - TAIL_SECONDS, end=end + TAIL_SECONDS)
 
 
 def measured_history(reader: LogReader) -> History:
