@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from matplotlib.text import Text
 
 from rlv_landing import load_preset
 from rlv_landing.figures.envelope_figure import save_envelope
+from rlv_landing.figures.envelope_sides import _mesh
 from rlv_landing.figures.sensitivity_figure import save_bars
 from rlv_landing.studies.envelope.search import envelope
 from rlv_landing.studies.envelope.study import Axis, EnvelopeStudy
@@ -152,3 +154,27 @@ def test_indices_from_too_few_samples_say_so():
     assert [entry["enough_samples"] for entry in record["indices"]] == [False, False, True]
     outside = indices("c", [[2.7, 2.6, 2.8], *SURE[1:]])
     assert not outside.enough(0)
+
+
+@pytest.mark.parametrize("tolerance", [0.001, 1.0])
+def test_the_side_that_is_not_lost_is_shaded_up_to_the_boundary(tolerance):
+    """A boundary along the middle: what lies on the lost side is 0 or above, whatever is near."""
+    from matplotlib.tri import LinearTriInterpolator
+
+    study = SimpleNamespace(
+        x=Axis("drop.horizontal_velocity", -6.0, 6.0, 12.0 * tolerance),
+        y=Axis("drop.tilt", -0.3, 0.3, 0.6 * tolerance),
+        criterion="toppled",
+    )
+    landings = [
+        (x, y, SimpleNamespace(lost=lambda _, x=x: x > 0.0))
+        for x in (-6.0, -3.0, -0.005, 0.005, 3.0, 6.0)
+        for y in (-0.3, 0.0, 0.3)
+    ]
+    line = [SimpleNamespace(x=0.0, y=y) for y in (-0.3, -0.1, 0.1, 0.3)]
+    mesh, values = _mesh(
+        SimpleNamespace(study=study), SimpleNamespace(landings=landings, lines=[line])
+    )
+    x, y = np.meshgrid(np.linspace(-5.9, 5.9, 60), np.linspace(-0.29, 0.29, 30))
+    found = LinearTriInterpolator(mesh, values)(x, np.degrees(y))
+    assert (np.ma.filled(found, 1.0) < 0.0).tolist() == (x < 0.0).tolist()
