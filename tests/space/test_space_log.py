@@ -67,9 +67,10 @@ def test_it_is_shown_and_exported(recorded: Path, command, tmp_path: Path) -> No
     assert shown.code == 0
     assert "/landing/leg_5/contact" in shown.out
     assert "  5   " in shown.out
-    file = tmp_path / "landing.csv"
-    exported = command("log", "export", str(recorded), str(file))
+    file, picture = tmp_path / "landing.csv", tmp_path / "landing.png"
+    exported = command("log", "export", str(recorded), str(file), "--plot", str(picture))
     assert exported.code == 0, exported.err
+    assert picture.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
     with file.open() as text:
         assert next(csv.reader(text)) == ["time", *COLUMNS]
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..history import History
-from ..quantities import LEGS, SPACE, touchdown_groups
+from ..quantities import MOST_LEGS, SPACE, touchdown_groups
 from ..text.durable import whole_file
 from .style import COLOURS, FILES, INK, plain_axes
 
@@ -26,11 +26,12 @@ AUXILIARY_FORCE = ("auxiliary_strut.force", 1e-3, "auxiliary strut force [kN]")
 DRAWN_OF_A_LEG = (MAIN_FORCE, MAIN_STROKE, AUXILIARY_FORCE)
 TOP_ACCELERATION = ("body.top_axial_acceleration", 1.0, "axial acceleration\nat the top [m/s²]")
 
-# the columns that `save_overview` needs
+# the columns that `save_overview` needs, where a vehicle has them
+ANY_LEGS = range(1, MOST_LEGS + 1)
 COLUMNS = frozenset(
     (
-        *(f"leg[{leg}].{column}" for leg in LEGS for column, _, _ in DRAWN_OF_A_LEG),
-        *(f"leg[{leg}].contact.force_y" for leg in LEGS),
+        *(f"leg[{leg}].{column}" for leg in ANY_LEGS for column, _, _ in DRAWN_OF_A_LEG),
+        *(f"leg[{leg}].contact.force_y" for leg in ANY_LEGS),
         TOP_ACCELERATION[0],
     )
 )

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..history import History
-from ..quantities import LEGS
-from .plots import DRAWN_OF_A_LEG, TOP_ACCELERATION
+from .plots import ANY_LEGS, DRAWN_OF_A_LEG, TOP_ACCELERATION
 
 # A landing of no more rows is drawn with all of them: a minute in steps of 1 ms.
 MOST_ROWS = 60_000
@@ -20,7 +19,7 @@ SPANS = 1000
 # In each span the rows with the least and the largest value of these columns are kept, and its
 # first row; of forces of contact also the first row that is not 0.
 DRAWN = (
-    *(f"leg[{leg}].{column}" for leg in LEGS for column, _, _ in DRAWN_OF_A_LEG),
+    *(f"leg[{leg}].{column}" for leg in ANY_LEGS for column, _, _ in DRAWN_OF_A_LEG),
     TOP_ACCELERATION[0],
     "body.pitch",
     "body.vx",
@@ -28,7 +27,7 @@ DRAWN = (
 )
 # Instants of a moving picture, each with the row that follows it.
 INSTANTS = 10_000
-CONTACTS = tuple(f"leg[{leg}].contact.force_y" for leg in LEGS)
+CONTACTS = tuple(f"leg[{leg}].contact.force_y" for leg in ANY_LEGS)
 
 
 def thinned(
