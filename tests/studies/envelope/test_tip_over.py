@@ -16,6 +16,7 @@ from rlv_landing.studies.outcome import outcome
 from rlv_landing.studies.whole_landing import whole_landing
 
 V = "drop.horizontal_velocity"
+DAMPING = "auxiliary_strut__damping"
 BLOCK = RigidBlock(194.8, 290.0, 1.0, 1.96, 9.81)
 
 
@@ -84,6 +85,19 @@ def test_the_critical_speed_of_the_locked_vehicle_is_the_blocks(parameters, tole
     speed = RigidBlock.of(parameters).critical_speed(drop.tilt, drop.vertical_velocity)
     assert side(parameters, (1.0 - tolerance) * speed) == ""
     assert side(parameters, (1.0 + tolerance) * speed) == "+x"
+
+
+def test_the_low_vehicle_on_one_foot_stands_more_as_the_strike_throws_it_off():
+    """A damped auxiliary strut gives nothing back, and the critical speed is the block's."""
+    low = {**higher(-0.5), "drop__tilt": radians(4.0)}
+    elastic, damped = (
+        locked_vehicle("1-2-1", **low, **values) for values in ({}, {DAMPING: 1.5e5})
+    )
+    speed = RigidBlock.of(elastic).critical_speed(elastic.drop.tilt, -0.5)
+    assert side(elastic, 1.03 * speed) == ""
+    assert side(damped, 1.03 * speed) == "+x"
+    thrown = Landing(elastic.with_values({V: 1.1 * speed})).run(0.2, 1e-3)
+    assert all(thrown[f"leg[{leg}].contact.active"][50:].max() == 0.0 for leg in (1, 2, 3))
 
 
 @pytest.mark.parametrize(
