@@ -51,7 +51,7 @@ def places_of_the_mark(frames: NDArray[np.uint8]) -> NDArray[np.intp]:
     It is the one in the right half that is darkest beyond what is dark in all frames.
     """
     half = frames.shape[2] // 2
-    dark = (frames[:, :, half:].max(axis=3) < DARK).sum(axis=1)
+    dark = (255.0 - frames[:, :, half:].max(axis=3)).sum(axis=1)
     return half + np.argmax(dark - dark.min(axis=0), axis=1)
 
 
