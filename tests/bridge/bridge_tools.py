@@ -139,6 +139,7 @@ class Listener:
     def finish(self) -> list[ReceivedMessage]:
         """The received messages, in the order in which they were sent."""
         self.process.communicate(timeout=TIMEOUT)
+        assert self.output.is_file(), f"the listener ended with {self.process.returncode}"
         with self.output.open("rb") as f:
             received = [ReceivedMessage(*entry) for entry in pickle.load(f)]
         return sorted(received, key=lambda m: m.source_time)

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, field
 import numpy as np
 
 from rlv_landing import Landing, Parameters, load_preset
+from rlv_landing.parameters.table import parameters_of
 from rlv_landing.quantities import OUTPUT_NAMES, OUTPUT_QUANTITIES
 
 
@@ -44,11 +45,11 @@ class Job:
 
 
 def drop_of(mode: str) -> dict[str, float | str]:
-    """The parameters of the drop test of `mode`, the string `drop.mode` among them."""
+    """The FMU's parameters of the drop test of `mode`, the string `drop.mode` among them."""
     return {
         name: value
         for name, value in load_preset("yue2022-figures", mode).items()
-        if name.startswith("drop.")
+        if name.startswith("drop.") and name in parameters_of(mode)
     }
 
 
