@@ -62,9 +62,8 @@ def ended(
         time.sleep(delay)
         node.send_signal(number)
         node.communicate(timeout=TIMEOUT)
-        published = (
-            stamps(by_topic(listener.finish())["/landing/struts"]) if listener is not None else []
-        )
+        got = listener.finish(may_crash=number == signal.SIGKILL) if listener is not None else []
+        published = stamps(by_topic(got)["/landing/struts"]) if got else []
     finally:
         if listener is not None:
             listener.stop()
