@@ -129,7 +129,7 @@ def run_in_ecos(
     libtbb = Path(sys.prefix) / "lib" / "libtbb.so.12"
     if not (libtbb.is_file() and find_spec("ecospy")):
         raise FileNotFoundError(
-            "Ecos or its libtbb is missing: run .venv/bin/pip install -e '.[cosim]'"
+            'Ecos or its libtbb is missing; install both with pip install "rlv-landing[cosim]"'
         )
     ctypes.CDLL(str(libtbb), mode=ctypes.RTLD_GLOBAL)
     from ecospy import EcosSimulation

@@ -6,6 +6,7 @@ import pytest
 from five_legs import five_legs
 
 from rlv_landing import Landing, Parameters
+from rlv_landing.audit.audit import Audit
 from rlv_landing.audit.bounds import BOUNDS
 from rlv_landing.audit.cases import cases, mass
 from rlv_landing.audit.energy import energy
@@ -13,6 +14,7 @@ from rlv_landing.audit.momentum import contact, flight
 from rlv_landing.audit.rest import rest
 from rlv_landing.audit.spatial_momentum import spatial_impulse, spatial_momentum
 from rlv_landing.history import History
+from rlv_landing.tables.study_tables import audit_tables
 
 END = 0.5
 
@@ -37,6 +39,14 @@ def test_energy_mass_momentum_and_rest_of_five_legs_keep_their_bounds(vehicle: P
     left = {"smooth_error", "smooth_slope", "contacts_error", "contacts_force"}
     assert {c.id for c in checks} == set(BOUNDS) - left
     assert {f"stroke_{leg}" for leg in range(1, 6)} <= state.keys()
+
+
+@pytest.mark.parametrize("legs", [3, 8])
+def test_the_tables_name_the_stroke_of_every_leg(legs: int) -> None:
+    strokes = {f"stroke_{leg}": leg / 1e3 for leg in range(1, legs + 1)}
+    rest_state = {"settled_since": 1.0, "pitch": 0.0, "stability_margin": 1.0, **strokes}
+    printed = audit_tables([Audit("space", "as it is", (), {}, rest_state)])
+    assert f"strokes {', '.join(f'{leg}.00' for leg in range(1, legs + 1))} mm" in printed
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from forked import run_forked
 
 from rlv_landing import Landing, load_preset
 from rlv_landing.cli import cli
-from rlv_landing.quantities import OUTPUT_NAMES
+from rlv_landing.quantities import OUTPUT_NAMES, interface_of
 
 
 def run(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
@@ -65,6 +65,14 @@ def test_tables_of_parameters_inputs_and_outputs_name_units():
     assert "main_strut.orifice_area_compression" in run("parameters").stdout
     assert "ground.heave_rate" in run("parameters", "--inputs").stdout
     assert "leg[4].contact.active" in run("parameters", "--outputs").stdout
+
+
+def test_inputs_and_outputs_listed_are_those_of_the_landing_that_is_chosen():
+    space = ("--mode", "space", "--set", "vehicle.legs=5", "--json")
+    for what in ("inputs", "outputs"):
+        listed = json.loads(run("parameters", f"--{what}", *space).stdout)
+        landings = getattr(interface_of("space", 5), what)
+        assert [q["name"] for q in listed] == [q.name for q in landings]
 
 
 @pytest.mark.parametrize("command", [(), ("simulate",), ("parameters",), ("validate",), ("audit",)])
@@ -124,6 +132,13 @@ def test_help_teaches(command):
         (("identify", "--bound", "main_strut.stroke_max=30 mm..60 deg"), "has the wrong unit"),
         (("simulate", "--parameters", "/dev/zero"), "larger than 4 MiB"),
         (("simulate", "--compare", "--until", "0.3"), "the paper's scalars need it until"),
+        (("simulate", "--compare", "--json"), "--compare prints a table, and --json has none"),
+        (("parameters", "--inputs", "--toml"), "leave --toml out"),
+        (("parameters", "--outputs", "--origin"), "leave --origin out"),
+        *(
+            ((*words, "--mode", "space"), "this needs a symmetric landing; choose 2-2 or 1-2-1")
+            for words in (("simulate", "--compare"), ("identify",), ("identify", "--priors"))
+        ),
     ],
 )
 def test_bad_input_is_one_clear_line_and_exit_code_2(tmp_path, arguments, message):

@@ -10,6 +10,7 @@ import sys
 import tempfile
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from importlib.util import find_spec
 from pathlib import Path
 from subprocess import CompletedProcess
 
@@ -39,11 +40,7 @@ def compile_cores(targets: Sequence[Target], folder: Path) -> list[Path]:
     """
     if not targets:
         return []
-    if sys.version_info < (3, 11):
-        raise SystemExit(
-            "error: cores for other platforms need the headers of Python 3.11 or newer; "
-            "run the build by one"
-        )
+    _check_tools(targets)
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as name:
         source = _translated(Path(name))
         # each compiles alone, so as many at a time as there are processors
@@ -57,6 +54,23 @@ def compile_cores(targets: Sequence[Target], folder: Path) -> list[Path]:
             library.write_bytes(content)
             libraries.append(library)
     return libraries
+
+
+def _check_tools(targets: Sequence[Target]) -> None:
+    """Check that Python's headers, Cython and Zig's compiler are there."""
+    if sys.version_info < (3, 11):
+        raise SystemExit(
+            "error: cores for other platforms need the headers of Python 3.11 or newer; "
+            "run the build by one"
+        )
+    missing = [] if find_spec("Cython") else ["Cython"]
+    if not all((c := for_target(t)) is not None and c.is_zig for t in targets):
+        missing.append("Zig's compiler")
+    if missing:
+        raise SystemExit(
+            f"error: cores for other platforms need {' and '.join(missing)}; "
+            'install what is missing with pip install "rlv-landing[build]"'
+        )
 
 
 def _translated(folder: Path) -> Path:
@@ -75,10 +89,7 @@ def _translated(folder: Path) -> Path:
 def _compile(source: Path, target: Target, work: Path) -> bytes:
     """The core's library for a target."""
     compiler = for_target(target)
-    if compiler is None or not compiler.is_zig:
-        raise SystemExit(
-            f"error: the core for {target.name} needs Zig's compiler; pip install ziglang"
-        )
+    assert compiler is not None
     headers, made = work / f"{target.name}.headers", work / target.name
     made.mkdir()
     write_python_headers(headers, target)

@@ -184,6 +184,22 @@ def choose(
     return parameters, (parameters.drop.mode,) if wanted else tuple(MODES), label
 
 
+def choose_symmetric(
+    preset: str | None, file: str | None, mode: str | None, pairs: tuple[str, ...]
+) -> tuple[Parameters, tuple[str, ...], str]:
+    """What `choose` gives, for a command that knows symmetric landings only.
+
+    Raises:
+        LandingError: An option names what does not exist or cannot be, or the landing is in space.
+    """
+    from ..quantities import groups_of
+
+    parameters, modes, label = choose(preset, file, mode, pairs)
+    for each in modes:
+        groups_of(each)
+    return parameters, modes, label
+
+
 def check_writable(path: Path | None, ending: str | tuple[str, ...], *, force: bool) -> None:
     """Check that a file can be made at `path`; None is not checked.
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from ..errors import LandingError
 from ..landing import DEFAULT_RTOL, METHODS, Landing
 from .number_types import Number
 from .one_landing import draw_landing, landing_options, landing_progress, landing_text
@@ -57,6 +58,8 @@ def simulate(output: Path | None, plot: Path | None, *, force: bool, **options: 
     check_writable(output, ENDINGS, force=force)
     check_writable(plot, PICTURES, force=force)
     landing = _landing(options)
+    if options["comparison"]:
+        _check_comparison(landing, as_json=options["as_json"])
     mode = landing.parameters.drop.mode
     with landing_progress(options["until"]) as show_progress:
         history = landing.run(options["until"], options["every"], show_progress)
@@ -72,6 +75,18 @@ def simulate(output: Path | None, plot: Path | None, *, force: bool, **options: 
         write_history(history, output)
     draw_landing(history, plot, title)
     click.echo(printed, nl=False)
+
+
+def _check_comparison(landing: Landing, *, as_json: bool) -> None:
+    """Check that the landing has the paper's numbers, and that they can be printed."""
+    from ..quantities import groups_of
+
+    if as_json:
+        raise LandingError(
+            "--compare prints a table, and --json has none; leave one out, or take "
+            "`rlv-landing validate --json`, which has the paper's numbers"
+        )
+    groups_of(landing.parameters.drop.mode)
 
 
 def _landing(options: dict[str, Any]) -> Landing:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import LandingError, unknown
-from .options import check_writable, choose, force_option, json_option, parameter_options
+from .options import check_writable, choose_symmetric, force_option, json_option, parameter_options
 from .printing import print_checked
 
 if TYPE_CHECKING:
@@ -64,7 +64,6 @@ def validate(
     rlv-landing validate --html report.html
     rlv-landing validate --parameters mine.toml --require none --mode 2-2 --test-data drop7.csv
     """
-    from ..quantities import groups_of
     from ..validation.required_counts import (
         STATED,
         STATED_OF_TESTS,
@@ -77,9 +76,7 @@ def validate(
     phase, require = options.pop("phase"), options.pop("require")
     check_writable(html, ".html", force=force)
     of_tests = options["preset"] == TESTS_PRESET
-    parameters, modes, label = choose(**options)
-    for mode in modes:
-        groups_of(mode)
+    parameters, modes, label = choose_symmetric(**options)
     bounds = (
         None
         if require == "none"

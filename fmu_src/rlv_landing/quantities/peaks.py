@@ -39,7 +39,7 @@ def _peak(q: Quantity, side: Literal["min", "max"]) -> Peak:
         name=name,
         display_unit=q.display_unit,
     )
-    time = Quantity("s", f"time at which {name} was first so", name=f"{name}_time")
+    time = Quantity("s", f"time at which {name} was first reached", name=f"{name}_time")
     return Peak(q.name, side, value, time)
 
 

@@ -227,7 +227,7 @@ def _rest_line(found: Audit) -> str:
         if r["settled_since"] == r["settled_since"]
         else "not settled"
     )
-    strokes = ", ".join(f"{1e3 * r[f'stroke_{leg}']:.2f}" for leg in (1, 2, 3, 4))
+    strokes = ", ".join(f"{1e3 * r[name]:.2f}" for name in r if name.startswith("stroke_"))
     return (
         f"{_landed(found)} at rest: {settled}; "
         f"pitch {r['pitch'] * 57.29577951308232:+.3f} deg, strokes {strokes} mm, "

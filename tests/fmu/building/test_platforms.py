@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+import sys
 from dataclasses import replace
 from itertools import chain
 from pathlib import Path
@@ -29,6 +30,25 @@ def test_each_version_of_fmi_has_the_same_targets_by_its_own_names(zig, binary):
     assert set(three) == set(TARGETS)
     assert {t.name for folder in FMI2 for t in of_platform(folder)} == set(TARGETS)
     assert set(chain(*two.values())) == set(chain(*three.values()))
+
+
+@pytest.mark.parametrize(("missing", "tool"), [("Cython", "Cython"), ("ziglang", "Zig's compiler")])
+def test_a_tool_that_cores_for_other_platforms_lack_is_named_with_its_remedy(
+    missing, tool, zig, monkeypatch, tmp_path
+):
+    from fmu_build.cross.cores import compile_cores
+    from fmu_build.targets import TARGETS
+
+    monkeypatch.delenv("CC", raising=False)
+    # as where it is not installed: find_spec says None
+    monkeypatch.setitem(sys.modules, missing, None)
+    with pytest.raises(SystemExit) as refused:
+        compile_cores([TARGETS["aarch64-linux"]], tmp_path)
+    text = str(refused.value)
+    assert tool in text
+    assert text.endswith('pip install "rlv-landing[build]"')
+    assert "\n" not in text
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("name", ["aarch64-linux", "x86_64-windows", "x86_64-darwin"])

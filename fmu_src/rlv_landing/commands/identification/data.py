@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from ...choices import split_pair
 from ...errors import LandingError
 from ...text.files import pipes_kept
-from ..options import choose
+from ..options import choose_symmetric
 
 if TYPE_CHECKING:
     from ...identification.measured.series import Series
@@ -29,7 +29,7 @@ def objective_of(options: dict[str, Any]) -> Objective:
 
     changed = [split_pair(pair, "--set")[0] for pair in options["pairs"]]
     with pipes_kept():
-        parameters, modes, _ = choose(
+        parameters, modes, _ = choose_symmetric(
             options["preset"], options["file"], options["mode"], options["pairs"]
         )
         parameters = with_origins(parameters, options["preset"], options["file"], changed)

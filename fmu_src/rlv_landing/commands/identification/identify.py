@@ -10,7 +10,7 @@ import click
 
 from ...signals.handlers import Hold
 from ..number_types import NumberRange, WholeNumber
-from ..options import HELP_NAMES, choose, parameter_options, workers_option
+from ..options import HELP_NAMES, choose_symmetric, parameter_options, workers_option
 from ..printing import INTERRUPTED, print_warning
 from .data import objective_of
 from .run import check_effort, run, start_note
@@ -197,7 +197,7 @@ def _print_priors(options: dict[str, Any]) -> None:
     from ...identification.vehicle_priors import priors_of
     from ...tables.prior_table import prior_table
 
-    parameters, modes, _ = choose(
+    parameters, modes, _ = choose_symmetric(
         options["preset"], options["file"], options["mode"], options["pairs"]
     )
     click.echo(prior_table(priors_of(parameters, modes[0]).values()), nl=False)
