@@ -57,13 +57,15 @@ def rest(case: Case) -> tuple[dict[str, float], list[Check]]:
 def _until_rest(landing: Landing, contact: float) -> list[History]:
     """The landing until it rests, in parts of 10 s: one, if it has settled in that, or toppled.
 
-    One that settles later gets 30 s more, for what has just settled still decays.
+    One that settles later, or in the last 5 s of that, gets 30 s more, for what has just settled
+    still decays.
     """
     parts = [landing.run(contact + REST_AFTER, 5e-3)]
     longest = round(LONGEST_WAIT / REST_AFTER)
     while not _settled(parts[-1]) and not _toppled(parts) and len(parts) < longest:
         parts.append(landing.run(landing.time + REST_AFTER, 5e-3))
-    if len(parts) > 1 and _settled(parts[-1]):
+    late = len(parts) > 1 or landing.time - settled_since(parts[0]) < DRIFT_TIME
+    if late and _settled(parts[-1]):
         parts.append(landing.run(landing.time + DECAY, 5e-3))
     return parts
 
