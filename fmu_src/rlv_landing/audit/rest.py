@@ -22,12 +22,12 @@ REST_AFTER, LONGEST_WAIT, DECAY, DRIFT_TIME = 10.0, 60.0, 30.0, 5.0
 def rest(case: Case) -> tuple[dict[str, float], list[Check]]:
     """The state at rest, 10 s after first contact, and the checks of rest.
 
-    A vehicle that neither rests nor has toppled by then is given up to 60 s to settle, and 30 s
-    more. The state has the time since when the vehicle has been settled (NaN if it is not, or has
-    toppled), and how fast a footpad drifts in the 5 s after that.
+    A vehicle that neither rests nor has toppled by then, and that friction can hold, is given up to
+    60 s to settle, and 30 s more. The state has the time since when the vehicle has been settled
+    (NaN if it is not, or has toppled), and how fast a footpad drifts in the 5 s after that.
     """
     landing = case.landing(TIGHT_RTOL)
-    parts = _until_rest(landing, case.parameters.drop.contact_time)
+    parts = _until_rest(landing, case)
     history, stands = parts[-1], _stands(parts)
     since = settled_since(next(h for h in parts if _settled(h))) if stands else float("nan")
     before = feet(history, -1)
@@ -54,14 +54,14 @@ def rest(case: Case) -> tuple[dict[str, float], list[Check]]:
     ]
 
 
-def _until_rest(landing: Landing, contact: float) -> list[History]:
+def _until_rest(landing: Landing, case: Case) -> list[History]:
     """The landing until it rests, in parts of 10 s: one, if it has settled in that, or toppled.
 
     One that settles later, or in the last 5 s of that, gets 30 s more, for what has just settled
-    still decays.
+    still decays. What friction cannot hold slides, and is not waited for.
     """
-    parts = [landing.run(contact + REST_AFTER, 5e-3)]
-    longest = round(LONGEST_WAIT / REST_AFTER)
+    parts = [landing.run(case.parameters.drop.contact_time + REST_AFTER, 5e-3)]
+    longest = round(LONGEST_WAIT / REST_AFTER) if case.holds else 1
     while not _settled(parts[-1]) and not _toppled(parts) and len(parts) < longest:
         parts.append(landing.run(landing.time + REST_AFTER, 5e-3))
     late = len(parts) > 1 or landing.time - settled_since(parts[0]) < DRIFT_TIME
