@@ -16,6 +16,7 @@ from rlv_landing.text.units import UnitError, parse_number
 from ..messages.qos import profiles
 from .log_files import FINISHED, UNFINISHED, check_file, find_files, log_name
 from .mcap_files.stream import RecordStream
+from .packed import says_packed
 from .reader import Definitions
 from .recording.bag_writer import BagTopic, BagWriter
 
@@ -194,6 +195,9 @@ class _Copy:
                     self._our_metadata.update(record.metadata)
                 elif record.name != WRITERS_METADATA:
                     mcap.add_metadata(record.name, record.metadata)
+                elif says_packed(record.metadata.get("serialized_metadata", "")):
+                    # The messages are copied as they are.
+                    self._writer.bag.packed = True
             elif definitions.add(record):
                 known.setdefault(record.id, self._channel(*definitions.find(record.id)))
         self._found.finished = self._found.finished and stream.finished

@@ -192,6 +192,7 @@ class ReplayNode(Node):
             o.wait_for_subscribers,
             o.wait_timeout,
             interrupted,
+            set(self._publisher_of.values()),
         )
         end = time.monotonic() + o.start_delay
         while time.monotonic() < end and not interrupted():
