@@ -236,12 +236,15 @@ def test_a_damaged_database_gives_what_is_whole_and_says_so(tmp_path: Path, star
 def test_recover_copies_messages_that_are_compressed_by_themselves(
     tmp_path: Path, start: Start
 ) -> None:
-    log = in_mcap_by_messages_without_yaml(tmp_path, start)
+    day = 1_795_707_768 * 10**9
+    stamped = [LogMessage(m.topic, m.log_time + day, m.data) for m in start[1]]
+    log = in_mcap_by_messages_without_yaml(tmp_path, (start[0], stamped))
     log.write_bytes(log.read_bytes()[:-9])
     saved = recover(log, tmp_path / "saved")
     assert saved.messages == len(start[1])
     assert "compression_mode: MESSAGE" in (tmp_path / "saved" / "metadata.yaml").read_text()
-    assert list(open_log(tmp_path / "saved").messages()) == start[1]
+    assert list(open_log(tmp_path / "saved").messages()) == stamped
+    assert "from 1795707768.000 s to 1795707768.020 s" in saved.text()
 
 
 @pytest.mark.parametrize("form", [in_sqlite_by_messages, in_mcap_by_messages])

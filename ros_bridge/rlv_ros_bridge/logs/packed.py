@@ -117,7 +117,6 @@ class PackedReader(LogReader):
             except ValueError as e:
                 self.cut = True
                 if len(self.damage) < LISTED:
-                    at = f"{message.topic} at {message.log_time / 1e9:g} s"
-                    self.damage.append(f"{at}: {' '.join(str(e).split())}")
+                    self.damage.append(f"{message.place}: {' '.join(str(e).split())}")
                 continue
             yield LogMessage(message.topic, message.log_time, data)

@@ -14,7 +14,7 @@ from rlv_landing.text.terminal import legible_lines
 from rlv_landing.text.units import UnitError, parse_number
 
 from ..messages.qos import profiles
-from .log_files import FINISHED, UNFINISHED, check_file, find_files, log_name
+from .log_files import FINISHED, UNFINISHED, check_file, find_files, log_name, shown_time
 from .mcap_files.stream import RecordStream
 from .packed import says_packed
 from .reader import Definitions
@@ -56,7 +56,7 @@ class Recovery:
 
     def text(self) -> str:
         """The fields as lines of text."""
-        span = f"from {self.start:g} s to {self.end:g} s"
+        span = f"from {shown_time(self.start)} to {shown_time(self.end)}"
         lines = [f"saved    {self.messages} messages {span}, all that is whole: {self.folder}"]
         lines += [f"damage   {text}" for text in self.damage]
         if self.unknown_topic:
@@ -67,11 +67,11 @@ class Recovery:
             lines.append(f"missing  {self.lost_bytes} bytes that make no whole chunk")
         if not self.finished and self.stop_time is not None and self.end < self.stop_time:
             lines.append(
-                f"missing  the span from {self.end:g} s on, "
+                f"missing  the span from {shown_time(self.end)} on, "
                 f"at most to the stop time of {self.stop_time:g} s"
             )
         elif not self.finished:
-            lines.append(f"missing  what was recorded after {self.end:g} s, if anything")
+            lines.append(f"missing  what was recorded after {shown_time(self.end)}, if anything")
         return legible_lines(lines)
 
 
