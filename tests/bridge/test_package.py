@@ -26,8 +26,8 @@ from rlv_ros_bridge.commands.group import main as group
 from rlv_ros_bridge.logs.history import history_of
 from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.messages.qos import LATCHED, TELEMETRY
+from rlv_ros_bridge.messages.topics import CLOCK, OCCASIONAL, SAMPLED, WORLD_FRAME, resolve
 from rlv_ros_bridge.messages.topics import LATCHED as LATCHED_TOPICS
-from rlv_ros_bridge.messages.topics import OCCASIONAL, SAMPLED, WORLD_FRAME, resolve
 from rlv_ros_bridge.node.settings import SETTINGS
 
 PACKAGE = ROOT / "ros_bridge"
@@ -64,6 +64,7 @@ def test_colcon_builds_the_package_and_its_node_lands(fmu: Path, tmp_path: Path)
         "config/landing.rviz",
         "config/foxglove.json",
         "config/foreign_dds.xml",
+        "config/record_qos.yaml",
     ):
         assert (share / file).is_file(), file
     assert (
@@ -167,6 +168,15 @@ def test_rviz_subscribes_to_topics_of_the_node_with_a_quality_of_service_that_ma
             assert qos.reliability == "reliable"
         latched = wanted["Durability Policy"] == "Transient Local"
         assert latched == (qos.durability == "transient_local")
+
+
+def test_a_recorder_by_the_shipped_file_lets_as_much_wait_as_the_node() -> None:
+    asked = yaml.safe_load((PACKAGE / "config" / "record_qos.yaml").read_text())
+    assert set(asked) == {resolve("landing", t.name) for t in (*SAMPLED, *OCCASIONAL, CLOCK)}
+    for name, qos in asked.items():
+        assert qos.pop("reliability") == ("best_effort" if name == CLOCK.name else "reliable")
+        kept = {"history": "keep_last", "depth": TELEMETRY.depth, "durability": "volatile"}
+        assert qos == kept
 
 
 def test_the_bridge_alone_has_the_commands_that_the_package_announces() -> None:

@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 import zstandard
 from bridge_tools import one_error_line, run
-from mcap.writer import Writer
+from mcap.reader import make_reader
+from mcap.writer import CompressionType, Writer
 
 from rlv_landing.errors import LandingError
 from rlv_landing.history import History
@@ -20,6 +21,7 @@ from rlv_ros_bridge.logs.bag_reader import open_log
 from rlv_ros_bridge.logs.history import history_of, log_history
 from rlv_ros_bridge.logs.info import log_info
 from rlv_ros_bridge.logs.reader import LogMessage, LogReader
+from rlv_ros_bridge.logs.recover import recover
 from rlv_ros_bridge.messages.message_types import is_installed, message_class
 from rlv_ros_bridge.replay.selection import ReplayOptions, Selection
 
@@ -58,11 +60,19 @@ def database(path: Path, reader: LogReader, messages: Iterable[LogMessage]) -> P
     return path
 
 
-def mcap(path: Path, reader: LogReader, messages: Iterable[LogMessage]) -> Path:
+def mcap(
+    path: Path,
+    reader: LogReader,
+    messages: Iterable[LogMessage],
+    description: str = "",
+    compression: CompressionType = CompressionType.ZSTD,
+) -> Path:
     """The messages as a MCAP file of another program."""
     with path.open("wb") as file:
-        writer = Writer(file)
+        writer = Writer(file, compression=compression)
         writer.start("ros2", "")
+        if description:
+            writer.add_metadata("rosbag2", {"serialized_metadata": description})
         numbers = {}
         for topic, c in reader.channels.items():
             schema = reader._schemas[topic]
@@ -105,12 +115,29 @@ def in_sqlite_packed(folder: Path, start: Start) -> Path:
     return folder
 
 
+BY_MESSAGES = "{compression_format: zstd, compression_mode: MESSAGE}"
+
+
+def small(messages: Iterable[LogMessage]) -> list[LogMessage]:
+    return [LogMessage(m.topic, m.log_time, zstandard.compress(m.data)) for m in messages]
+
+
 def in_sqlite_by_messages(folder: Path, start: Start) -> Path:
-    metadata = "rosbag2_bagfile_information: {compression_mode: MESSAGE}\n"
+    metadata = f"rosbag2_bagfile_information: {BY_MESSAGES}\n"
     (folder / "metadata.yaml").write_text(metadata)
-    small = [LogMessage(m.topic, m.log_time, zstandard.compress(m.data)) for m in start[1]]
-    database(folder / "bag_0.db3", start[0], small)
+    database(folder / "bag_0.db3", start[0], small(start[1]))
     return folder
+
+
+def in_mcap_by_messages(folder: Path, start: Start) -> Path:
+    metadata = f"rosbag2_bagfile_information: {BY_MESSAGES}\n"
+    (folder / "metadata.yaml").write_text(metadata)
+    mcap(folder / "bag_0.mcap", start[0], small(start[1]))
+    return folder
+
+
+def in_mcap_by_messages_without_yaml(folder: Path, start: Start) -> Path:
+    return mcap(folder / "bag_0.mcap", start[0], small(start[1]), BY_MESSAGES)
 
 
 def in_mcap_packed(folder: Path, start: Start) -> Path:
@@ -130,6 +157,8 @@ def in_mcap_split_and_packed(folder: Path, start: Start) -> Path:
         in_sqlite_split,
         in_sqlite_packed,
         in_sqlite_by_messages,
+        in_mcap_by_messages,
+        in_mcap_by_messages_without_yaml,
         in_mcap_packed,
         in_mcap_split_and_packed,
     ],
@@ -202,6 +231,53 @@ def test_a_damaged_database_gives_what_is_whole_and_says_so(tmp_path: Path, star
     assert len(list(reader.messages())) < len(start[1])
     assert reader.cut
     assert reader.damage
+
+
+def test_recover_copies_messages_that_are_compressed_by_themselves(
+    tmp_path: Path, start: Start
+) -> None:
+    day = 1_795_707_768 * 10**9
+    stamped = [LogMessage(m.topic, m.log_time + day, m.data) for m in start[1]]
+    log = in_mcap_by_messages_without_yaml(tmp_path, (start[0], stamped))
+    log.write_bytes(log.read_bytes()[:-9])
+    saved = recover(log, tmp_path / "saved")
+    assert saved.messages == len(start[1])
+    assert "compression_mode: MESSAGE" in (tmp_path / "saved" / "metadata.yaml").read_text()
+    assert list(open_log(tmp_path / "saved").messages()) == stamped
+    assert "from 1795707768.000 s to 1795707768.020 s" in saved.text()
+
+
+@pytest.mark.parametrize("form", [in_sqlite_by_messages, in_mcap_by_messages])
+def test_messages_of_false_sizes_are_damage(
+    tmp_path: Path, start: Start, monkeypatch: pytest.MonkeyPatch, form: Callable[..., Path]
+) -> None:
+    """Each is below what a message may hold; together they are more than a file can."""
+    monkeypatch.setattr("rlv_ros_bridge.logs.mcap_files.chunks.FILE_BYTES", 10_000_000)
+    monkeypatch.setattr("rlv_ros_bridge.logs.mcap_files.chunks.FILE_RATIO", 0)
+    monkeypatch.setattr(sys.modules[__name__], "small", lambda messages: messages)
+    bomb = zstandard.compress(bytes(3_000_000))
+    topic = start[1][0].topic
+    reader = open_log(form(tmp_path, (start[0], [LogMessage(topic, i, bomb) for i in range(9)])))
+    assert len(list(reader.messages())) == 3
+    assert reader.cut
+    assert "more than a file of this size can hold" in reader.damage[0]
+
+
+def test_of_a_cut_chunk_only_the_topics_that_are_asked_for_are_read(
+    tmp_path: Path, start: Start
+) -> None:
+    """As of `ros2 bag record` that was killed: its chunks are not compressed."""
+    log = mcap(tmp_path / "bag_0.mcap", *start, compression=CompressionType.NONE)
+    with log.open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    chunk = summary.chunk_indexes[0]
+    log.write_bytes(log.read_bytes()[: chunk.chunk_start_offset + chunk.chunk_length // 2])
+    reader = open_log(log)
+    found = list(reader.messages(["/landing/pose"]))
+    assert 0 < len(found) < len(start[1])
+    assert {m.topic for m in found} == {"/landing/pose"}
+    assert "is cut" in run("log", "info", log).stderr
 
 
 def test_recover_says_what_to_do_with_other_forms(tmp_path: Path, start: Start) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import subprocess
 import time
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from bridge_tools import TIMEOUT, Listener, by_topic, one_error_line, record, run, start
@@ -17,6 +19,7 @@ from sensor_msgs.msg import JointState
 from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.messages.qos import Qos, parse_qos
 from rlv_ros_bridge.messages.topics import STRUTS
+from rlv_ros_bridge.ros import setup
 
 OVERRIDES = (
     ("/landing/struts.publisher.reliability", "best_effort"),
@@ -123,6 +126,52 @@ def test_a_recorder_in_simulation_time_that_is_waited_for_hears_the_landing(
         while len(seen) < 51 and time.monotonic() < end:
             remote.executor.spin_once(timeout_sec=0.05)
     assert [m.header.stamp.nanosec for m in seen] == [k * 1_000_000 for k in range(51)]
+
+
+class SlowRecorder:
+    """A recorder, in a time of its own, that subscribes to a topic each `pause` [s]."""
+
+    def __init__(self, pause: float, topics: int) -> None:
+        self.now, self.pause, self.topics = 0.0, pause, topics
+
+    def publishers(self) -> list[Any]:
+        return [
+            SimpleNamespace(
+                topic_name=str(i), get_subscription_count=lambda i=i: int(self.count() > i)
+            )
+            for i in range(self.topics)
+        ]
+
+    def count(self) -> int:
+        return min(int(self.now / self.pause + 1e-9), self.topics)
+
+    def monotonic(self) -> float:
+        return self.now
+
+    def sleep(self, seconds: float) -> None:
+        self.now += seconds
+
+
+@pytest.mark.parametrize("pause", [0.01, 0.1, 0.25])
+def test_who_subscribes_to_one_topic_after_the_other_is_waited_for(
+    monkeypatch: pytest.MonkeyPatch, pause: float
+) -> None:
+    recorder = SlowRecorder(pause, 13)
+    monkeypatch.setattr(setup, "time", recorder)
+    every = recorder.publishers()
+    setup.wait_until_matched(every[0], 1, 30.0, lambda: False, every)
+    assert recorder.count() == 13
+    begin = recorder.now
+    setup.wait_until_matched(every[0], 0, 30.0, lambda: False, every)
+    assert recorder.now == begin
+
+
+def test_subscriptions_without_end_do_not_hold_the_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    recorder = SlowRecorder(0.1, 1000)
+    monkeypatch.setattr(setup, "time", recorder)
+    every = recorder.publishers()
+    setup.wait_until_matched(every[0], 1, 2.0, lambda: False, every)
+    assert 2.0 < recorder.now < 2.0 + 2 * setup.SETTLE_SECONDS
 
 
 def test_a_replay_waits_with_its_clock_started(

@@ -14,11 +14,11 @@ from ..fmu.folder import ProcessFolder
 from ..messages.qos import read_yaml
 from .log_files import FINISHED, UNFINISHED, in_order
 from .mcap_files.chunks import FILE_BYTES, FILE_RATIO
+from .packed import LONGEST_METADATA, PackedReader, file_is_packed, is_packed
 from .reader import LogReader
 from .sqlite_reader import SqliteReader
 
 METADATA_FILE = "metadata.yaml"
-LONGEST_METADATA = 4 * 1024 * 1024
 SQLITE, COMPRESSED = ".db3", ".zstd"
 FOLDER_PREFIX = "rlv-landing-log-"
 COPY_BYTES = 1024 * 1024
@@ -52,17 +52,14 @@ def open_log(path: str | Path) -> LogReader:
 
 def _open(place: Path, named: Path) -> LogReader:
     """The log whose files are at `place`, and which was named `named`."""
-    mode = _compression(named)
+    packed = _is_packed(named)
     databases = _files(place, SQLITE)
     if databases and not _files(place, FINISHED) and not _files(place, UNFINISHED):
-        return SqliteReader(named, in_order(databases), compressed=mode == "message")
+        return SqliteReader(named, in_order(databases), compressed=bool(packed))
     reader = LogReader(place)
+    if packed or (packed is None and file_is_packed(reader.files[0])):
+        reader = PackedReader(place)
     reader.path = named
-    if mode == "message":
-        raise LandingError(
-            f"{named} has each message compressed by itself, which is read of sqlite3 only; "
-            "convert it by `ros2 bag convert`"
-        )
     return reader
 
 
@@ -73,16 +70,16 @@ def _files(log: Path, ending: str) -> list[Path]:
     return sorted(f for f in log.glob(f"*{ending}") if f.is_file())
 
 
-def _compression(log: Path) -> str:
-    """What a recording's metadata say is compressed: `file`, `message`, or nothing."""
+def _is_packed(log: Path) -> bool | None:
+    """Whether a recording's metadata say that each message is compressed; None without any."""
     metadata = (log if log.is_dir() else log.parent) / METADATA_FILE
     try:
         text = metadata.read_text(encoding="utf-8")
         found = read_yaml(text, LONGEST_METADATA)["rosbag2_bagfile_information"]
-        return str(found.get("compression_mode", "")).lower()
-    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+        return is_packed(found)
+    except (OSError, ValueError, LookupError, TypeError):
         # It is not needed for anything else.
-        return ""
+        return None
 
 
 def _decompress(source: Path, target: Path) -> None:

@@ -18,11 +18,10 @@ from rlv_landing.text.terminal import legible_lines
 from ..messages.topics import DIAGNOSTICS
 from .history import choose_topics, measured_history
 from .landing_record import PHASES, landing_summary, read_landing
+from .log_files import WALL_TIME, shown_time
 from .lost import lost_text
 from .reader import Decoder, LogReader
 
-# A log that starts later has the time of the day: that of 1973 [s].
-WALL_TIME = 1e8
 # Characters of a name of a topic or a type that are shown.
 LONGEST_NAME = 100
 
@@ -158,7 +157,7 @@ class LogInfo:
 def _start(seconds: float) -> str:
     """The first time of a log, and whether it is the landing's or the day's."""
     if seconds < WALL_TIME:
-        return f"{seconds:g} s (simulation time)"
+        return f"{shown_time(seconds)} (simulation time)"
     try:
         date = datetime.fromtimestamp(seconds, timezone.utc).isoformat(timespec="milliseconds")
     except (ValueError, OverflowError, OSError):

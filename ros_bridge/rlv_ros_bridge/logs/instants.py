@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator
 from rlv_landing.errors import LandingError
 
 from ..messages.wire import ENCAPSULATION, NANOSECONDS
+from .log_files import shown_time
 from .reader import Decoder, LogMessage
 
 # Instants are whole nanoseconds; a bound given in s may miss one by its last digit [s].
@@ -115,7 +116,7 @@ class RowChoice:
             end = last if self._end is None else self._end
             raise LandingError(
                 f"no instant lies from {start:g} s to {end:g} s; "
-                f"the log goes from {first:g} s to {last:g} s"
+                f"the log goes from {shown_time(first)} to {shown_time(last)}"
             )
 
 

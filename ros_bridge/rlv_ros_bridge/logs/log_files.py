@@ -12,6 +12,13 @@ from .mcap_files.records import HEADER, MAGIC, RECORD_HEAD
 FINISHED = ".mcap"
 # The ending until the writer has finished the file.
 UNFINISHED = ".mcap.part"
+# A message that is later has the time of the day: that of 1973 [s].
+WALL_TIME = 1e8
+
+
+def shown_time(seconds: float) -> str:
+    """A message's time as text, with its milliseconds even where it is the time of the day."""
+    return f"{seconds:g} s" if seconds < WALL_TIME else f"{seconds:.3f} s"
 
 
 def find_files(path: Path) -> list[Path]:

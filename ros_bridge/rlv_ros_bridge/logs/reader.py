@@ -15,7 +15,7 @@ from rlv_landing.quantities import Interface, interface_of
 from ..messages.fields import IN_A_PLANE
 from ..messages.topics import STRUTS
 from .landing_record import RECORD as LANDING_RECORD
-from .log_files import check_file, find_files
+from .log_files import check_file, find_files, shown_time
 from .lost import RECORD as LOST_RECORD
 from .lost import Gap, read_gap
 from .mcap_files.stream import RecordStream
@@ -47,6 +47,11 @@ class LogMessage:
     topic: str
     log_time: int
     data: bytes
+
+    @property
+    def place(self) -> str:
+        """Topic and time as text."""
+        return f"{self.topic} at {shown_time(self.log_time / 1e9)}"
 
 
 class LogReader:
@@ -304,9 +309,8 @@ class Decoder:
         """
         if len(message.data) > LARGEST_MESSAGE:
             raise LandingError(
-                f"{self._reader.path}: a message of {message.topic} at "
-                f"{message.log_time / 1e9:g} s has {len(message.data)} bytes, more than the "
-                f"{LARGEST_MESSAGE} that are decoded; leave its topic out"
+                f"{self._reader.path}: a message of {message.place} has {len(message.data)} bytes, "
+                f"more than the {LARGEST_MESSAGE} that are decoded; leave its topic out"
             )
         if message.topic not in self._decoders:
             self._decoders[message.topic] = self._reader.decoder(message.topic)
@@ -331,5 +335,5 @@ class Decoder:
             raise self._unlike(message, f"{kind} is in ROS 2; its definition is another") from None
 
     def _unlike(self, message: LogMessage, what: str) -> LandingError:
-        at = f"{self._reader.path}: a message of {message.topic} at {message.log_time / 1e9:g} s"
+        at = f"{self._reader.path}: a message of {message.place}"
         return LandingError(f"{at} is not what {what}")

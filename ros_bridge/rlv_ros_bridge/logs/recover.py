@@ -14,8 +14,9 @@ from rlv_landing.text.terminal import legible_lines
 from rlv_landing.text.units import UnitError, parse_number
 
 from ..messages.qos import profiles
-from .log_files import FINISHED, UNFINISHED, check_file, find_files, log_name
+from .log_files import FINISHED, UNFINISHED, check_file, find_files, log_name, shown_time
 from .mcap_files.stream import RecordStream
+from .packed import says_packed
 from .reader import Definitions
 from .recording.bag_writer import BagTopic, BagWriter
 
@@ -55,7 +56,7 @@ class Recovery:
 
     def text(self) -> str:
         """The fields as lines of text."""
-        span = f"from {self.start:g} s to {self.end:g} s"
+        span = f"from {shown_time(self.start)} to {shown_time(self.end)}"
         lines = [f"saved    {self.messages} messages {span}, all that is whole: {self.folder}"]
         lines += [f"damage   {text}" for text in self.damage]
         if self.unknown_topic:
@@ -66,11 +67,11 @@ class Recovery:
             lines.append(f"missing  {self.lost_bytes} bytes that make no whole chunk")
         if not self.finished and self.stop_time is not None and self.end < self.stop_time:
             lines.append(
-                f"missing  the span from {self.end:g} s on, "
+                f"missing  the span from {shown_time(self.end)} on, "
                 f"at most to the stop time of {self.stop_time:g} s"
             )
         elif not self.finished:
-            lines.append(f"missing  what was recorded after {self.end:g} s, if anything")
+            lines.append(f"missing  what was recorded after {shown_time(self.end)}, if anything")
         return legible_lines(lines)
 
 
@@ -194,6 +195,9 @@ class _Copy:
                     self._our_metadata.update(record.metadata)
                 elif record.name != WRITERS_METADATA:
                     mcap.add_metadata(record.name, record.metadata)
+                elif says_packed(record.metadata.get("serialized_metadata", "")):
+                    # The messages are copied as they are.
+                    self._writer.bag.packed = True
             elif definitions.add(record):
                 known.setdefault(record.id, self._channel(*definitions.find(record.id)))
         self._found.finished = self._found.finished and stream.finished

@@ -18,7 +18,7 @@ from urllib.parse import quote
 from rlv_landing.errors import LandingError
 
 from .lost import Gap
-from .mcap_files.chunks import CHUNK_BYTES, CHUNK_RATIO
+from .packed import Unpacker
 from .reader import Channel, LogMessage, LogReader
 
 TABLES = ("topics", "messages")
@@ -75,6 +75,7 @@ class SqliteReader(LogReader):
         self.cut, self.damage = False, []
         for file in self.files:
             size = file.stat().st_size
+            unpacked = Unpacker(size) if self._compressed else bytes
             try:
                 with closing(_connect(file)) as database:
                     names = {
@@ -89,30 +90,11 @@ class SqliteReader(LogReader):
                         (size,),
                     )
                     for number, time, data in rows:
-                        yield LogMessage(names[number], int(time), self._whole(bytes(data)))
+                        yield LogMessage(names[number], int(time), unpacked(bytes(data)))
             except (sqlite3.Error, ValueError, TypeError) as e:
                 # What sqlite3 cannot read ends the file; the rows before are whole.
                 self.cut = True
                 self.damage.append(f"{file.name}: {' '.join(str(e).split())}")
-
-    def _whole(self, data: bytes) -> bytes:
-        """A message's bytes, decompressed where the recording's are compressed.
-
-        Raises:
-            ValueError: they cannot be, or claim more than they can hold.
-        """
-        if not self._compressed:
-            return data
-        import zstandard
-
-        try:
-            size = zstandard.frame_content_size(data)
-            most = CHUNK_BYTES + CHUNK_RATIO * len(data)
-            if size > most:
-                raise ValueError(f"a message of {len(data)} bytes claims to hold {size}")
-            return bytes(zstandard.ZstdDecompressor().decompress(data, max_output_size=most))
-        except zstandard.ZstdError as e:
-            raise ValueError(f"a message cannot be decompressed: {e}") from None
 
     def decoder(self, topic: str) -> Any:
         """A function from bytes to messages of `topic`, by ROS 2's own definition of its type.

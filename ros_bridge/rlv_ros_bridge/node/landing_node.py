@@ -184,8 +184,14 @@ class LandingNode(LifecycleNode):
         landing = self._require_landing()
         self._open_log(landing)
         self.ended.clear()
-        awaited = self._publishing.publishers[topics.STRUTS]
-        self._thread = LandingThread(landing, awaited, self._note_end, self._note_error)
+        publishers = self._publishing.publishers
+        self._thread = LandingThread(
+            landing,
+            publishers[topics.STRUTS],
+            [p.publisher for p in publishers.values()],
+            self._note_end,
+            self._note_error,
+        )
         self._thread.start()
 
     def _open_log(self, landing: LandingRun) -> None:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from std_srvs.srv import Trigger
 
 from rlv_landing.errors import LandingError, reason_of
@@ -26,6 +27,7 @@ class LandingThread:
     Args:
         landing: the landing, whose log is open.
         awaited: the publisher whose subscribers are waited for.
+        others: the publishers of the node, whose subscribers may come a moment later.
         on_end: called in the thread when the landing has ended and its log is complete.
         on_error: called in the thread with the error of a landing that has failed.
     """
@@ -34,10 +36,11 @@ class LandingThread:
         self,
         landing: LandingRun,
         awaited: TopicPublisher,
+        others: Sequence[Publisher[Any]],
         on_end: Callable[[], object],
         on_error: Callable[[LandingError], object],
     ) -> None:
-        self._landing, self._awaited = landing, awaited
+        self._landing, self._awaited, self._others = landing, awaited, others
         self._on_end, self._on_error = on_end, on_error
         self._pause = threading.Event()
         self._thread = threading.Thread(target=self._land, name="landing", daemon=True)
@@ -65,7 +68,11 @@ class LandingThread:
             LandingError: there are not enough subscribers in time.
         """
         wait_until_matched(
-            self._awaited.publisher, s.wait_for_subscribers, s.wait_timeout, self._is_paused
+            self._awaited.publisher,
+            s.wait_for_subscribers,
+            s.wait_timeout,
+            self._is_paused,
+            self._others,
         )
         end = time.monotonic() + s.start_delay
         while time.monotonic() < end and not self._is_paused():

@@ -192,6 +192,7 @@ class ReplayNode(Node):
             o.wait_for_subscribers,
             o.wait_timeout,
             interrupted,
+            set(self._publisher_of.values()),
         )
         end = time.monotonic() + o.start_delay
         while time.monotonic() < end and not interrupted():
@@ -266,7 +267,7 @@ def _answer(action: Callable[[float], bool], refusal: str, _request: Any, respon
 def _not_published(message: LogMessage, error: Exception) -> LandingError:
     """The error where ROS 2 takes no message, as it does of one without its first four bytes."""
     return LandingError(
-        f"a message of {message.topic} at {message.log_time / 1e9:g} s, of {len(message.data)} "
+        f"a message of {message.place}, of {len(message.data)} "
         f"bytes, cannot be published: {' '.join(str(error).split())}; leave it out by --topics"
     )
 

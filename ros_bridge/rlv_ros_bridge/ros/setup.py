@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,6 +26,8 @@ ACKNOWLEDGE_INTERRUPTED_SECONDS = 0.2
 # Periods of checking for a signal and for matched subscriptions [s].
 SIGNAL_POLL_SECONDS = 0.05
 MATCH_POLL_SECONDS = 0.01
+# rosbag2's recorder looks for topics every 0.1 s, and subscribes to one after the other.
+SETTLE_SECONDS = 0.3
 
 
 class StopFlag(SignalNote):
@@ -111,15 +113,23 @@ def _ensure_log_folder() -> None:
 
 
 def wait_until_matched(
-    publisher: Publisher[Any], count: int, timeout: float, interrupted: Callable[[], object]
+    publisher: Publisher[Any],
+    count: int,
+    timeout: float,
+    interrupted: Callable[[], object],
+    others: Iterable[Publisher[Any]] = (),
 ) -> None:
     """Waits until `count` subscriptions are matched, or `interrupted` returns true.
 
+    Who subscribes to several topics does so one by one, and may have this one before others. So it
+    then waits until no subscription of `others` has come for `SETTLE_SECONDS`.
+
     Args:
         publisher: the publisher of the topic.
-        count: subscriptions to wait for.
+        count: subscriptions to wait for; 0: nothing is waited for.
         timeout: longest wait [s].
         interrupted: called at each check.
+        others: the publishers of the other topics.
 
     Raises:
         LandingError: there are fewer after `timeout`.
@@ -131,6 +141,12 @@ def wait_until_matched(
                 f"only {matched} of {count} subscribers of {publisher.topic_name} after "
                 f"{timeout:g} s; start them first, or check their ROS_DOMAIN_ID"
             )
+        time.sleep(MATCH_POLL_SECONDS)
+    every, known, since = list(others) if count else [], -1, time.monotonic()
+    while every and not interrupted() and time.monotonic() - since < SETTLE_SECONDS:
+        found = sum(p.get_subscription_count() for p in every)
+        if found != known and time.monotonic() < end:
+            known, since = found, time.monotonic()
         time.sleep(MATCH_POLL_SECONDS)
 
 

@@ -98,7 +98,8 @@ class RecordStream:
                     if following is None:
                         # Nothing behind can be read: the file is cut.
                         if not self._ours:
-                            yield from records_of_cut_chunk(file, position, size)
+                            rest = records_of_cut_chunk(file, position, size)
+                            yield from filter(self._is_wanted, rest)
                         self.lost_bytes += size - position
                         return
                     self._note(f"byte {position}: {e}")
@@ -173,9 +174,14 @@ class RecordStream:
             self.damage.append(f"{self._messages} of {record.message_count} messages are there")
         if opcode == MESSAGE:
             self._messages += 1
-            if self._wanted is not None and not self._wanted(record.channel_id):
+            if not self._is_wanted(record):
                 return ()
         return [] if self._in_summary and not self._with_summary else [record]
+
+    def _is_wanted(self, record: Any) -> bool:
+        """Whether a record is given, by its channel where it is a message."""
+        number = getattr(record, "channel_id", None)
+        return self._wanted is None or number is None or self._wanted(number)
 
     def _check_summary(self, footer: Any, file: IO[bytes], position: int) -> None:
         # Bytes that were inserted or lost have moved the summary, so its start is the end of the

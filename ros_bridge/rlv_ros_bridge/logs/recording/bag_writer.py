@@ -54,11 +54,15 @@ class Span:
 
 @dataclass
 class Bag:
-    """The contents of a log as `metadata.yaml` describes them: file, topics and times."""
+    """The contents of a log as `metadata.yaml` describes them: file, topics and times.
+
+    `packed`: each message is compressed by itself (in zstd), as rosbag2 can do it.
+    """
 
     file: str
     topics: list[BagTopic] = field(default_factory=list)
     span: Span = field(default_factory=Span)
+    packed: bool = False
 
     def metadata(self) -> dict[str, Any]:
         """The `rosbag2_bagfile_information` of rosbag2, metadata version 9."""
@@ -85,8 +89,8 @@ class Bag:
                 }
                 for t in self.topics
             ],
-            "compression_format": "",
-            "compression_mode": "",
+            "compression_format": "zstd" if self.packed else "",
+            "compression_mode": "MESSAGE" if self.packed else "",
             "relative_file_paths": [self.file],
             "files": [{"path": self.file, **span}],
             "custom_data": None,
