@@ -193,7 +193,7 @@ def test_positions_alone_lift_a_parked_vehicle_without_force_peaks(spacing):
 
 
 def deliver(remote: Remote, publisher: Any, message: JointState) -> None:
-    """Publish, and return when the node has the message.
+    """Publish, and return when the node, a reliable subscriber here, has the message.
 
     Its reader has acknowledged it, and the node has answered a later request.
     """
@@ -208,7 +208,8 @@ def test_ground_inputs_before_the_first_step_place_the_vehicle_and_the_log_repea
     """The node's numbers are `Landing`'s. Later messages give positions alone."""
     node = start(
         "node", "--managed", "--fmu", fmu, "--record", tmp_path / "log",
-        "--ros-args", "-p", "input_timeout:=0.0", domain=domain,
+        "--ros-args", "-p", "input_timeout:=0.0",
+        "-p", "qos_overrides./landing/ground.subscription.reliability:=reliable", domain=domain,
     )  # fmt: skip
     processes.append(node)
     with Remote(domain) as remote:

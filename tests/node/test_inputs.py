@@ -222,10 +222,11 @@ def test_bad_inputs_are_counted_in_the_diagnostics_and_change_nothing(
     diagnostics = remote.diagnostics()
     pushing = remote.node.create_publisher(WrenchStamped, "/landing/external_wrench", 10)
     remote.until(lambda: pushing.get_subscription_count() > 0)
-    for _ in range(5):
-        pushing.publish(wrench(x=math.nan))
+    # inputs are received by best effort: the first may be lost while the node finds the publisher
     step_until(
-        remote, lambda: None, lambda: bool(diagnostics) and diagnostics[-1]["inputs refused"] == "5"
+        remote,
+        lambda: pushing.publish(wrench(x=math.nan)),
+        lambda: bool(diagnostics) and int(diagnostics[-1]["inputs refused"]) >= 5,
     )
     assert diagnostics[-1]["inputs received"] == "0"
     node.send_signal(signal.SIGINT)
