@@ -223,3 +223,14 @@ CARRIED = {
     "leg_3/contact": [n for n in SAMPLE if n.startswith("leg[3].contact")],
     "leg_4/contact": [n for n in SAMPLE if n.startswith("leg[4].contact")],
 }
+
+# lengths of a vehicle [m]
+ROUND_NUMBERS = {
+    "vehicle.top_height": 0.5,
+    "main_strut.joint_radius": 0.5,
+    "main_strut.joint_depth": 1.0,
+    "main_strut.length": 1.5,
+    "auxiliary_strut.joint_radius": 0.5,
+    "auxiliary_strut.joint_depth": 1.5,
+    "auxiliary_strut.length": 1.25,
+}

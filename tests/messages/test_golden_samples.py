@@ -7,7 +7,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from golden import CARRIED, GOLDEN, HALF_COS, HALF_SIN, HEADER, NANOSECONDS, SAMPLE, VALUES
+from golden import (
+    CARRIED,
+    GOLDEN,
+    HALF_COS,
+    HALF_SIN,
+    HEADER,
+    NANOSECONDS,
+    ROUND_NUMBERS,
+    SAMPLE,
+    VALUES,
+)
 from mcap.records import Schema
 from mcap_ros2.decoder import DecoderFactory
 from rclpy.serialization import serialize_message
@@ -178,16 +188,7 @@ def test_applied_inputs_are_golden_and_read_back(
 @pytest.fixture(scope="module")
 def vehicle() -> Any:
     """A vehicle of round numbers, in the mode whose legs lie in the body's plane and beside it."""
-    round_numbers = {
-        "vehicle.top_height": 0.5,
-        "main_strut.joint_radius": 0.5,
-        "main_strut.joint_depth": 1.0,
-        "main_strut.length": 1.5,
-        "auxiliary_strut.joint_radius": 0.5,
-        "auxiliary_strut.joint_depth": 1.5,
-        "auxiliary_strut.length": 1.25,
-    }
-    return load_preset("yue2022-figures", "1-2-1").with_values(round_numbers)
+    return load_preset("yue2022-figures", "1-2-1").with_values(ROUND_NUMBERS)
 
 
 def test_markers_are_golden(vehicle: Any) -> None:

@@ -13,7 +13,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 import pytest
-from golden import HEADER, NANOSECONDS
+from golden import HEADER, NANOSECONDS, ROUND_NUMBERS
 from rclpy.serialization import serialize_message
 from test_golden_samples import assert_golden, close_to, decoded, decoded_by_mcap, flat
 
@@ -294,13 +294,7 @@ def vehicle() -> Parameters:
         "vehicle.leg_azimuth": 0.0,
         "vehicle.cg_offset_x": 0.1,
         "vehicle.cg_offset_z": -0.2,
-        "vehicle.top_height": 0.5,
-        "main_strut.joint_radius": 0.5,
-        "main_strut.joint_depth": 1.0,
-        "main_strut.length": 1.5,
-        "auxiliary_strut.joint_radius": 0.5,
-        "auxiliary_strut.joint_depth": 1.5,
-        "auxiliary_strut.length": 1.25,
+        **ROUND_NUMBERS,
     }
     return load_preset("yue2022-figures").with_values(round_numbers)
 

@@ -20,7 +20,7 @@ from ..quantities import LEGS, SPACE, azimuth, groups_of
 from ..touchdown import footpad_at_rest
 from .bounds import TIGHT_RTOL, Check
 from .cases import mass
-from .spatial_momentum import spatial_impulse, spatial_momentum
+from .spatial_momentum import rates_in_plane, spatial_impulse, spatial_momentum
 
 Array = NDArray[np.float64]
 FLIGHT = 0.3
@@ -53,7 +53,7 @@ def _mass_points(
 
     Footpads' velocities are solved from both struts' stroke rates.
     """
-    v, m, a = parameters.vehicle, parameters.main_strut, parameters.auxiliary_strut
+    v = parameters.vehicle
     x, y, pitch, vx, vy, rate = (
         history[f"body.{n}"] for n in ("x", "y", "pitch", "vx", "vy", "pitch_rate")
     )
@@ -65,13 +65,7 @@ def _mass_points(
         dx, dy = history[f"leg[{leg}].footpad.x"] - x, history[f"leg[{leg}].footpad.y"] - y
         body_x, h = dx * cosine - dy * sine, dx * sine + dy * cosine
         r = body_x * cos_g + np.abs(history[f"leg[{leg}].footpad.z"]) * sin_g
-        main_r, main_h = r - m.joint_radius, h + m.joint_depth
-        aux_r, aux_h = r - a.joint_radius, h + a.joint_depth
-        main_rate = -history[f"leg[{leg}].main_strut.stroke_rate"] * np.hypot(main_r, main_h)
-        aux_rate = -history[f"leg[{leg}].auxiliary_strut.stroke_rate"] * np.hypot(aux_r, aux_h)
-        determinant = main_r * aux_h - main_h * aux_r
-        vr = (main_rate * aux_h - aux_rate * main_h) / determinant
-        vh = (main_r * aux_rate - aux_r * main_rate) / determinant
+        vr, vh = rates_in_plane(history, parameters, leg, r, h)
         along, up = vr * cos_g + rate * h, vh - rate * body_x
         points.append(
             (

@@ -111,10 +111,27 @@ def _in_plane(
     from_cg: Array,
 ) -> Array:
     """Velocity of a footpad in the leg's plane from both struts' rates, body axes, (n, 3)."""
-    own, m, a = parameters.vehicle, parameters.main_strut, parameters.auxiliary_strut
+    own = parameters.vehicle
     sine, cosine = azimuth
     r = (from_cg[:, 0] + own.cg_offset_x) * cosine + (from_cg[:, 2] + own.cg_offset_z) * sine
     h = from_cg[:, 1]
+    vr, vh = rates_in_plane(history, parameters, leg, r, h)
+    return np.column_stack([vr * cosine, vh, vr * sine])
+
+
+def rates_in_plane(
+    history: History, parameters: Parameters, leg: int, r: Array, h: Array
+) -> tuple[Array, Array]:
+    """Velocity of a footpad in the leg's plane, outward and up [m/s], from both struts' rates.
+
+    Args:
+        history: The landing.
+        parameters: Its parameters.
+        leg: The leg's number.
+        r: The footpad's distance from the body's axis [m], (n,).
+        h: Its height above the CG [m], (n,).
+    """
+    m, a = parameters.main_strut, parameters.auxiliary_strut
     main_r, main_h = r - m.joint_radius, h + m.joint_depth
     aux_r, aux_h = r - a.joint_radius, h + a.joint_depth
     main_rate = -history[f"leg[{leg}].main_strut.stroke_rate"] * np.hypot(main_r, main_h)
@@ -122,4 +139,4 @@ def _in_plane(
     determinant = main_r * aux_h - main_h * aux_r
     vr = (main_rate * aux_h - aux_rate * main_h) / determinant
     vh = (main_r * aux_rate - aux_r * main_rate) / determinant
-    return np.column_stack([vr * cosine, vh, vr * sine])
+    return vr, vh

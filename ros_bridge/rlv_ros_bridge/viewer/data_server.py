@@ -8,11 +8,9 @@ from __future__ import annotations
 
 import select
 import socket
-import sys
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from typing import Any
+from http.server import BaseHTTPRequestHandler
 
-from .page_server import LOOPBACK, REQUEST_SECONDS, names_this_machine
+from .page_server import REQUEST_SECONDS, LoopbackServer, names_this_machine
 
 # A browser asks with a few hundred bytes; more is another's [bytes].
 LARGEST_REQUEST = 4 * 1024 * 1024
@@ -21,7 +19,7 @@ COPY_BYTES = 64 * 1024
 OF_A_CONNECTION = {"connection", "keep-alive", "proxy-connection", "te", "upgrade", "expect"}
 
 
-class DataServer(ThreadingHTTPServer):
+class DataServer(LoopbackServer):
     """Serves the viewer's data at the loopback address until it is shut down.
 
     Args:
@@ -32,16 +30,9 @@ class DataServer(ThreadingHTTPServer):
         OSError: the port cannot be listened on.
     """
 
-    daemon_threads = True
-
     def __init__(self, port: int, source: tuple[str, int]) -> None:
         self.source = source
-        super().__init__((LOOPBACK, port), _Handler)
-
-    def handle_error(self, request: Any, client_address: Any) -> None:
-        """A connection that was closed is no error; others are Python's to show."""
-        if not isinstance(sys.exc_info()[1], OSError):
-            super().handle_error(request, client_address)
+        super().__init__(port, _Handler)
 
 
 class _Handler(BaseHTTPRequestHandler):

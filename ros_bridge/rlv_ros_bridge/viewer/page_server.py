@@ -26,7 +26,29 @@ REQUEST_SECONDS = 10.0
 ANSWER_SECONDS = 30.0
 
 
-class PageServer(ThreadingHTTPServer):
+class LoopbackServer(ThreadingHTTPServer):
+    """Serves at a port of the loopback address until it is shut down.
+
+    Args:
+        port: on the loopback address.
+        handler: answers the requests of a connection.
+
+    Raises:
+        OSError: the port cannot be listened on.
+    """
+
+    daemon_threads = True
+
+    def __init__(self, port: int, handler: type[BaseHTTPRequestHandler]) -> None:
+        super().__init__((LOOPBACK, port), handler)
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """A connection that the browser has closed is no error; others are Python's to show."""
+        if not isinstance(sys.exc_info()[1], OSError):
+            super().handle_error(request, client_address)
+
+
+class PageServer(LoopbackServer):
     """Serves the viewer's files at the loopback address until it is shut down.
 
     Args:
@@ -39,18 +61,11 @@ class PageServer(ThreadingHTTPServer):
         OSError: the port cannot be listened on.
     """
 
-    daemon_threads = True
-
     def __init__(self, port: int, files: str, security_policy: str, query: str) -> None:
         self.files, self.security_policy, self.query = files, security_policy, query
         # An address of this machine is not asked for at a proxy.
         self.open = build_opener(ProxyHandler({})).open
-        super().__init__((LOOPBACK, port), _Handler)
-
-    def handle_error(self, request: Any, client_address: Any) -> None:
-        """A connection that the browser has closed is no error; others are Python's to show."""
-        if not isinstance(sys.exc_info()[1], OSError):
-            super().handle_error(request, client_address)
+        super().__init__(port, _Handler)
 
 
 class _Handler(BaseHTTPRequestHandler):

@@ -110,18 +110,23 @@ def core_by(compiler, package: Path) -> Path:
     return package / "core" / own.name
 
 
-def test_the_compiled_core_needs_nothing_new_and_gives_the_same_digits(compiler, tmp_path):
-    core = core_by(compiler, tmp_path / "rlv_landing")
-    assert_old_systems_have_what_it_needs(core, compiler)
+def landed(**environment: str) -> list[str]:
+    """What `LAND` prints in a process with this environment: the core's file, then the outputs."""
     done = subprocess.run(
         [sys.executable, "-c", LAND],
         capture_output=True,
         text=True,
         timeout=120,
-        env={**os.environ, "PYTHONPATH": str(tmp_path)},
+        env={**os.environ, **environment},
     )
     assert done.returncode == 0, done.stderr
-    file, *values = done.stdout.split()
+    return done.stdout.split()
+
+
+def test_the_compiled_core_needs_nothing_new_and_gives_the_same_digits(compiler, tmp_path):
+    core = core_by(compiler, tmp_path / "rlv_landing")
+    assert_old_systems_have_what_it_needs(core, compiler)
+    file, *values = landed(PYTHONPATH=str(tmp_path))
     assert Path(file) == core
     landing = Landing()
     landing.advance_to(0.4)
@@ -134,15 +139,7 @@ def test_other_last_bits_of_the_c_librarys_functions_move_a_landing_within_its_t
     source = Path(__file__).with_name("last_bits.c")
     command = ["gcc", "-O2", "-fno-builtin", "-shared", "-fPIC", "-o", library, source]
     subprocess.run([*command, "-ldl", "-lm"], check=True)
-    done = subprocess.run(
-        [sys.executable, "-c", LAND],
-        capture_output=True,
-        text=True,
-        timeout=120,
-        env={**os.environ, "LD_PRELOAD": str(library)},
-    )
-    assert done.returncode == 0, done.stderr
-    values = dict(zip(OUTPUT_NAMES, map(float.fromhex, done.stdout.split()[1:])))
+    values = dict(zip(OUTPUT_NAMES, map(float.fromhex, landed(LD_PRELOAD=str(library))[1:])))
     landing = Landing()
     landing.advance_to(0.4)
     assert list(values.values()) != landing.values()
