@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from .history import History
-from .validation.measures import DamperWork, first_push, leg_work
+from .validation.first_contact import first_contact
+from .validation.measures import DamperWork, leg_work
 
 UNFINISHED = {
     "in compression": "largest stroke, efficiency and energies are not known",
@@ -58,10 +59,10 @@ def _leg_summary(history: History, leg: int, work: DamperWork | None) -> dict[st
     force = history.extreme(f"leg[{leg}].main_strut.force")
     stroke = history.extreme(f"leg[{leg}].main_strut.stroke")
     auxiliary = history.extreme(f"leg[{leg}].auxiliary_strut.force")
-    first = first_push(history, leg)
+    contact = first_contact(history, leg)
     return {
         "leg": leg,
-        "contact_time": None if first is None else float(history.time[first]),
+        "contact_time": None if contact is None else contact.time,
         "main_strut_force_min": force.minimum,
         "main_strut_force_min_time": force.minimum_time,
         "main_strut_stroke_max": stroke.maximum,

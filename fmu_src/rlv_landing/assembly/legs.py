@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from ..core import AUXILIARY_STRUTS, FRICTION_LAWS, MAIN_STRUTS, Accounts, LegModel, LegState
 from ..core.struts.fluid import fluid
@@ -27,9 +27,12 @@ NO_ENERGY = Accounts(*(0.0 for _ in Accounts._fields))
 BY_SYMBOL = {q.symbol: name for name, q in PARAMETER_QUANTITIES.items() if q.symbol}
 
 
-def flat_state(body: Iterable[float], legs: Iterable[LegState], accounts: Accounts) -> array[float]:
-    """The numbers of a state: the body's, each leg group's, the accounts."""
-    return array("d", [*body, *(number for leg in legs for number in leg), *accounts])
+def flat_state(
+    body: Iterable[float], legs: Sequence[LegState], accounts: Accounts, work: float = 0.0
+) -> array[float]:
+    """The numbers of a state: the body's, each leg group's, accounts, each main strut's `work`."""
+    works = [work] * len(legs)
+    return array("d", [*body, *(number for leg in legs for number in leg), *accounts, *works])
 
 
 def state_sizes(
@@ -45,7 +48,7 @@ def state_sizes(
     body = list(body_scale)
     energy = touchdown_energy(parameters)
     accounts = Accounts(*(energy for _ in Accounts._fields))
-    scale = flat_state(body, [LEG_SCALE] * groups, accounts)
+    scale = flat_state(body, [LEG_SCALE] * groups, accounts, energy)
     return scale, flat_state([0.0] * len(body), [LEG_RELATIVE] * groups, NO_ENERGY)
 
 

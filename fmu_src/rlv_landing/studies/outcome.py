@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from math import inf
 from typing import Literal, get_args
 
 import numpy as np
@@ -16,6 +17,7 @@ from ..history import History
 from ..landing import Landing
 from ..quantities import Quantity, azimuth, groups_of
 from ..touchdown import AT_REST
+from ..validation.first_contact import first_contact
 from .limits import PassedLimit, first_limit_passed, time_passed
 from .replay import ReplayedHistory
 
@@ -48,8 +50,8 @@ class Outcome:
       toppled. `time` is the start of the last such period;
     - bottomed out: a damper's stroke has passed `main_strut.stroke_max`, where it meets its stop.
       `time` is that of the first damper;
-    - slid: a footpad is further than the threshold from where it first touched. `time` is the first
-      such sample;
+    - slid: a footpad is further than the threshold from where it first touched. `time` is when it
+      passes it, linear between samples;
     - moving: neither at rest nor lost at the end, which is `time`: run it longer;
     - settled: at rest since `time`.
 
@@ -121,14 +123,14 @@ def judged(
         "slid": max((float(s[-1]) for s in slips if len(s)), default=0.0),
         "joint_clearance": _joint_clearance(history, joints),
     }
-    first_slide = min(_first_beyond(s, slide, len(history)) for s in slips)
+    first_slide = min(_first_beyond(history.time, s, slide) for s in slips)
     name: Name
     if toppled:
         name, time = "toppled", end
     elif bottomed:
         name, time = "bottomed out", bottomed[0][0]
-    elif first_slide < len(history):
-        name, time = "slid", float(history.time[first_slide])
+    elif first_slide < inf:
+        name, time = "slid", first_slide
     elif phase[-1] == SETTLED:
         name, time = "settled", float(history.time[_first_of_last_period(phase, SETTLED)])
     else:
@@ -157,11 +159,18 @@ def _until_toppled(history: History) -> tuple[float, History]:
     return time, history.until(first + 1, history.extremes_at(time))
 
 
-def _first_beyond(slip: Array, slide: float, samples: int) -> int:
-    """The index of the sample at which a footpad first slid; `samples` where it did not."""
+def _first_beyond(time: Array, slip: Array, slide: float) -> float:
+    """The time [s] at which a footpad has first slid by `slide`; infinite where it has not.
+
+    It is linear between samples. `slip` ends with the last of the times.
+    """
     if not len(slip) or not slip.max() > slide:
-        return samples
-    return samples - len(slip) + int(np.argmax(slip > slide))
+        return inf
+    first = int(np.argmax(slip > slide))
+    times = time[len(time) - len(slip) :]
+    if not first:
+        return float(times[0])
+    return float(np.interp(slide, slip[first - 1 : first + 1], times[first - 1 : first + 1]))
 
 
 @lru_cache
@@ -176,13 +185,15 @@ def _slip(history: History, leg: int) -> Array:
 
     It is empty for a footpad that never touches.
     """
-    touching = history[f"leg[{leg}].contact.active"]
-    start = int(np.argmax(touching > 0.0))
-    if not touching[start] > 0.0:
+    contact = first_contact(history, leg)
+    if contact is None:
         return np.empty(0)
     along, up, _ = _on_ground(history, *(history[f"leg[{leg}].footpad.{axis}"] for axis in "xy"))
-    x, y, z = (values[start:] for values in (along, up, history[f"leg[{leg}].footpad.z"]))
-    distance: Array = np.sqrt((x - x[0]) ** 2 + (y - y[0]) ** 2 + (z - z[0]) ** 2)
+    ways = (
+        values[contact.sample :] - contact.value(history.time, values)
+        for values in (along, up, history[f"leg[{leg}].footpad.z"])
+    )
+    distance: Array = np.sqrt(sum(way**2 for way in ways))
     return distance
 
 

@@ -20,7 +20,12 @@ LATER_EVERY = 1e-2
 
 
 def whole_landing(
-    landing: Landing, until: float | None = None, every: float = 1e-3, *, decided: bool = True
+    landing: Landing,
+    until: float | None = None,
+    every: float = 1e-3,
+    *,
+    decided: bool = True,
+    progress: Callable[[float], object] | None = None,
 ) -> ReplayedHistory:
     """Land from now until the vehicle is at rest, has toppled, or `until` [s].
 
@@ -35,6 +40,7 @@ def whole_landing(
         until: The latest end [s]; None: 60 s after the first contact, as long as `audit` waits.
         every: Time between samples [s].
         decided: Whether the landing may end before `until`.
+        progress: Called with the time reached [s] on the way.
 
     Raises:
         LandingError: As `Landing.run`.
@@ -43,6 +49,8 @@ def whole_landing(
 
     def keep(_time: float) -> None:
         states.append((landing.time, landing.state()))
+        if progress is not None:
+            progress(landing.time)
 
     contact = landing.parameters.drop.contact_time
     if until is None:

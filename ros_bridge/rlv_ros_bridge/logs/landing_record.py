@@ -33,7 +33,11 @@ MOST_SAMPLES = 60_000
 PHASE = "status.phase"
 # names of the phases, as in `/diagnostics`, in the order of `rlv_landing.summary.OUTCOMES`
 PHASES = tuple(phase.name.lower() for phase in Phase)
-OF_A_LEG = ("main_strut.force", "main_strut.stroke", "contact.force_y")
+# what the messages have, too, so that both give the same
+OF_A_LEG = (
+    *("main_strut.force", "main_strut.stroke", "main_strut.stroke_rate"),
+    "contact.force_y",
+)
 ENDED = ("complete", "not compressed")
 # A text longer than this is none of it [characters].
 LONGEST = 64 * 1024

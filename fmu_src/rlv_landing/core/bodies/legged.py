@@ -69,10 +69,10 @@ ROUNDING = 4e-15
 class Legged(System):
     """A body on legs, or on groups of legs that are mirror images, and its ground.
 
-    The state is the body's, a `LegState` for each group, and the `Accounts`, which no other state
-    depends on. What is dissipated never falls, unless a friction law may give. A subclass moves the
-    body, adds its mass, says where the outputs have the energies, and keeps each group's forces and
-    footpad.
+    The state is the body's, a `LegState` for each group, the `Accounts`, and the work of each
+    group's main strut; no other state depends on accounts and works. What is dissipated never
+    falls, unless a friction law may give. A subclass moves the body, adds its mass, says where the
+    outputs have the energies, and keeps each group's forces and footpad.
 
     Attributes:
         groups: How many leg groups there are.
@@ -89,6 +89,7 @@ class Legged(System):
     rounding: float
     mass: float
     _first_leg: int  # its place in the state
+    _works: int  # their place in the state
     _energies: int  # their place in the outputs, behind the body's
     _places: Records[LegPlace]
     _legs: Records[LegModel]
@@ -107,13 +108,14 @@ class Legged(System):
         row: int,
     ) -> None:
         groups = len(legs)
-        super().__init__(scale, relative, ACCOUNTS, inputs, row, groups)
+        super().__init__(scale, relative, ACCOUNTS + groups, inputs, row, groups)
         self.groups = groups
         self.energy_start = 0.0
         self.most_balance = 0.0
         self.rounding = 0.0
         self.mass = 0.0
         self._first_leg = self.controlled - LEG * groups
+        self._works = self.controlled + ACCOUNTS
         self._energies = 0
         self._places = stored(places)
         self._legs = stored(legs)
@@ -239,7 +241,7 @@ class Legged(System):
             )
 
     def _put_powers(self, external: float, transverse: float, dy: Doubles) -> None:
-        """Write the powers that the accounts gather to `dy` [W].
+        """Write the powers that the accounts and works gather to `dy` [W].
 
         Args:
             external: Power of the external loads [W].
@@ -257,6 +259,7 @@ class Legged(System):
             contact += n * forces.contact
             friction += n * forces.friction
             ground += n * foot_loads_of(self._feet, i).ground
+            dy[self._works + i] = forces.main * forces.stroke_rate
         put(
             Accounts(
                 orifice, seal, stop, auxiliary, contact, friction, external, ground, transverse
@@ -309,8 +312,8 @@ class Legged(System):
             at,
         )
 
-    def _put_leg(self, i: int, out: Doubles, at: int) -> None:
-        """Write the outputs of leg group `i` to `out[at:]`.
+    def _put_leg(self, i: int, y: Doubles, out: Doubles, at: int) -> None:
+        """Write the outputs of leg group `i` at the state `y` to `out[at:]`.
 
         Strut forces change sign here: the user's are negative in compression. Mirror images are
         made where the names are made.
@@ -326,6 +329,7 @@ class Legged(System):
                 main_strut_pressure_upper=s.pressure_upper,
                 main_strut_pressure_lower=s.pressure_lower,
                 main_strut_liquid_mass=f.liquid_mass,
+                main_strut_work=y[self._works + i],
                 auxiliary_strut_force=-f.auxiliary,
                 auxiliary_strut_stroke=f.auxiliary_stroke,
                 auxiliary_strut_stroke_rate=f.auxiliary_rate,

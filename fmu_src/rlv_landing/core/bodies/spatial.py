@@ -62,7 +62,7 @@ class Spatial(SpatialMotion):
         self._put_status(y, dy, kinetic, turn, out, at)
         at += STATUS_OUTPUTS
         for i in range(self.groups):
-            self._put_leg(i, out, at)
+            self._put_leg(i, y, out, at)
             put(LegLoadOutputs(self._transverse[i]), out, at + LEG_OUTPUTS)
             at += LEG_OUTPUTS + LEG_LOAD_OUTPUTS
 

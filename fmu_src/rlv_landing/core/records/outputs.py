@@ -88,6 +88,7 @@ class LegOutputs(NamedTuple):
     main_strut_pressure_upper: float
     main_strut_pressure_lower: float
     main_strut_liquid_mass: float
+    main_strut_work: float
     auxiliary_strut_force: float
     auxiliary_strut_stroke: float
     auxiliary_strut_stroke_rate: float

@@ -10,7 +10,8 @@ from ...errors import LandingError, unknown
 from ...history import History
 from ...outputs import Extreme
 from ...quantities import LEG_QUANTITIES, LEGS, OUTPUT_QUANTITIES, Quantity, groups_of
-from ...validation.measures import first_push, leg_work
+from ...validation.first_contact import first_contact
+from ...validation.measures import leg_work
 from ..outcome import TOPPLED, Outcome, judged
 
 Reduction = Callable[[Extreme], float]
@@ -239,8 +240,8 @@ def _outcome_values(found: Outcome) -> dict[str, Any]:
 
 def _contact_time(history: History, name: str) -> float | None:
     leg = int(name.removeprefix("leg[").partition("]")[0])
-    first = first_push(history, leg)
-    return None if first is None else float(history.time[first])
+    contact = first_contact(history, leg)
+    return None if contact is None else contact.time
 
 
 def _work_values(history: History) -> dict[str, Any]:
