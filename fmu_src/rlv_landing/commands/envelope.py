@@ -189,7 +189,7 @@ def _override(document: dict[str, Any], options: dict[str, Any]) -> None:
     """Let the options replace what the study's document gives."""
     from ..studies import toml_keys
     from ..studies.limits import LIMITS
-    from ..studies.sweep.factors import VARIABLES
+    from ..studies.variables import VARIABLES
 
     for key in ("envelope", "set", "limits", *(axis for axis in ("x", "y") if axis in document)):
         document[key] = toml_keys.table(document, key)
