@@ -9,6 +9,7 @@ from typing import Any
 
 from ...errors import LandingError
 from ...landing import Landing
+from ..criteria import FAILED, is_lost
 from ..limits import LIMITS, PassedLimit
 from ..on_ground import towards
 from ..outcome import SEVERITY, judged
@@ -16,16 +17,7 @@ from ..variables import is_parameter
 from ..whole_landing import whole_landing
 from .study import EnvelopeStudy
 
-FAILED = "failed"
 SIDE = re.compile(r"(?:[+-]x|legs [1-8], [1-8]|-?\d{1,3} deg)?")
-# outcomes that are lost by each criterion; a landing that the integrator could not make is always
-# lost
-LOST = {
-    "toppled": {"toppled", FAILED},
-    "bottomed out": {"toppled", "bottomed out", FAILED},
-    "slid": {"toppled", "bottomed out", "slid", FAILED},
-    "limit": {"toppled", FAILED},
-}
 
 
 @dataclass(frozen=True)
@@ -55,9 +47,7 @@ class JudgedLanding:
 
     def lost(self, criterion: str) -> bool:
         """Whether the landing is lost by the criterion."""
-        return self.name in LOST[criterion] or (
-            criterion == "limit" and self.first_limit is not None
-        )
+        return is_lost(criterion, self.name, limit_passed=self.first_limit is not None)
 
     @property
     def condition(self) -> str:

@@ -20,6 +20,7 @@ from ...presets import to_toml
 from ...quantities import Quantity
 from ...text.values import check_together, is_number, parse_value, parse_values
 from .. import toml_keys
+from ..criteria import CRITERIA
 from ..limits import LIMITS
 from ..outcome import DEFAULT_SLIDE, SLIDE
 from ..variables import (
@@ -33,13 +34,6 @@ from ..variables import (
 )
 from .boundary import Lattice
 
-# the landings that are lost by each criterion, which includes the severer outcomes
-CRITERIA = {
-    "toppled": "the vehicle topples",
-    "bottomed out": "a damper meets its stop, or the vehicle topples",
-    "slid": "a footpad slides too far, a damper meets its stop, or the vehicle topples",
-    "limit": "one of the limits is passed, or the vehicle topples",
-}
 FINEST = 20
 LEGS = "vehicle.legs"
 # a boundary: 9 landings or more of 1 ms or more; its values, landings and parameters

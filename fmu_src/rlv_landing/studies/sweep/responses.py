@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -45,7 +46,9 @@ OUTCOME = (
     ),
     Quantity("s", "time at which it was passed", name="outcome.first_limit_time"),
     *(
-        Quantity("m", f"{name.replace('_', ' ')}, see Outcome", name=f"margin.{name}")
+        Quantity(
+            "m", f"{name.replace('_', ' ')}, see Outcome", name=f"margin.{name}", display_unit="mm"
+        )
         for name in MARGINS
     ),
 )
@@ -136,16 +139,15 @@ def known_responses(interface: Interface = IN_A_PLANE) -> Mapping[str, Quantity]
     found = {q.name: q for q in (*OUTCOME, *of_space)}
     for q in interface.outputs:
         for name, words in REDUCTIONS.items():
-            unit = "s" if name.endswith("time") else q.unit
-            found[f"{q.name}.{name}"] = Quantity(
-                unit, f"{words} {q.meaning}", name=f"{q.name}.{name}"
-            )
+            full = f"{q.name}.{name}"
+            found[full] = replace(of_kind(q), meaning=f"{words} {q.meaning}", name=full)
+            if name.endswith("time"):
+                found[full] = replace(found[full], unit="s", display_unit="")
     for q in SPACE_LEG_QUANTITIES if interface.in_space else LEG_QUANTITIES:
         for name in OVER_LEGS:
             full = f"legs.{q.name}.{name}"
-            found[full] = Quantity(
-                q.unit, f"{REDUCTIONS[name]} of all legs: {q.meaning}", name=full
-            )
+            meaning = f"{REDUCTIONS[name]} of all legs: {q.meaning}"
+            found[full] = replace(of_kind(q), meaning=meaning, name=full)
     for what, unit in WORK.items():
         for leg in interface.legs:
             full = f"leg[{leg}].main_strut.{what}"
@@ -170,6 +172,11 @@ def known_responses(interface: Interface = IN_A_PLANE) -> Mapping[str, Quantity]
         )
     found[RHS_CALLS.name] = RHS_CALLS
     return found
+
+
+def of_kind(q: Quantity) -> Quantity:
+    """A number of the unit of an output, without its bounds."""
+    return Quantity(q.unit, "", display_unit=q.display_unit)
 
 
 def expand(names: Sequence[str] | None, interface: Interface = IN_A_PLANE) -> tuple[str, ...]:
