@@ -99,6 +99,7 @@ bench: $(FMU)
 	$(BIN)/python benchmarks/bench_bridge.py
 	$(BIN)/python benchmarks/bench_quasi3d.py
 	$(BIN)/python benchmarks/bench_sweep.py 100 1000
+	$(BIN)/python benchmarks/bench_montecarlo.py
 
 # in build/dist: the source distribution, and portable wheels, which auditwheel examines
 wheels: $(VENV)/.core
@@ -119,6 +120,9 @@ docs: $(FMU)
 	rm -rf build/envelope
 	$(BIN)/rlv-landing envelope examples/envelope.toml --work build/envelope \
 	  --plot docs/envelope.png --force
+	rm -rf build/polar_envelope
+	$(BIN)/rlv-landing envelope examples/polar_envelope.toml --work build/polar_envelope \
+	  --plot docs/polar_envelope.png --force
 	$(BIN)/python examples/ship_deck/run.py --picture examples/ship_deck/ship_deck.png
 	$(BIN)/python docs/claims --update
 	$(BIN)/python docs/claims --update --slow

@@ -13,18 +13,24 @@ if TYPE_CHECKING:
     from .errors import LandingError
     from .landing import Landing
     from .parameters import Parameters
+    from .studies.many import land_many
 
 __version__ = "0.1.0"
 # of the model in FMI, where its user gives it no other
 MODEL_NAME = "RlvLanding"
-__all__ = ["Landing", "LandingError", "Parameters", "__version__", "load_preset"]
+__all__ = ["Landing", "LandingError", "Parameters", "__version__", "land_many", "load_preset"]
 # the modules of the names that are imported when they are asked for: the command line's first
 # lines come before all that takes time
-_MODULES = {"Landing": "landing", "LandingError": "errors", "Parameters": "parameters"}
+_MODULES = {
+    "Landing": "landing",
+    "LandingError": "errors",
+    "Parameters": "parameters",
+    "land_many": "studies.many",
+}
 
 
 def __getattr__(name: str) -> Any:
-    """`Landing`, `LandingError` or `Parameters`."""
+    """`Landing`, `LandingError`, `Parameters` or `land_many`."""
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from importlib import import_module

@@ -13,6 +13,7 @@ from ..history import History, joined
 from ..landing import Landing
 from .outcome import SETTLED, TOPPLED
 from .replay import ReplayedHistory
+from .standing import may_stand, stands
 
 CHECK_EVERY = 0.25
 # time between samples [s], at least, of what still rocks at REST_AFTER from its first contact
@@ -26,6 +27,7 @@ def whole_landing(
     *,
     decided: bool = True,
     progress: Callable[[float], object] | None = None,
+    standing: bool = False,
 ) -> ReplayedHistory:
     """Land from now until the vehicle is at rest, has toppled, or `until` [s].
 
@@ -41,6 +43,8 @@ def whole_landing(
         every: Time between samples [s].
         decided: Whether the landing may end before `until`.
         progress: Called with the time reached [s] on the way.
+        standing: Whether it may end where the vehicle stands, see `standing.stands`: before it is
+            at rest, where nothing but the ground at rest acts on it.
 
     Raises:
         LandingError: As `Landing.run`.
@@ -57,13 +61,15 @@ def whole_landing(
         until = contact + LONGEST_WAIT
     if not decided:
         return ReplayedHistory(landing.run(until, every, keep), landing, states)
-    parts: list[History] = []
-    for end, step in ((min(until, contact + REST_AFTER), every), (until, max(every, LATER_EVERY))):
-        for part in _checked(landing, end, step, keep):
-            parts.append(part)
-            if _is_decided(part["status.phase"]):
-                return ReplayedHistory(joined(parts), landing, states)
-    return ReplayedHistory(joined(parts or [landing.run(until, every, keep)]), landing, states)
+    standing = standing and may_stand(landing)
+    with landing.span() as extremes:
+        parts = list(_until_decided(landing, until, every, keep, standing=standing))
+        whole = joined(parts or [landing.sampled(until, every, keep)])
+        whole.extremes = extremes()
+    stood = standing and bool(parts) and stands(parts[-1])
+    return ReplayedHistory(
+        whole, landing, states, stands_from=len(whole) - len(parts[-1]) if stood else None
+    )
 
 
 def most_samples(until: float | None, every: float, *, decided: bool) -> float:
@@ -75,6 +81,23 @@ def most_samples(until: float | None, every: float, *, decided: bool) -> float:
     return min(end, REST_AFTER) / every + later
 
 
+def _until_decided(
+    landing: Landing,
+    until: float,
+    every: float,
+    keep: Callable[[float], object],
+    *,
+    standing: bool,
+) -> Iterator[History]:
+    """The landing in parts, until it is decided or `until` [s]; see `whole_landing`."""
+    contact = landing.parameters.drop.contact_time
+    for end, step in ((min(until, contact + REST_AFTER), every), (until, max(every, LATER_EVERY))):
+        for part in _checked(landing, end, step, keep):
+            yield part
+            if _is_decided(part["status.phase"]) or (standing and stands(part)):
+                return
+
+
 def _checked(
     landing: Landing, end: float, every: float, keep: Callable[[float], object]
 ) -> Iterator[History]:
@@ -82,7 +105,7 @@ def _checked(
     start, samples, checks = landing.time, max(1, round(CHECK_EVERY / every)), 0
     while end - landing.time > every * (1.0 - 1e-9):
         checks += 1
-        yield landing.run(min(start + checks * samples * every, end), every, keep)
+        yield landing.sampled(min(start + checks * samples * every, end), every, keep)
 
 
 def _is_decided(phase: NDArray[np.float64]) -> bool:
