@@ -120,6 +120,7 @@ docs: $(FMU)
 	$(BIN)/rlv-landing envelope examples/envelope.toml --work build/envelope \
 	  --plot docs/envelope.png --force
 	$(BIN)/python examples/ship_deck/run.py --picture examples/ship_deck/ship_deck.png
+	RLV_FMU=$(CURDIR)/$(FMU) $(BIN)/python docs/notebooks.py
 	$(BIN)/python docs/claims --update
 	$(BIN)/python docs/claims --update --slow
 

@@ -123,6 +123,8 @@ def main() -> None:
             ),
             err=True,
         )
+    # a notebook's choice for its own pictures, which may not be installed here; ours are files
+    os.environ["MPLBACKEND"] = "agg"
     sys.exit(run(cli))
 
 
