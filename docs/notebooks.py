@@ -26,8 +26,9 @@ def run(notebook: Path, folder: Path) -> NotebookNode:
         CellExecutionError: A cell fails.
     """
     made = nbformat.read(notebook, as_version=4)
-    # its commands are those beside this Python
-    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    # its commands are those beside this Python, its pictures in the page
+    environment = {name: value for name, value in os.environ.items() if name != "MPLBACKEND"}
+    environment["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
     with TemporaryDirectory(prefix="rlv_landing_") as sockets:
         # files, not ports, which others may take
         manager = {"transport": "ipc", "ip": str(Path(sockets) / "kernel")}
@@ -38,7 +39,7 @@ def run(notebook: Path, folder: Path) -> NotebookNode:
             timeout=300,
             resources={"metadata": {"path": str(folder)}},
         )
-        client.execute(env={**os.environ, "PATH": path})
+        client.execute(env=environment)
     made.metadata["language_info"] = {"name": "python"}
     for cell in made.cells:
         # times of the execution

@@ -124,7 +124,7 @@ def main() -> None:
             err=True,
         )
     # a notebook's choice for its own pictures, which may not be installed here; ours are files
-    os.environ["MPLBACKEND"] = "agg"
+    os.environ.pop("MPLBACKEND", None)
     sys.exit(run(cli))
 
 
