@@ -19,7 +19,7 @@ FMU_FILES := fmu_src/landing_fmu.py CHANGELOG.md LICENSE \
   $(shell find $(addprefix fmu_src/rlv_landing/,$(FOLDERS)) -name '*.py') \
   $(shell find fmu_src/fmu_build fmu_src/fmu_front -name '*.py' -o -name '*.j2' -o -name '*.[ch]')
 
-.PHONY: help run test lint torture bench wheels annotate coverage docs clean
+.PHONY: help run test lint torture bench wheels annotate coverage docs site clean
 help:
 	@echo "make run [MODE=2-2|1-2-1]  land the drop test: FMU, ROS 2 node, MCAP log, table, picture"
 	@echo "make test                  the whole suite"
@@ -31,6 +31,7 @@ help:
 	@echo "make coverage              coverage, measured on the pure core"
 	@echo "make docs                  pictures and marked numbers of README, docs and examples anew"
 	@echo "                           (some minutes; measured times are those of the last make bench)"
+	@echo "make site                  the documentation as a site with a search, in build/site"
 	@echo "make clean                 remove .venv and build (logs stay)"
 
 # what is missing is said in one line; a half-made environment is made anew
@@ -116,6 +117,7 @@ docs: $(FMU)
 	$(BIN)/rlv-landing simulate --mode 2-2 --plot docs/landing-2-2.png --force
 	$(BIN)/rlv-landing animate --mode 2-2 docs/landing-2-2.gif \
 	  --fps 20 --end 0.6 --width 880 --force
+	$(BIN)/rlv-landing draw yue2022-figures docs/vehicle.png --force
 	rm -rf build/envelope
 	$(BIN)/rlv-landing envelope examples/envelope.toml --work build/envelope \
 	  --plot docs/envelope.png --force
@@ -123,6 +125,10 @@ docs: $(FMU)
 	RLV_FMU=$(CURDIR)/$(FMU) $(BIN)/python docs/notebooks.py
 	$(BIN)/python docs/claims --update
 	$(BIN)/python docs/claims --update --slow
+
+# every warning of Sphinx is an error: a link that leads nowhere, a page without a place
+site: $(VENV)/.core
+	$(BIN)/python docs/site build/site
 
 clean:
 	rm -rf $(VENV) build fmu_src/rlv_landing/core/compiled.*

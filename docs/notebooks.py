@@ -40,7 +40,7 @@ def run(notebook: Path, folder: Path) -> NotebookNode:
             resources={"metadata": {"path": str(folder)}},
         )
         client.execute(env=environment)
-    made.metadata["language_info"] = {"name": "python"}
+    made.metadata["language_info"] = {"name": "python", "pygments_lexer": "ipython3"}
     for cell in made.cells:
         # times of the execution
         cell.metadata.pop("execution", None)
