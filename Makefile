@@ -14,7 +14,7 @@ SOURCES := fmu_src/fmu_build/sources.py
 MODULES := $(shell sed -n '/^MODULES = /,/^.$$/s/^ *"\(.*\)",/\1/p' $(SOURCES))
 FOLDERS := $(shell sed -n '/^FOLDERS = /s/[^"]*"\([^"]*\)"[^"]*/\1 /gp' $(SOURCES))
 FMU_FILES := fmu_src/landing_fmu.py CHANGELOG.md LICENSE \
-  $(addprefix fmu_src/rlv_landing/figures/,plots.py style.py) \
+  $(addprefix fmu_src/rlv_landing/figures/,plots.py style.py page.css) \
   $(addprefix fmu_src/rlv_landing/,$(MODULES)) \
   $(shell find $(addprefix fmu_src/rlv_landing/,$(FOLDERS)) -name '*.py') \
   $(shell find fmu_src/fmu_build fmu_src/fmu_front -name '*.py' -o -name '*.j2' -o -name '*.[ch]')
@@ -115,7 +115,7 @@ coverage: $(FMU) $(FMU3)
 
 docs: $(FMU)
 	$(BIN)/rlv-landing simulate --mode 2-2 --plot docs/landing-2-2.png --force
-	$(BIN)/rlv-landing animate --mode 2-2 docs/landing-2-2.gif \
+	$(BIN)/rlv-landing animate --mode 2-2 docs/landing-2-2.gif --view 3d \
 	  --fps 20 --end 0.6 --width 880 --force
 	$(BIN)/rlv-landing draw yue2022-figures docs/vehicle.png --force
 	rm -rf build/envelope
