@@ -20,6 +20,7 @@ from rlv_landing.presets import preset_names
 from rlv_landing.quantities import LEGS, MODES, PEAKS
 from rlv_landing.sizing import LIKE, leg_geometry, size_damper, size_vehicle
 from rlv_landing.studies.envelope.tip_over import RigidBlock
+from rlv_landing.studies.montecarlo.run import STEP
 from rlv_landing.studies.sweep.responses import expand
 from rlv_landing.touchdown import footpad_at_rest
 from rlv_landing.validation.paper import LEVELS, paper_counts_against_test, printed_scalars
@@ -95,6 +96,12 @@ def landed(like: str, what: str, factor: str) -> float:
 def responses() -> float:
     """The responses that a sweep has if its study names none."""
     return float(len(expand(None)))
+
+
+@quick
+def montecarlo_step() -> float:
+    """The runs of a Monte Carlo after which it is looked whether they are enough."""
+    return float(STEP)
 
 
 @quick

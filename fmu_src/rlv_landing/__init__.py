@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from .outputs import Extreme
     from .parameters import Parameters
     from .presets import read_toml
+    from .studies.many import land_many
 
 __version__ = "0.1.0"
 # of the model in FMI, where its user gives it no other
@@ -28,6 +29,7 @@ __all__ = [
     "LandingError",
     "Parameters",
     "__version__",
+    "land_many",
     "load_preset",
     "read_toml",
 ]
@@ -40,6 +42,7 @@ _MODULES = {
     "Landing": "landing",
     "LandingError": "errors",
     "Parameters": "parameters",
+    "land_many": "studies.many",
     "read_toml": "presets",
 }
 

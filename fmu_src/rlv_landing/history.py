@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from .assembly import DeckMotion
 from .errors import LandingError, unknown
 from .outputs import Extreme
 from .parameters import Parameters
@@ -44,7 +45,8 @@ class History:
         names: The columns' names.
         data: The columns, (n, names).
         parameters: The landing's parameters, where they are known.
-        ground: Motion of the ground from the first of the times on; by default it is at rest.
+        ground: Motion of the ground from the first of the times on, in space that of the deck; by
+            default it is at rest.
         stamps: The times in whole nanoseconds, (n,), where a log has them; else None.
         extremes: Extremes of outputs by name, over the whole span, also between the samples; None
             where there are samples only. A log has those of some outputs.
@@ -59,7 +61,7 @@ class History:
         names: Sequence[str],
         data: NDArray[np.float64],
         parameters: Parameters | None = None,
-        ground: GroundMotion = AT_REST,
+        ground: GroundMotion | DeckMotion = AT_REST,
         extremes: Mapping[str, Extreme] | None = None,
     ) -> None:
         if data.shape != (len(time), len(names)):

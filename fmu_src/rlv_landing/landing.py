@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from .assembly import begin, ground_motion, landing_system
-from .core import DormandPrince, Exponential, Inputs, Solver
+from .assembly import DeckMotion, begin, ground_motion, landing_system
+from .core import DormandPrince, Exponential, Inputs, Solver, SpatialInputs
 from .errors import LandingError, unknown
 from .events.search import EventSearch
 from .inputs.driven import DrivenInputs, Setting, changed_setting
@@ -327,6 +327,29 @@ class Landing:
             LandingError: `every` is not above 0, `until` is not ahead, the samples need more memory
                 than is free, or the landing would take longer than 30 days.
         """
+        with self.span() as extremes:
+            history = self.sampled(until, every, progress)
+            history.extremes = extremes()
+        return history
+
+    @contextmanager
+    def span(self) -> Iterator[Callable[[], dict[str, Extreme]]]:
+        """Keep the extremes of all outputs from now on, beside those from the start.
+
+        One span is kept at a time. It yields a function: the extremes from now to the present time
+        then, by name.
+        """
+        check_going(self._solver)
+        self._solver.open_span(self._time)
+        try:
+            yield lambda: self._reader.extremes_of_span(self._time)
+        finally:
+            self._solver.close_span()
+
+    def sampled(
+        self, until: float, every: float, progress: Callable[[float], object] | None = None
+    ) -> History:
+        """As `run`, without the extremes: `span` keeps those of several parts at once."""
         import numpy as np
 
         from .history import History
@@ -338,21 +361,19 @@ class Landing:
         check_going(self._solver)
         ground = self._ground(start)
         rows = np.empty((samples, row))
-        self._solver.open_span(start)
-        try:
-            self._record(rows.reshape(-1), start, every, samples, progress)
-            extremes = self._reader.extremes_of_span(self._time)
-        finally:
-            self._solver.close_span()
+        self._record(rows.reshape(-1), start, every, samples, progress)
         time: NDArray[float64] = np.array([start + k * every for k in range(samples)])
         data = self._reader.columns(rows)
-        return History(time, self.interface.output_names, data, self.parameters, ground, extremes)
+        return History(time, self.interface.output_names, data, self.parameters, ground)
 
-    def _ground(self, t: float) -> GroundMotion:
-        """The motion of the ground from time `t` [s] on, as it was set, in a symmetric landing."""
-        if self.parameters.drop.mode == SPACE:
-            return AT_REST
+    def _ground(self, t: float) -> GroundMotion | DeckMotion:
+        """The motion of the ground from time `t` [s] on, as it was set."""
         values, rates = self._inputs.setting(t)
+        if self.parameters.drop.mode == SPACE:
+            places = (*self.interface.positions, *self.interface.position_rates)
+            if not any(numbers[i] for numbers in (values, rates) for i in places):
+                return AT_REST
+            return DeckMotion(SpatialInputs(*values), SpatialInputs(*rates))
         return ground_motion(Inputs(*values), Inputs(*rates))
 
     def _record(

@@ -75,7 +75,10 @@ def state_of(solver: Solver, time: float, ways: Sequence[float]) -> array[float]
     kept = {name: float(getattr(solver, name)) for name in OF_SOLVER}
     kept |= {name: float(getattr(solver.system, name)) for name in OF_SYSTEM}
     header = StateHeader(time=time, **kept)
-    return array("d", itertools.chain(header, ways, *_arrays(solver)))
+    state = array("d", (*header, *ways))
+    for numbers in _arrays(solver):
+        state.frombytes(numbers.tobytes())
+    return state
 
 
 def load_state(

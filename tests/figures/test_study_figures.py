@@ -13,8 +13,8 @@ from matplotlib.image import imread
 from matplotlib.text import Text
 
 from rlv_landing import load_preset
-from rlv_landing.figures.envelope_figure import save_envelope
-from rlv_landing.figures.envelope_sides import _mesh
+from rlv_landing.figures.envelope.figure import save_envelope
+from rlv_landing.figures.envelope.sides import _mesh
 from rlv_landing.figures.sensitivity_figure import save_bars
 from rlv_landing.studies.envelope.search import envelope
 from rlv_landing.studies.envelope.study import Axis, EnvelopeStudy

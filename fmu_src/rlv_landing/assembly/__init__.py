@@ -17,11 +17,13 @@ from .planar import (
     planar_system,
 )
 from .spatial import spatial_system
+from .spatial_flight import DeckMotion
 from .start import begin, landing_system, new_solver
 
 __all__ = [
     "BODY_SCALE",
     "LEG_SCALE",
+    "DeckMotion",
     "bearing_nothing_at_rest",
     "begin",
     "body_model",

@@ -15,7 +15,6 @@ import click
 
 from .. import __version__
 from ..commands.audit import audit
-from ..commands.envelope import envelope
 from ..commands.examples import examples
 from ..commands.identification.identify import identify
 from ..commands.options import HELP_NAMES, Group
@@ -23,9 +22,11 @@ from ..commands.own_vehicle import draw, new
 from ..commands.parameters import parameters
 from ..commands.printing import BAD_INPUT, FAILED, exit_code
 from ..commands.report import report
-from ..commands.sensitivity import sensitivity
 from ..commands.simulate import simulate
-from ..commands.sweep import sweep
+from ..commands.studies.envelope import envelope
+from ..commands.studies.montecarlo import montecarlo
+from ..commands.studies.sensitivity import sensitivity
+from ..commands.studies.sweep import sweep
 from ..commands.validate import validate
 from ..core import COMPILED, WHY_NOT_COMPILED
 from ..core.freshness import how_to_compile
@@ -87,6 +88,7 @@ def cli(context: click.Context) -> None:
     rlv-landing audit                              energy, mass, momentum, rest, convergence
     rlv-landing sweep study.toml                   many landings: factors in, rows of responses out
     rlv-landing sensitivity study.toml             Sobol indices of the responses
+    rlv-landing montecarlo study.toml              rate of success, causes of loss, worst landings
     rlv-landing envelope examples/envelope.toml    the boundary between stable and lost landings
     rlv-landing fmu build --parameters mine.toml   the FMU of your own vehicle; fmu info, simulate
     rlv-landing node --mode 2-2                    the ROS 2 node: steps the FMU, publishes, records
@@ -104,7 +106,7 @@ def cli(context: click.Context) -> None:
 
 OWN = (
     *(new, draw, examples, simulate, report, parameters, validate, audit),
-    *(identify, sweep, sensitivity, envelope),
+    *(identify, sweep, sensitivity, montecarlo, envelope),
 )
 for command in OWN:
     cli.add_command(command)

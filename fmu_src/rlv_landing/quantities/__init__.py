@@ -31,7 +31,7 @@ from .outputs import (
 )
 from .peaks import PEAK_QUANTITIES, PEAKS, Peak
 from .quantity import BASE_UNITS, DISPLAY_UNITS, NOMINALS, Quantity, flat_name, shown, whole_name
-from .space import SPACE_INPUTS
+from .space import SPACE_INPUTS, SPACE_LEG_QUANTITIES
 from .statistics import STATISTIC_QUANTITIES
 
 __all__ = [
@@ -57,6 +57,7 @@ __all__ = [
     "SHARED_QUANTITIES",
     "SPACE",
     "SPACE_INPUTS",
+    "SPACE_LEG_QUANTITIES",
     "STATISTIC_QUANTITIES",
     "STATUS_QUANTITIES",
     "Interface",

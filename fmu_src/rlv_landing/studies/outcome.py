@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Literal, get_args
 
 import numpy as np
@@ -14,9 +13,9 @@ from ..core import Phase
 from ..errors import LandingError
 from ..history import History
 from ..landing import Landing
-from ..quantities import Quantity, azimuth, groups_of
-from ..touchdown import AT_REST
+from ..quantities import SPACE, Quantity
 from .limits import PassedLimit, first_limit_passed, time_passed
+from .on_ground import counted_legs, crossed_edge, joint_clearance, lean, slip
 from .replay import ReplayedHistory
 
 Array = NDArray[np.float64]
@@ -64,6 +63,11 @@ class Outcome:
     is in it); `joint_clearance`, the least height above the ground of the body's lowest leg joints,
     the lowest of the body that the model knows. The least margins are those of the landing, between
     its samples too.
+
+    Of a vehicle that toppled in space, `direction` [rad], from inertial x towards z, is that across
+    the edge of the footpads' polygon which its CG passed, and `edge` has the legs of that edge:
+    "legs 1, 2". One that turned over with its CG between its feet has no edge, and the direction in
+    which its axis leans.
     """
 
     name: Name
@@ -71,6 +75,8 @@ class Outcome:
     leg: int | None
     margins: Mapping[str, float]
     first_limit: PassedLimit | None
+    edge: str | None = None
+    direction: float | None = None
 
 
 def outcome(
@@ -101,7 +107,7 @@ def judged(
     if not slide >= 0.0:
         raise LandingError(f"slide = {slide:g} m must be 0 m or more")
     p = history.parameters
-    legs, joints = _legs(p.drop.mode)
+    legs = counted_legs(p)
     phase, margin = history["status.phase"], history["status.stability_margin"]
     least_margin = history.extreme("status.stability_margin").minimum
     toppled = bool(phase[-1] == TOPPLED)
@@ -110,7 +116,7 @@ def judged(
         end, history = _until_toppled(history)
     stop = p.main_strut.stroke_max
     strokes = {leg: history.extreme(_stroke(leg)).maximum for leg in legs}
-    slips = [_slip(history, leg) for leg in legs]
+    slips = [slip(history, leg) for leg in legs]
     bottomed = sorted(
         (time_passed(history, _stroke(leg), stop), leg) for leg, s in strokes.items() if s > stop
     )
@@ -119,7 +125,7 @@ def judged(
         "stability_end": float(margin[-1]),
         "stroke_left": stop - max(strokes.values()),
         "slid": max((float(s[-1]) for s in slips if len(s)), default=0.0),
-        "joint_clearance": _joint_clearance(history, joints),
+        "joint_clearance": joint_clearance(history),
     }
     first_slide = min(_first_beyond(s, slide, len(history)) for s in slips)
     name: Name
@@ -135,7 +141,13 @@ def judged(
         name, time = "moving", end
     leg = bottomed[0][1] if bottomed else None
     first_limit = first_limit_passed(history, legs, limits) if limits else None
-    return Outcome(name, time, leg, margins, first_limit), history
+    edge, direction = _over(history) if toppled and p.drop.mode == SPACE else (None, None)
+    return Outcome(name, time, leg, margins, first_limit, edge, direction), history
+
+
+def _over(history: History) -> tuple[str | None, float]:
+    """The edge over which a vehicle toppled in space, if any, and the direction [rad]."""
+    return crossed_edge(history) or (None, lean(history))
 
 
 def _stroke(leg: int) -> str:
@@ -162,69 +174,6 @@ def _first_beyond(slip: Array, slide: float, samples: int) -> int:
     if not len(slip) or not slip.max() > slide:
         return samples
     return samples - len(slip) + int(np.argmax(slip > slide))
-
-
-@lru_cache
-def _legs(mode: str) -> tuple[tuple[int, ...], tuple[float, ...]]:
-    """One leg of each group of mirror images, its lowest number, and the cosine of its azimuth."""
-    groups = sorted((min(leg for leg, _ in g.legs), azimuth(g.azimuth)[1]) for g in groups_of(mode))
-    return tuple(leg for leg, _ in groups), tuple(c for _, c in groups)
-
-
-def _slip(history: History, leg: int) -> Array:
-    """Distance [m] of the footpad from its first contact, relative to the ground, to the end.
-
-    It is empty for a footpad that never touches.
-    """
-    touching = history[f"leg[{leg}].contact.active"]
-    start = int(np.argmax(touching > 0.0))
-    if not touching[start] > 0.0:
-        return np.empty(0)
-    along, up, _ = _on_ground(history, *(history[f"leg[{leg}].footpad.{axis}"] for axis in "xy"))
-    x, y, z = (values[start:] for values in (along, up, history[f"leg[{leg}].footpad.z"]))
-    distance: Array = np.sqrt((x - x[0]) ** 2 + (y - y[0]) ** 2 + (z - z[0]) ** 2)
-    return distance
-
-
-def _on_ground(history: History, x: Array, y: Array) -> tuple[Array, Array, Array | float]:
-    """A point's position along the ground and height above it [m], and the ground's slope [rad].
-
-    Tilt and heave of the ground are included.
-
-    Args:
-        history: The landing.
-        x: The point along inertial x [m], (n,).
-        y: The point along inertial y (up) [m], (n,).
-    """
-    p = history.parameters
-    assert p is not None
-    slope: Array | float = p.ground.slope
-    if history.ground != AT_REST:
-        heave, tilt = history.ground.at(history.time - history.time[0])
-        slope, y = slope + tilt, y - heave
-    return x * np.cos(slope) - y * np.sin(slope), x * np.sin(slope) + y * np.cos(slope), slope
-
-
-def _joint_clearance(history: History, cosines: tuple[float, ...]) -> float:
-    """Least height [m] above the ground, along its normal, of the auxiliary struts' body joints."""
-    p = history.parameters
-    assert p is not None
-    radius, depth = p.auxiliary_strut.joint_radius, p.auxiliary_strut.joint_depth
-    _, height, slope = _on_ground(history, history["body.x"], history["body.y"])
-    turned = history["body.pitch"] - slope
-    height = height - depth * np.cos(turned)
-    sine = np.sin(turned)
-    return min(_least(history.time, height - radius * c * sine) for c in cosines)
-
-
-def _least(time: Array, values: Array) -> float:
-    """The least of a smooth quantity, by the parabola through the three lowest at even times."""
-    i = int(values.argmin())
-    if not 0 < i < len(values) - 1 or time[i + 1] - time[i] > 1.5 * (time[i] - time[i - 1]):
-        return float(values[i])
-    before, least, after = values[i - 1 : i + 2].tolist()
-    bend = before - 2.0 * least + after
-    return float(least - 0.125 * (after - before) ** 2 / bend) if bend > 0.0 else float(least)
 
 
 def _first_of_last_period(phase: Array, which: float) -> int:

@@ -49,13 +49,11 @@ def whole_landing(
         until = contact + LONGEST_WAIT
     if not decided:
         return ReplayedHistory(landing.run(until, every, keep), landing, states)
-    parts: list[History] = []
-    for end, step in ((min(until, contact + REST_AFTER), every), (until, max(every, LATER_EVERY))):
-        for part in _checked(landing, end, step, keep):
-            parts.append(part)
-            if _is_decided(part["status.phase"]):
-                return ReplayedHistory(joined(parts), landing, states)
-    return ReplayedHistory(joined(parts or [landing.run(until, every, keep)]), landing, states)
+    with landing.span() as extremes:
+        parts = list(_until_decided(landing, until, every, keep))
+        whole = joined(parts or [landing.sampled(until, every, keep)])
+        whole.extremes = extremes()
+    return ReplayedHistory(whole, landing, states)
 
 
 def most_samples(until: float | None, every: float, *, decided: bool) -> float:
@@ -67,6 +65,18 @@ def most_samples(until: float | None, every: float, *, decided: bool) -> float:
     return min(end, REST_AFTER) / every + later
 
 
+def _until_decided(
+    landing: Landing, until: float, every: float, keep: Callable[[float], object]
+) -> Iterator[History]:
+    """The landing in parts, until it is decided or `until` [s]; see `whole_landing`."""
+    contact = landing.parameters.drop.contact_time
+    for end, step in ((min(until, contact + REST_AFTER), every), (until, max(every, LATER_EVERY))):
+        for part in _checked(landing, end, step, keep):
+            yield part
+            if _is_decided(part["status.phase"]):
+                return
+
+
 def _checked(
     landing: Landing, end: float, every: float, keep: Callable[[float], object]
 ) -> Iterator[History]:
@@ -74,7 +84,7 @@ def _checked(
     start, samples, checks = landing.time, max(1, round(CHECK_EVERY / every)), 0
     while end - landing.time > every * (1.0 - 1e-9):
         checks += 1
-        yield landing.run(min(start + checks * samples * every, end), every, keep)
+        yield landing.sampled(min(start + checks * samples * every, end), every, keep)
 
 
 def _is_decided(phase: NDArray[np.float64]) -> bool:

@@ -11,11 +11,12 @@ import pytest
 from pytest import approx
 
 from rlv_landing import Landing, LandingError, load_preset
-from rlv_landing.studies.envelope.judged_landing import FAILED, JudgedLanding, judged_landing
+from rlv_landing.studies.criteria import CRITERIA, FAILED
+from rlv_landing.studies.envelope.judged_landing import JudgedLanding, judged_landing
 from rlv_landing.studies.envelope.results import record, stretches, verdict
 from rlv_landing.studies.envelope.search import Envelope, envelope
 from rlv_landing.studies.envelope.store import Store
-from rlv_landing.studies.envelope.study import CRITERIA, Axis, EnvelopeStudy, study_from
+from rlv_landing.studies.envelope.study import Axis, EnvelopeStudy, study_from
 from rlv_landing.studies.outcome import SEVERITY, outcome
 from rlv_landing.studies.whole_landing import whole_landing
 

@@ -28,7 +28,7 @@ ROW = "1,0,0,-1\n"
             "unknown factor 'drop.tlit'; did you mean drop.tilt?",
         ),
         (
-            LHS + '[[factor]]\nname = "external.force_z"\nlow = 0\nhigh = 1\n',
+            LHS + '[[factor]]\nname = "external.force_w"\nlow = 0\nhigh = 1\n',
             "did you mean external.force_",
         ),
         (

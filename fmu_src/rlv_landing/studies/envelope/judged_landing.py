@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from ...errors import LandingError
 from ...landing import Landing
-from ...parameters import PARAMETER_QUANTITIES
-from ...quantities import LEGS
+from ..criteria import FAILED, is_lost
 from ..limits import LIMITS, PassedLimit
-from ..outcome import SEVERITY, outcome
+from ..on_ground import towards
+from ..outcome import SEVERITY, judged
+from ..variables import is_parameter
 from ..whole_landing import whole_landing
 from .study import EnvelopeStudy
 
-FAILED = "failed"
-# outcomes that are lost by each criterion; a landing that the integrator could not make is always
-# lost
-LOST = {
-    "toppled": {"toppled", FAILED},
-    "bottomed out": {"toppled", "bottomed out", FAILED},
-    "slid": {"toppled", "bottomed out", "slid", FAILED},
-    "limit": {"toppled", FAILED},
-}
+SIDE = re.compile(r"(?:[+-]x|legs [1-8], [1-8]|-?\d{1,3} deg)?")
 
 
 @dataclass(frozen=True)
@@ -34,7 +28,8 @@ class JudgedLanding:
         name: As in `Outcome`, or `failed` where the integrator stopped.
         time: As in `Outcome` [s].
         leg: As in `Outcome`.
-        towards: The side, +x or -x, to which it toppled; else empty.
+        towards: The side to which it toppled: +x or -x, in space over which legs, "legs 1, 2", or
+            else the direction in which it leans, "30 deg"; empty where it did not topple.
         first_limit: As in `Outcome`.
         stability_min: Smallest stability margin [m].
         stroke_left: Least stroke left to a damper's stop [m].
@@ -52,9 +47,7 @@ class JudgedLanding:
 
     def lost(self, criterion: str) -> bool:
         """Whether the landing is lost by the criterion."""
-        return self.name in LOST[criterion] or (
-            criterion == "limit" and self.first_limit is not None
-        )
+        return is_lost(criterion, self.name, limit_passed=self.first_limit is not None)
 
     @property
     def condition(self) -> str:
@@ -63,7 +56,8 @@ class JudgedLanding:
         It names the side to which the vehicle topples, the leg that bottoms out first, and the
         limit that is passed first.
         """
-        parts = [f"topples to {self.towards}" if self.name == "toppled" else self.name]
+        way = "over" if self.towards.startswith("legs") else "to"
+        parts = [f"topples {way} {self.towards}" if self.name == "toppled" else self.name]
         if self.leg is not None:
             bottomed = f"leg {self.leg} bottoms out"
             parts = [bottomed] if self.name == "bottomed out" else [*parts, bottomed]
@@ -73,8 +67,8 @@ class JudgedLanding:
         return ", ".join(parts)
 
     @classmethod
-    def from_record(cls, record: Mapping[str, Any]) -> JudgedLanding:
-        """The landing of a record that `asdict` made.
+    def from_record(cls, record: Mapping[str, Any], legs: int) -> JudgedLanding:
+        """The landing of a record that `asdict` made, of a vehicle on so many `legs`.
 
         Raises:
             ValueError: The record is no landing's.
@@ -85,10 +79,10 @@ class JudgedLanding:
             found = cls(**{**record, "first_limit": passed})
         except (KeyError, TypeError) as e:
             raise ValueError(f"it is no landing: {e}") from None
-        found._check()
+        found._check(legs)
         return found
 
-    def _check(self) -> None:
+    def _check(self, most: int) -> None:
         limit = self.first_limit
         numbers = [self.time, self.stability_min, self.stroke_left]
         legs = [self.leg]
@@ -101,10 +95,12 @@ class JudgedLanding:
             raise ValueError(f"{self.name!r} is no outcome")
         if not all(type(v) in (int, float) for v in numbers):
             raise ValueError("its times, margins and limits are no numbers")
-        if not all(leg is None or (type(leg) is int and leg in LEGS) for leg in legs):
-            raise ValueError(f"leg {self.leg!r} is none of {len(LEGS)}")
-        if self.towards not in ("", "+x", "-x") or not isinstance(self.error, str):
+        if not all(leg is None or (type(leg) is int and 1 <= leg <= most) for leg in legs):
+            raise ValueError(f"leg {self.leg!r} is none of {most}")
+        if not isinstance(self.towards, str) or not SIDE.fullmatch(self.towards):
             raise ValueError(f"{self.towards!r} is no side")
+        if not isinstance(self.error, str):
+            raise ValueError(f"{self.error!r} is no text")
 
 
 def judged_landing(study: EnvelopeStudy, values: Mapping[str, float | str]) -> JudgedLanding:
@@ -118,7 +114,7 @@ def judged_landing(study: EnvelopeStudy, values: Mapping[str, float | str]) -> J
         LandingError: The values make no landing: out of bounds, or the flight starts below the
             ground.
     """
-    own = {name: float(value) for name, value in values.items() if name not in PARAMETER_QUANTITIES}
+    own = {name: float(value) for name, value in values.items() if not is_parameter(name)}
     inputs = {**study.inputs, **own}
     parameters = study.parameters_with(values)
     landing = Landing(parameters, rtol=study.rtol, inputs=inputs)
@@ -126,17 +122,17 @@ def judged_landing(study: EnvelopeStudy, values: Mapping[str, float | str]) -> J
         history = whole_landing(landing, study.until, study.every)
     except LandingError as e:
         return JudgedLanding(FAILED, landing.time, error=str(e))
-    found = outcome(history, study.limits, study.slide)
-    towards = ""
+    found, before = judged(history, study.limits, study.slide)
+    side = ""
     if found.name == "toppled":
-        slope = parameters.ground.slope + history.ground.at(history.time[-1])[1]
-        towards = "+x" if history["body.pitch"][-1] > slope else "-x"
+        # in space where it passed its feet: what it does after that says nothing
+        side = towards(before if found.direction is not None else history)
     margins = found.margins
     return JudgedLanding(
         name=found.name,
         time=found.time,
         leg=found.leg,
-        towards=towards,
+        towards=side,
         first_limit=found.first_limit,
         stability_min=margins["stability_min"],
         stroke_left=margins["stroke_left"],

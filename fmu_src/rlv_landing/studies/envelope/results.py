@@ -13,11 +13,12 @@ from typing import Any
 
 from ...quantities import shown
 from ...text.durable import text_of, whole_file, write_durably
+from ..criteria import CRITERIA, FAILED
 from ..limits import LIMITS
 from ..outcome import SEVERITY
-from .judged_landing import FAILED, JudgedLanding
+from .judged_landing import JudgedLanding
 from .search import Critical, Envelope, Family
-from .study import CRITERIA, EnvelopeStudy
+from .study import EnvelopeStudy
 
 NAMES = (*SEVERITY, FAILED)
 COLUMNS = ("condition", "outcome", "outcome_time", "leg", "limit", "limit_leg", "limit_time")

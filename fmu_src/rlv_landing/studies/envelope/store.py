@@ -90,7 +90,7 @@ class Store:
         try:
             record = json.loads(line)
             key = self._key(record)
-            landing = JudgedLanding.from_record(record["landed"])
+            landing = JudgedLanding.from_record(record["landed"], self._study.most_legs)
             if not _same(self.found.setdefault(key, landing), landing):
                 raise ValueError("it contradicts a line before it")
             if record["check"] != check_sum(record):

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
-from math import ceil, log2, prod
+from math import ceil, log2, pi, prod
 from pathlib import Path
 from typing import Any
 
@@ -20,19 +20,22 @@ from ...presets import to_toml
 from ...quantities import Quantity
 from ...text.values import check_together, is_number, parse_value, parse_values
 from .. import toml_keys
+from ..criteria import CRITERIA
 from ..limits import LIMITS
 from ..outcome import DEFAULT_SLIDE, SLIDE
-from ..sweep.factors import VARIABLES, variable
+from ..variables import (
+    DIRECTION,
+    POLAR,
+    VARIABLES,
+    check_variables,
+    is_parameter,
+    resolved,
+    variable,
+)
 from .boundary import Lattice
 
-# the landings that are lost by each criterion, which includes the severer outcomes
-CRITERIA = {
-    "toppled": "the vehicle topples",
-    "bottomed out": "a damper meets its stop, or the vehicle topples",
-    "slid": "a footpad slides too far, a damper meets its stop, or the vehicle topples",
-    "limit": "one of the limits is passed, or the vehicle topples",
-}
 FINEST = 20
+LEGS = "vehicle.legs"
 # a boundary: 9 landings or more of 1 ms or more; its values, landings and parameters
 LEAST_SECONDS = 9e-3
 BYTES_PER_FAMILY = 1000.0
@@ -97,7 +100,7 @@ class EnvelopeStudy:
     """Everything that decides an envelope; values in SI.
 
     The flight before the first contact is left out: the axes are states at first contact.
-    `families` are values by name, one boundary each.
+    `families` are values by name, one boundary each; `polar` are a constant speed or direction.
 
     Raises:
         LandingError: A criterion or limit is unknown, `limit` has no limits, cells or levels are
@@ -109,6 +112,7 @@ class EnvelopeStudy:
     y: Axis
     families: tuple[Mapping[str, float | str], ...] = ({},)
     inputs: Mapping[str, float] = field(default_factory=dict)
+    polar: Mapping[str, float] = field(default_factory=dict)
     criterion: str = "toppled"
     limits: Mapping[str, float] = field(default_factory=dict)
     cells: int = 8
@@ -133,6 +137,7 @@ class EnvelopeStudy:
             if given.count(name) > 1:
                 raise LandingError(f"{name} is given twice, as an axis or in families; leave one")
         for family in self.families:
+            check_variables([*given, *self.inputs, *self.polar], [self.mode_of(family)])
             self.parameters_with(family)
 
     def parameters_with(self, values: Mapping[str, Any]) -> Parameters:
@@ -140,9 +145,30 @@ class EnvelopeStudy:
 
         The landing starts at its first contact.
         """
-        own = {name: value for name, value in values.items() if name in PARAMETER_QUANTITIES}
-        base = self.parameters.for_mode(str(own.get("drop.mode", self.parameters.drop.mode)))
+        base = self.parameters.for_mode(self.mode_of(values))
+        changed = resolved({**self.polar, **values}, base)
+        own = {name: value for name, value in changed.items() if name in PARAMETER_QUANTITIES}
         return base.with_values({"drop.contact_time": 0.0, **own})
+
+    def mode_of(self, values: Mapping[str, Any]) -> str:
+        """The landing mode of these values."""
+        return str(values.get("drop.mode", self.parameters.drop.mode))
+
+    @property
+    def most_legs(self) -> int:
+        """The legs of the vehicle; where they vary, the most."""
+        varied = [axis.high for axis in (self.x, self.y) if axis.name == LEGS]
+        given = [float(family[LEGS]) for family in self.families if LEGS in family]
+        return int(max(varied or given or [self.parameters.vehicle.legs]))
+
+    @property
+    def is_polar(self) -> bool:
+        """Whether the axes are a speed and its direction, of one turn at most."""
+        axes = {self.x.name: self.x, self.y.name: self.y}
+        if axes.keys() != set(POLAR):
+            return False
+        turn = axes[DIRECTION.name]
+        return turn.high - turn.low <= 2.0 * pi * (1.0 + 1e-9)
 
     @property
     def lattice(self) -> Lattice:
@@ -173,7 +199,7 @@ class EnvelopeStudy:
             "x": vars(self.x),
             "y": vars(self.y),
             "families": [dict(f) for f in self.families],
-            "inputs": dict(self.inputs),
+            "inputs": {**self.inputs, **self.polar},
             "criterion": self.criterion,
             "limits": dict(self.limits),
             "cells": self.cells,
@@ -219,7 +245,8 @@ def study_from(document: Mapping[str, Any], folder: Path = Path()) -> EnvelopeSt
         x,
         y,
         families,
-        inputs={n: float(v) for n, v in fixed.items() if n not in PARAMETER_QUANTITIES},
+        inputs={n: float(v) for n, v in fixed.items() if not is_parameter(n)},
+        polar={n: float(v) for n, v in fixed.items() if n in POLAR},
         criterion=toml_keys.text(keys, "criterion", "toppled"),
         limits={name: float(v) for name, v in limits.items()},
         cells=toml_keys.integer(keys, "cells", 8, 2, 256),

@@ -11,16 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import LandingError, unknown
-from ...parameters import PARAMETER_QUANTITIES, check_value
-from ...quantities import INPUTS_BY_NAME, Quantity, shown
+from ...parameters import check_value
+from ...quantities import Quantity, shown
 from ...text.values import check_together, is_number, to_si, unit_of
 from .. import toml_keys
+from ..variables import VARIABLES, variable
 
 Array = NDArray[np.float64]
 # most points of a study
 LARGEST = 100_000_000
-# quantities that a study may vary or set: every parameter, and every input as a constant
-VARIABLES: dict[str, Quantity] = {**PARAMETER_QUANTITIES, **INPUTS_BY_NAME}
 DISTRIBUTIONS = {
     "uniform": ("low", "high", "count"),
     "normal": ("mean", "deviation", "low", "high"),
@@ -109,21 +108,6 @@ def column(values: Any) -> NDArray[Any]:
     """Values as an array: of floats, or of objects where a text is among them."""
     values = list(values)
     return np.array(values, dtype=object if any(isinstance(v, str) for v in values) else float)
-
-
-def variable(name: Any, what: str) -> Quantity:
-    """The quantity of this name.
-
-    Args:
-        name: The name.
-        what: The word for it in the error.
-
-    Raises:
-        LandingError: There is no such quantity that can be varied; the message names the nearest.
-    """
-    if not isinstance(name, str) or name not in VARIABLES:
-        raise unknown(what, name, VARIABLES)
-    return VARIABLES[name]
 
 
 def read_factor(entry: Mapping[str, Any]) -> Factor:

@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
 from ...errors import LandingError, unknown
 from ...history import History
 from ...outputs import Extreme
-from ...quantities import LEG_QUANTITIES, LEGS, OUTPUT_QUANTITIES, Quantity, groups_of
+from ...quantities import (
+    LEG_QUANTITIES,
+    MODES,
+    MOST_LEGS,
+    SPACE,
+    SPACE_LEG_QUANTITIES,
+    Interface,
+    Quantity,
+    groups_of,
+    interface_of,
+)
 from ...validation.measures import first_push, leg_work
 from ..outcome import TOPPLED, Outcome, judged
 
@@ -35,8 +46,21 @@ OUTCOME = (
     ),
     Quantity("s", "time at which it was passed", name="outcome.first_limit_time"),
     *(
-        Quantity("m", f"{name.replace('_', ' ')}, see Outcome", name=f"margin.{name}")
+        Quantity(
+            "m", f"{name.replace('_', ' ')}, see Outcome", name=f"margin.{name}", display_unit="mm"
+        )
         for name in MARGINS
+    ),
+)
+OUTCOME_IN_SPACE = (
+    Quantity(
+        "", "legs of the edge over which the vehicle toppled", name="outcome.edge", kind="string"
+    ),
+    Quantity(
+        "rad",
+        "direction in which it toppled, from inertial x towards z",
+        name="outcome.direction",
+        display_unit="deg",
     ),
 )
 RHS_CALLS = Quantity(
@@ -80,12 +104,30 @@ DEFAULT = (
 )
 
 
+DEFAULT_IN_SPACE = (
+    *DEFAULT,
+    "body.roll.abs_max",
+    "body.roll.final",
+    "body.heading.final",
+    "body.z.final",
+    "leg[*].auxiliary_strut.transverse_force.abs_max",
+)
+# of symmetric landings
+IN_A_PLANE = interface_of(min(MODES))
+
+
 @cache
-def known_responses() -> Mapping[str, Quantity]:
-    """Every response by name.
+def every_response() -> Mapping[str, Quantity]:
+    """The responses of landings of any mode, on any legs, by name."""
+    return {**known_responses(interface_of(SPACE, MOST_LEGS)), **known_responses()}
+
+
+@cache
+def known_responses(interface: Interface = IN_A_PLANE) -> Mapping[str, Quantity]:
+    """Every response by name, of landings with these outputs.
 
     - `OUTPUT.min`, `.max`, `.abs_max`, `.final`, `.min_time`, `.max_time` of every output; `legs.…`
-      is the extreme over the four legs. Extremes are those of the landing, between its samples too.
+      is the extreme over all legs. Extremes are those of the landing, between its samples too.
     - `leg[N].main_strut.absorbed`, `.dissipated`, `.efficiency` are of a damper's first compression
       and rebound, found in its stroke's curve; `legs.…` is their sum over the legs.
     - `leg[N].main_strut.first_stroke` says how far the landing shows them: `complete`,
@@ -93,21 +135,21 @@ def known_responses() -> Mapping[str, Quantity]:
     - `leg[N].contact.time` is the first time at which the ground pushes on a footpad.
     - `outcome`, `outcome.…` and `margin.…` are those of `Outcome`.
     """
-    found = {q.name: q for q in OUTCOME}
-    for q in OUTPUT_QUANTITIES:
+    of_space = OUTCOME_IN_SPACE if interface.in_space else ()
+    found = {q.name: q for q in (*OUTCOME, *of_space)}
+    for q in interface.outputs:
         for name, words in REDUCTIONS.items():
-            unit = "s" if name.endswith("time") else q.unit
-            found[f"{q.name}.{name}"] = Quantity(
-                unit, f"{words} {q.meaning}", name=f"{q.name}.{name}"
-            )
-    for q in LEG_QUANTITIES:
+            full = f"{q.name}.{name}"
+            found[full] = replace(of_kind(q), meaning=f"{words} {q.meaning}", name=full)
+            if name.endswith("time"):
+                found[full] = replace(found[full], unit="s", display_unit="")
+    for q in SPACE_LEG_QUANTITIES if interface.in_space else LEG_QUANTITIES:
         for name in OVER_LEGS:
             full = f"legs.{q.name}.{name}"
-            found[full] = Quantity(
-                q.unit, f"{REDUCTIONS[name]} of all legs: {q.meaning}", name=full
-            )
+            meaning = f"{REDUCTIONS[name]} of all legs: {q.meaning}"
+            found[full] = replace(of_kind(q), meaning=meaning, name=full)
     for what, unit in WORK.items():
-        for leg in LEGS:
+        for leg in interface.legs:
             full = f"leg[{leg}].main_strut.{what}"
             found[full] = Quantity(
                 unit, f"leg {leg}'s damper, first compression and rebound: {what}", name=full
@@ -116,7 +158,7 @@ def known_responses() -> Mapping[str, Quantity]:
             found[f"legs.main_strut.{what}"] = Quantity(
                 unit, f"{what} by all dampers together", name=f"legs.main_strut.{what}"
             )
-    for leg in LEGS:
+    for leg in interface.legs:
         full = f"leg[{leg}].main_strut.first_stroke"
         found[full] = Quantity(
             "",
@@ -132,22 +174,34 @@ def known_responses() -> Mapping[str, Quantity]:
     return found
 
 
-def expand(names: Sequence[str] | None) -> tuple[str, ...]:
+def of_kind(q: Quantity) -> Quantity:
+    """A number of the unit of an output, without its bounds."""
+    return Quantity(q.unit, "", display_unit=q.display_unit)
+
+
+def expand(names: Sequence[str] | None, interface: Interface = IN_A_PLANE) -> tuple[str, ...]:
     """Names of responses in the order given, with patterns expanded.
 
     `leg[*]` stands for each leg, a trailing `.*` for all names below. None is the default set.
 
+    Args:
+        names: Names and patterns.
+        interface: The outputs of the landings.
+
     Raises:
         LandingError: A response does not exist (the message names the nearest), or is named twice.
     """
-    known = known_responses()
+    known = known_responses(interface)
+    default = DEFAULT_IN_SPACE if interface.in_space else DEFAULT
     found: list[str] = []
-    for name in DEFAULT if names is None else names:
+    for name in default if names is None else names:
         if name.endswith(".*"):
             matching = [k for k in known if k.startswith(name[:-1])]
         else:
             matching = (
-                [name.replace("[*]", f"[{leg}]") for leg in LEGS] if "[*]" in name else [name]
+                [name.replace("[*]", f"[{leg}]") for leg in interface.legs]
+                if "[*]" in name
+                else [name]
             )
         for one in matching or [name]:
             if one not in known:
@@ -201,21 +255,23 @@ class Measure:
         for name, taken in zip(self.names, self._reductions):
             if taken is None:
                 values.append(others[name] if name in others else _contact_time(history, name))
+                continue
+            output, reduction = taken
+            if output.startswith("legs."):
+                own = [output.replace("legs.", f"leg[{n}].", 1) for n in history.legs]
+                numbers = (_reduced(history, one, reduction) for one in own)
+                values.append(OVER_LEGS[reduction](numbers))
             else:
-                reduction, outputs = taken
-                numbers = [_reduced(history, output, reduction) for output in outputs]
-                values.append(numbers[0] if len(numbers) == 1 else OVER_LEGS[reduction](numbers))
+                values.append(_reduced(history, output, reduction) if output in history else None)
         return values
 
 
-def _reduction_of(name: str) -> tuple[str, list[str]] | None:
-    """The reduction of a response and the outputs that it is of; None for other responses."""
+def _reduction_of(name: str) -> tuple[str, str] | None:
+    """The output of a response and its reduction; None for other responses."""
     output, _, reduction = name.rpartition(".")
     if reduction not in REDUCTIONS or output.partition(".")[0] in ("outcome", "margin"):
         return None
-    if output.startswith("legs."):
-        return reduction, [output.replace("legs.", f"leg[{leg}].", 1) for leg in LEGS]
-    return reduction, [output]
+    return output, reduction
 
 
 def _reduced(history: History, output: str, reduction: str) -> float:
@@ -233,13 +289,15 @@ def _outcome_values(found: Outcome) -> dict[str, Any]:
         "outcome.leg": found.leg,
         "outcome.first_limit": None if limit is None else leg + limit.name,
         "outcome.first_limit_time": None if limit is None else limit.time,
+        "outcome.edge": found.edge,
+        "outcome.direction": found.direction,
         **{f"margin.{name}": value for name, value in found.margins.items()},
     }
 
 
 def _contact_time(history: History, name: str) -> float | None:
     leg = int(name.removeprefix("leg[").partition("]")[0])
-    first = first_push(history, leg)
+    first = first_push(history, leg) if leg in history.legs else None
     return None if first is None else float(history.time[first])
 
 
@@ -251,11 +309,14 @@ def _work_values(history: History) -> dict[str, Any]:
     """
     assert history.parameters is not None
     values: dict[str, Any] = {}
-    groups = groups_of(history.parameters.drop.mode)
-    found = leg_work(history, [group.legs[0][0] for group in groups])
+    mode = history.parameters.drop.mode
+    groups: list[tuple[int, ...]] = [(leg,) for leg in history.legs]
+    if mode != SPACE:
+        groups = [tuple(leg for leg, _ in group.legs) for group in groups_of(mode)]
+    found = leg_work(history, [group[0] for group in groups])
     for group in groups:
-        work = found.get(group.legs[0][0])
-        for leg, _ in group.legs:
+        work = found.get(group[0])
+        for leg in group:
             name = f"leg[{leg}].main_strut"
             values[f"{name}.first_stroke"] = "not compressed" if work is None else work.state
             for what in WORK:
@@ -265,7 +326,7 @@ def _work_values(history: History) -> dict[str, Any]:
             0.0
             if values[f"leg[{leg}].main_strut.first_stroke"] == "not compressed"
             else values[f"leg[{leg}].main_strut.{what}"]
-            for leg in LEGS
+            for leg in history.legs
         ]
         values[f"legs.main_strut.{what}"] = None if None in terms else sum(terms)
     return values

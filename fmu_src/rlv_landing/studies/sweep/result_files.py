@@ -22,6 +22,7 @@ from typing import Any
 from ...errors import LandingError, reason_of
 from ...text.durable import LOCK, PART, FolderLock, unwritable, whole_file, write_durably
 from ...text.files import read_record
+from .factors import LARGEST
 from .parts import (
     check_part,
     check_results,
@@ -43,15 +44,19 @@ PART_SECONDS = 1.0
 class Results:
     """The rows of a study in `folder`, which is created, or continued by `resume`.
 
-    It is a context manager: on leaving, the rows in memory are written.
+    It is a context manager: on leaving, the rows in memory are written. Those of a study that
+    `grows` may be more than its landings; a file of fewer is continued.
 
     Raises:
         LandingError: The folder has a study and `resume` is not given, or another study or other
             files; or it is in use, damaged or cannot be written.
     """
 
-    def __init__(self, folder: Path, task: Task, *, resume: bool = False) -> None:
+    def __init__(
+        self, folder: Path, task: Task, *, resume: bool = False, grows: bool = False
+    ) -> None:
         self.folder = folder
+        self._most = LARGEST if grows else len(task)
         self.count = len(task)
         about = task.about()
         self._about = {"fingerprint": fingerprint(about), **about}
@@ -141,11 +146,18 @@ class Results:
         """The ranges of indices that are done already; a new study's files are written."""
         parts = self.folder / PARTS
         if (self.folder / RESULTS).exists():
-            check_results(
-                self.folder / RESULTS, self._about["fingerprint"], self._table.schema, self.count
+            rows = check_results(
+                self.folder / RESULTS,
+                self._about["fingerprint"],
+                self._table.schema,
+                (self.count, self._most),
             )
-            self._remove_parts()
-            return [(0, self.count)]
+            if rows >= self.count:
+                self.count = rows
+                self._remove_parts()
+                return [(0, rows)]
+            parts.mkdir(exist_ok=True)
+            (self.folder / RESULTS).replace(parts / part_name(0))
         if not (self.folder / STUDY).exists():
             write_durably(self.folder / COPY, self._text.encode())
             write_durably(self.folder / STUDY, json.dumps(self._about, indent=1).encode())
@@ -155,8 +167,9 @@ class Results:
         for path in part_files(parts):
             after = ranges[-1][1] if ranges else 0
             ranges.append(
-                check_part(path, self._about["fingerprint"], self._table.schema, self.count, after)
+                check_part(path, self._about["fingerprint"], self._table.schema, self._most, after)
             )
+        self.count = max([self.count, *(last for _, last in ranges)])
         return ranges
 
     @property

@@ -258,7 +258,7 @@ def numeric_responses(study: Study, wanted: Sequence[str]) -> tuple[str, ...]:
         LandingError: A response is not the study's (the message names the nearest) or is a text, or
             there is no response that is a number.
     """
-    known = known_responses()
+    known = known_responses(study.interface)
     for name in wanted:
         if name not in study.responses:
             raise unknown("response of this study", name, study.responses)
@@ -281,5 +281,5 @@ def left_out(study: Study, wanted: Sequence[str]) -> list[str]:
 
 
 def _numbers(study: Study) -> list[str]:
-    known = known_responses()
+    known = known_responses(study.interface)
     return [name for name in study.responses if known[name].kind == "real"]

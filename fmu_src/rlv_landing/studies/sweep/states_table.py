@@ -15,15 +15,28 @@ from ...errors import LandingError, reason_of
 from ...text.files import read_csv
 from ...text.units import UnitError, parse_number
 from ...text.values import check_row, number_in_si, split_heading, unit_of
+from ..variables import POLAR, variable
 from .design import Design
 from .extras import arrow
-from .factors import column, variable
+from .factors import column
 
 # the quantities of a touchdown state: a table has all of them, or the study sets the others
 STATE = ("drop.tilt", "drop.pitch_rate", "drop.horizontal_velocity", "drop.vertical_velocity")
+STATE_IN_SPACE = (
+    *STATE,
+    "drop.lateral_velocity",
+    "drop.heading",
+    "drop.roll",
+    "drop.roll_rate",
+    "drop.yaw_rate",
+)
+# what POLAR may give instead
+VELOCITY = ("drop.horizontal_velocity", "drop.lateral_velocity")
 
 
-def read_states(path: Path, ignored: Collection[str], given: Collection[str]) -> Design:
+def read_states(
+    path: Path, ignored: Collection[str], given: Collection[str], *, in_space: bool = False
+) -> Design:
     """The table's rows as a design.
 
     A heading is a name and, in brackets, a unit (default SI): `drop.tilt [deg]`. A value that is no
@@ -33,6 +46,7 @@ def read_states(path: Path, ignored: Collection[str], given: Collection[str]) ->
         path: The table, .csv or .parquet.
         ignored: Columns to skip.
         given: Quantities that are given elsewhere; a touchdown state needs no column for these.
+        in_space: Whether the state is that of a landing in space.
 
     Raises:
         LandingError: A missing or unreadable file, an unknown or doubled column, a wrong unit, a
@@ -67,7 +81,10 @@ def read_states(path: Path, ignored: Collection[str], given: Collection[str]) ->
         columns[q.name] = column(
             v if found is None or isinstance(v, str) else number_in_si(q, v, found) for v in values
         )
-    missing = [name for name in STATE if name not in columns and name not in given]
+    known = {*columns, *given}
+    if known.issuperset(POLAR):
+        known.update(VELOCITY)
+    missing = [name for name in (STATE_IN_SPACE if in_space else STATE) if name not in known]
     if missing:
         raise LandingError(
             f"{path} has no column {', '.join(missing)}; a touchdown state needs it: "

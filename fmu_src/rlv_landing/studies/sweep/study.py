@@ -5,7 +5,7 @@ It is read from TOML and checked before anything runs.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -17,16 +17,18 @@ from ...effort import duration_text
 from ...errors import LandingError, unknown
 from ...parameters import PARAMETER_QUANTITIES, Parameters
 from ...presets import to_toml
-from ...quantities import MODES, Quantity, groups_of
+from ...quantities import MODES, MOST_LEGS, SPACE, Interface, Quantity, interface_of
 from ...text.files import LARGEST_INTEGER
 from .. import toml_keys
 from ..limits import LIMITS
 from ..outcome import SLIDE
+from ..variables import VARIABLES, check_variables
 from .design import LEAST_SECONDS, Design, drawn, grid
-from .factors import LARGEST, VARIABLES, Factor, read_factor
+from .factors import LARGEST, Factor, read_factor
 from .responses import expand
 from .states_table import read_states
 
+LEGS = "vehicle.legs"
 METHODS = ("grid", "lhs", "sobol", "table")
 TABLES = ("study", "set", "limits", "factor")
 UNTIL = Quantity("s", "end of each landing", 1e-6, 3600.0, name="until", display_unit="s")
@@ -69,6 +71,7 @@ class Study:
         seed: Seed of the points.
         parameters: The parameters that are not varied.
         modes: Landing modes, each landed for every sample; empty where the mode is varied.
+        interface: The outputs of the landings; of legs that are varied, as many as there may be.
         until: End of each landing [s]; None: when it is decided.
         every: Time between samples [s].
         rtol: Relative tolerance of the integrator.
@@ -87,6 +90,7 @@ class Study:
     seed: int
     parameters: Parameters
     modes: tuple[str, ...]
+    interface: Interface = field(compare=False)
     until: float | None
     every: float
     rtol: float
@@ -169,7 +173,16 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
     factors = tuple(read_factor(entry) for entry in toml_keys.tables(document, "factor"))
     given = [*fixed, *(f.name for f in factors)]
     _check_given_once(given)
-    table = _states(keys, method, path, given)
+    # a table says which quantities it has after its mode is known
+    parameters = _parameters(keys, path, fixed)
+    modes = _modes(keys, parameters, {*given})
+    landed = landed_modes(modes, parameters, fixed, factors)
+    table = _states(keys, method, path, given, in_space=SPACE in landed)
+    columns = table.columns if table is not None else {}
+    if "drop.mode" in columns:
+        modes = _modes(keys, parameters, {*given, *columns})
+        landed = landed_modes(modes, parameters, fixed, factors, columns)
+    check_variables([*given, *columns], landed)
     if table is None and not factors:
         raise LandingError(
             "the study varies nothing; add a [[factor]], "
@@ -178,7 +191,6 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
     samples = _samples(keys, method)
     if method == "grid":
         grid(factors)
-    parameters = _parameters(keys, path, fixed)
     numbers = {name: toml_keys.number(keys, q) for name, q in NUMBERS.items()}
     until = toml_keys.number(keys, UNTIL) if "until" in keys else None
     _check_samples_apart(numbers["every"], until)
@@ -192,8 +204,9 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
         samples=samples,
         seed=toml_keys.integer(keys, "seed", 1, 0, 2**31 - 1),
         parameters=parameters,
-        modes=_modes(keys, parameters, {*given, *(table.columns if table is not None else ())}),
-        responses=expand(toml_keys.texts(keys, "responses")),
+        modes=modes,
+        interface=(interface := interface_for(landed, parameters, factors, columns)),
+        responses=expand(toml_keys.texts(keys, "responses"), interface),
         limits={name: float(v) for name, v in limits.items()},
         fixed=fixed,
         factors=factors,
@@ -220,8 +233,49 @@ def _check_samples_apart(every: float, until: float | None) -> None:
         )
 
 
+def landed_modes(
+    modes: tuple[str, ...],
+    parameters: Parameters,
+    fixed: Mapping[str, float | str],
+    factors: Iterable[Factor],
+    columns: Mapping[str, Iterable[Any]] | None = None,
+) -> set[str]:
+    """The modes that a study lands with, all symmetric, or all in space.
+
+    Raises:
+        LandingError: Landings of both kinds, which have other responses.
+    """
+    given: set[Any] = {*modes}
+    if not modes:
+        given.update({fixed["drop.mode"]} if "drop.mode" in fixed else ())
+        given.update(*(f.values for f in factors if f.name == "drop.mode"))
+        given.update((columns or {}).get("drop.mode", ()))
+    known = {mode for mode in given if mode in (*MODES, SPACE)} or {parameters.drop.mode}
+    if SPACE in known and len(known) > 1:
+        raise LandingError(
+            f"a study lands with {', '.join(sorted(known))}, and landings in space have other "
+            "responses than symmetric ones; make a study of each"
+        )
+    return known
+
+
+def interface_for(
+    modes: Iterable[str],
+    parameters: Parameters,
+    factors: Iterable[Factor] = (),
+    columns: Mapping[str, Iterable[Any]] | None = None,
+) -> Interface:
+    """The outputs of a study's landings, on as many legs as one of them may have."""
+    legs: list[float] = [parameters.vehicle.legs]
+    for f in factors:
+        if f.name == LEGS:
+            legs += [v for v in (f.high, *f.values) if isinstance(v, float)]
+    legs += [v for v in (columns or {}).get(LEGS, ()) if isinstance(v, float)]
+    return interface_of(min(modes), int(max(v for v in legs if v <= MOST_LEGS)))
+
+
 def _states(
-    keys: Mapping[str, Any], method: str, path: Path, given: Collection[str]
+    keys: Mapping[str, Any], method: str, path: Path, given: Collection[str], *, in_space: bool
 ) -> Design | None:
     if method != "table":
         for key in ("table", "ignore"):
@@ -237,6 +291,7 @@ def _states(
         path.parent / toml_keys.text(keys, "table", ""),
         toml_keys.texts(keys, "ignore") or (),
         given,
+        in_space=in_space,
     )
 
 
@@ -246,15 +301,18 @@ def _parameters(
     preset = toml_keys.text(keys, "preset", "") if "preset" in keys else None
     file = path.parent / toml_keys.text(keys, "parameters", "") if "parameters" in keys else None
     parameters = choose_parameters(preset, file)
-    return parameters.with_values(
-        {name: value for name, value in fixed.items() if name in PARAMETER_QUANTITIES}, "study"
-    )
+    own = {name: value for name, value in fixed.items() if name in PARAMETER_QUANTITIES}
+    # only a vehicle in space may have what is set for it
+    if keys.get("modes") == [SPACE]:
+        parameters = parameters.for_mode(SPACE)
+    elif own.get("drop.mode") == SPACE:
+        parameters = parameters.for_mode(str(own.pop("drop.mode")))
+    return parameters.with_values(own, "study")
 
 
 def _modes(
     keys: Mapping[str, Any], parameters: Parameters, given: Collection[str]
 ) -> tuple[str, ...]:
-    groups_of(parameters.drop.mode)
     modes = toml_keys.texts(keys, "modes")
     if "drop.mode" in given:
         if modes is not None:
@@ -264,8 +322,8 @@ def _modes(
             )
         return ()
     for mode in modes or ():
-        if mode not in MODES:
-            raise unknown("landing mode", mode, MODES)
+        if mode not in (*MODES, SPACE):
+            raise unknown("landing mode", mode, (*MODES, SPACE))
     return tuple(modes) if modes is not None else (parameters.drop.mode,)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from .parts import opened
-from .responses import known_responses
+from .responses import every_response
 
 SHOWN_FAILURES = 5
 
@@ -96,7 +96,7 @@ def _summary(file: Any) -> Summary:
             summary.failed += 1
             if len(summary.failures) < SHOWN_FAILURES:
                 summary.failures.append((index, reason))
-    known = known_responses()
+    known = every_response()
     for name in (n for n in file.schema_arrow.names if n in known):
         found = [v for v in values(name) if v is not None and v == v]
         if not found:

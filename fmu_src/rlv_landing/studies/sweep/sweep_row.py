@@ -15,10 +15,10 @@ from ...errors import LandingError, reason_of
 from ...history import History
 from ...landing import Landing
 from ...parameters import PARAMETER_QUANTITIES, Parameters
-from ...quantities import MODES, Quantity
+from ...quantities import Quantity
+from ..variables import POLAR, VARIABLES, is_parameter, resolved
 from ..whole_landing import whole_landing
 from .design import Design
-from .factors import VARIABLES
 from .responses import Measure, known_responses
 from .study import Study
 
@@ -32,6 +32,7 @@ class Plan:
     Attributes:
         parameters: The parameters that are not varied.
         inputs: Constant inputs by name [SI].
+        polar: Constant speed and direction by name [SI].
         until: End of each landing [s]; None: when it is decided, 60 s after contact at the latest.
         every: Time between samples [s].
         rtol: Relative tolerance of the integrator.
@@ -42,6 +43,7 @@ class Plan:
 
     parameters: Parameters
     inputs: Mapping[str, float]
+    polar: Mapping[str, float]
     until: float | None
     every: float
     rtol: float
@@ -53,9 +55,15 @@ class Plan:
         return Plan, tuple(getattr(self, f.name) for f in fields(self))
 
     @cached_property
-    def by_mode(self) -> dict[str, Parameters]:
-        """The parameters of each mode."""
-        return {mode: self.parameters.for_mode(mode) for mode in MODES}
+    def _by_mode(self) -> dict[str, Parameters]:
+        """The parameters of the modes that have been landed."""
+        return {}
+
+    def parameters_for(self, mode: str) -> Parameters:
+        """The parameters of the landing `mode`."""
+        if mode not in self._by_mode:
+            self._by_mode[mode] = self.parameters.for_mode(mode)
+        return self._by_mode[mode]
 
     @cached_property
     def measure(self) -> Measure:
@@ -71,18 +79,13 @@ class Plan:
         Raises:
             LandingError: The values make no landing.
         """
-        mode = values.get(MODE, self.parameters.drop.mode)
-        base = self.by_mode[mode] if mode in self.by_mode else self.parameters.for_mode(mode)
-        changes = {
-            name: value
-            for name, value in values.items()
-            if name in PARAMETER_QUANTITIES and name != MODE
-        }
-        inputs = {
-            **self.inputs,
-            **{name: value for name, value in values.items() if name not in PARAMETER_QUANTITIES},
-        }
-        return Landing(base.with_values(changes), rtol=self.rtol, inputs=inputs)
+        base = self.parameters_for(values.get(MODE, self.parameters.drop.mode))
+        changed = resolved({**self.polar, **values}, base)
+        parameters = {n: v for n, v in changed.items() if n in PARAMETER_QUANTITIES and n != MODE}
+        inputs = {n: v for n, v in changed.items() if n not in PARAMETER_QUANTITIES}
+        return Landing(
+            base.with_values(parameters), rtol=self.rtol, inputs={**self.inputs, **inputs}
+        )
 
     def history(self, landing: Landing) -> History:
         """Make a landing, until the study's end or until it is decided.
@@ -125,14 +128,11 @@ class Task:
     def __init__(self, study: Study, design: Design) -> None:
         self.study = study
         self.design = design
-        inputs = {
-            name: float(value)
-            for name, value in study.fixed.items()
-            if name not in PARAMETER_QUANTITIES
-        }
+        numbers = {n: float(v) for n, v in study.fixed.items() if n not in PARAMETER_QUANTITIES}
         self.plan = Plan(
             parameters=study.parameters,
-            inputs=inputs,
+            inputs={n: v for n, v in numbers.items() if not is_parameter(n)},
+            polar={n: v for n, v in numbers.items() if n in POLAR},
             until=study.until,
             every=study.every,
             rtol=study.rtol,
@@ -192,5 +192,5 @@ class Task:
             *(VARIABLES[name] for name in self.names),
             version,
             error,
-            *(known_responses()[name] for name in self.plan.responses),
+            *(known_responses(self.study.interface)[name] for name in self.plan.responses),
         ]

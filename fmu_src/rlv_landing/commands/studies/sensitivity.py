@@ -7,11 +7,11 @@ from typing import Any
 
 import click
 
-from ..errors import first_of
-from ..text.durable import writing
-from .number_types import NumberRange, WholeNumber
-from .options import HELP_NAMES, PICTURES, check_writable
-from .printing import print_json
+from ...errors import first_of
+from ...text.durable import writing
+from ..number_types import NumberRange, WholeNumber
+from ..options import HELP_NAMES, PICTURES, check_writable
+from ..printing import print_json
 from .study_run import RunOptions, run_options, run_task, warn_of_joint
 from .sweep import show_plan
 
@@ -65,17 +65,17 @@ def sensitivity(
     responses of a study that is done need no further landings: name them and --resume. Exit codes
     are those of sweep.
     """
-    from ..figures.sensitivity_figure import save_bars
-    from ..studies.study_effort import check_indices
-    from ..studies.sweep.sensitivity import (
+    from ...figures.sensitivity_figure import save_bars
+    from ...studies.study_effort import check_indices
+    from ...studies.sweep.sensitivity import (
         indices_of,
         left_out,
         numeric_responses,
         sobol_design,
     )
-    from ..studies.sweep.study import read_study
-    from ..studies.sweep.sweep_row import Task
-    from ..tables.sweep_tables import indices_table
+    from ...studies.sweep.study import read_study
+    from ...studies.sweep.sweep_row import Task
+    from ...tables.sweep_tables import indices_table
 
     run = RunOptions(**options)
     check_writable(plot, PICTURES, force=True)

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .options import HELP_NAMES
-from .printing import print_json
+from ..options import HELP_NAMES
+from ..printing import print_json
 from .study_run import RunOptions, run_options, run_task, warn_of_joint
 
 if TYPE_CHECKING:
-    from ..studies.sweep.sweep_row import Task
+    from ...studies.sweep.sweep_row import Task
 
 
 @click.command(context_settings=HELP_NAMES)
@@ -53,10 +53,10 @@ def sweep(study: Path, **options: Any) -> None:
     Exit codes: 0 done, 1 ended before its time (a full disk, a lost cluster, --strict), 2 bad
     input, 130 interrupted.
     """
-    from ..studies.sweep.study import read_study
-    from ..studies.sweep.summary import summarise_results
-    from ..studies.sweep.sweep_row import Task
-    from ..tables.sweep_tables import summary_table
+    from ...studies.sweep.study import read_study
+    from ...studies.sweep.summary import summarise_results
+    from ...studies.sweep.sweep_row import Task
+    from ...tables.sweep_tables import summary_table
 
     run = RunOptions(**options)
     read = read_study(study)
@@ -76,8 +76,8 @@ def sweep(study: Path, **options: Any) -> None:
 
 def show_plan(task: Task, options: RunOptions) -> None:
     """Print a study's number of landings, first rows and the time estimated from one landing."""
-    from ..tables.sweep_tables import FIRST_ROWS, plan_table
-    from ..workers import default_workers
+    from ...tables.sweep_tables import FIRST_ROWS, plan_table
+    from ...workers import default_workers
 
     workers = options.workers or default_workers()
     seconds, error = _timed_landing(task)

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from ..choices import parse_pairs, split_pair
-from ..errors import LandingError, one_line
-from ..signals.interrupts import answer
-from ..text.durable import ANOTHER_WORK, refuse_no_files, unwritable, writing
-from .number_types import Number, WholeNumber
-from .options import (
+from ...choices import parse_pairs, split_pair
+from ...errors import LandingError, one_line
+from ...signals.interrupts import answer
+from ...text.durable import ANOTHER_WORK, refuse_no_files, unwritable, writing
+from ..number_types import Number, WholeNumber
+from ..options import (
     HELP_NAMES,
     PICTURES,
     check_writable,
@@ -24,12 +24,12 @@ from .options import (
     parameter_options,
     workers_option,
 )
-from .printing import INTERRUPTED, exit_code, print_json, print_warning
+from ..printing import INTERRUPTED, exit_code, print_json, print_warning
 
 if TYPE_CHECKING:
-    from ..studies.envelope.search import Envelope
-    from ..studies.envelope.store import Store
-    from ..studies.envelope.study import EnvelopeStudy
+    from ...studies.envelope.search import Envelope
+    from ...studies.envelope.store import Store
+    from ...studies.envelope.study import EnvelopeStudy
 
 NO_BOUNDARY = 1
 RESULTS = ("boundary.csv", "boundary.json")
@@ -131,11 +131,11 @@ def envelope(
     Exit codes: 0 done, 1 no family has a boundary in the range (all stable or all lost), or a full
     disk, 2 bad input, 130 interrupted.
     """
-    from ..audit.transverse import joint_warning
-    from ..studies.envelope.results import record
-    from ..studies.study_effort import check_landings
-    from ..tables.envelope_tables import envelope_tables
-    from ..workers import default_workers
+    from ...audit.transverse import joint_warning
+    from ...studies.envelope.results import record
+    from ...studies.study_effort import check_landings
+    from ...tables.envelope_tables import envelope_tables
+    from ...workers import default_workers
 
     check_writable(plot, PICTURES, force=options["force"])
     asked = _study(study, options)
@@ -155,7 +155,7 @@ def envelope(
     finally:
         store.close()
     if plot is not None:
-        from ..figures.envelope_figure import save_envelope
+        from ...figures.envelope.figure import save_envelope
 
         with writing(plot):
             save_envelope(found, plot)
@@ -177,8 +177,8 @@ def _end(reason: str, status: int, store: Store, work: Path) -> NoReturn:
 
 def _study(path: Path | None, options: dict[str, Any]) -> EnvelopeStudy:
     """The study of the file, changed by the options."""
-    from ..studies import toml_keys
-    from ..studies.envelope.study import study_from
+    from ...studies import toml_keys
+    from ...studies.envelope.study import study_from
 
     document = toml_keys.read(path)[0] if path is not None else {}
     _override(document, options)
@@ -187,9 +187,9 @@ def _study(path: Path | None, options: dict[str, Any]) -> EnvelopeStudy:
 
 def _override(document: dict[str, Any], options: dict[str, Any]) -> None:
     """Let the options replace what the study's document gives."""
-    from ..studies import toml_keys
-    from ..studies.limits import LIMITS
-    from ..studies.sweep.factors import VARIABLES
+    from ...studies import toml_keys
+    from ...studies.limits import LIMITS
+    from ...studies.variables import VARIABLES
 
     for key in ("envelope", "set", "limits", *(axis for axis in ("x", "y") if axis in document)):
         document[key] = toml_keys.table(document, key)
@@ -235,7 +235,7 @@ def _axis(key: str, text: str) -> dict[str, str]:
 
 
 def _open_store(asked: EnvelopeStudy, work: Path, *, resume: bool) -> Store:
-    from ..studies.envelope.store import Store
+    from ...studies.envelope.store import Store
 
     path = work / "landings.jsonl"
     refuse_no_files(work, RESULTS, ANOTHER_WORK)
@@ -249,7 +249,7 @@ def _search(asked: EnvelopeStudy, store: Store, workers: int) -> Envelope:
     """Search with progress on a terminal."""
     from tqdm import tqdm
 
-    from ..studies.envelope.search import envelope as run
+    from ...studies.envelope.search import envelope as run
 
     with tqdm(initial=len(store.found), unit="landing", disable=not sys.stderr.isatty()) as bar:
 
@@ -261,7 +261,7 @@ def _search(asked: EnvelopeStudy, store: Store, workers: int) -> Envelope:
 
 
 def _write(found: Envelope, work: Path) -> None:
-    from ..studies.envelope.results import write_csv, write_json
+    from ...studies.envelope.results import write_csv, write_json
 
     write_csv(found, work / "boundary.csv")
     write_json(found, work / "boundary.json")

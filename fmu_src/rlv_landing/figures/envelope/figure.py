@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..quantities import Quantity, shown
-from ..studies.envelope.results import lost_text, stretches
-from ..studies.envelope.search import Envelope, Family
-from ..studies.sweep.factors import value_text
-from .envelope_sides import name_stable_side, shade, stable_word
-from .plots import save_whole
-from .style import AREA, FAINT, MORE_COLOURS, plain_axes
+from ...quantities import Quantity, shown
+from ...studies.envelope.results import lost_text, stretches
+from ...studies.envelope.search import Envelope, Family
+from ...studies.sweep.factors import value_text
+from ..plots import save_whole
+from ..style import AREA, FAINT, MORE_COLOURS, plain_axes
+from .sides import name_stable_side, shade, stable_word
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

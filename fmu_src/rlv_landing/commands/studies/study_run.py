@@ -1,4 +1,4 @@
-"""The options of `sweep` and `sensitivity`, and the run of a study's landings."""
+"""The options of `sweep`, `sensitivity` and `montecarlo`, and the run of a study's landings."""
 
 from __future__ import annotations
 
@@ -11,19 +11,22 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from ..errors import LandingError, one_line
-from ..signals.interrupts import answer
-from ..text.durable import unwritable
-from .number_types import NumberRange
-from .options import add_options, json_option, workers_option
-from .printing import FAILED, INTERRUPTED, exit_code, print_warning
+from ...errors import LandingError, one_line
+from ...signals.interrupts import answer
+from ...text.durable import unwritable
+from ..number_types import NumberRange
+from ..options import add_options, json_option, workers_option
+from ..printing import FAILED, INTERRUPTED, exit_code, print_warning
 
 if TYPE_CHECKING:
-    from ..studies.sweep.result_files import Results
-    from ..studies.sweep.sweep import Engine, Failures
-    from ..studies.sweep.sweep_row import Plan, Task
+    from ...studies.montecarlo.run import MonteCarloTask
+    from ...studies.sweep.result_files import Results
+    from ...studies.sweep.sweep import Engine, Failures
+    from ...studies.sweep.sweep_row import Plan, Task
 
 F = TypeVar("F", bound=Callable[..., Any])
+# called with the number of landings done, and label and reason of those that failed
+Progress = Callable[[int, "Failures"], object]
 
 
 @dataclass(frozen=True)
@@ -94,12 +97,12 @@ def engine_for(plan: Plan, options: RunOptions) -> Iterator[Engine]:
         LandingError: Both --workers and --scheduler, or a cluster that cannot be used.
     """
     if options.scheduler is None:
-        from ..studies.sweep.sweep import threads
+        from ...studies.sweep.sweep import threads
 
         with threads(plan, options.workers) as engine:
             yield engine
     else:
-        from ..studies.sweep.cluster import cluster
+        from ...studies.sweep.cluster import cluster
 
         if options.workers is not None:
             raise LandingError(
@@ -112,7 +115,7 @@ def engine_for(plan: Plan, options: RunOptions) -> Iterator[Engine]:
 
 def warn_of_joint(task: Task) -> None:
     """Print a warning where landings of the study have the transverse load at the joint."""
-    from ..audit.transverse import NAME, joint_warning
+    from ...audit.transverse import NAME, joint_warning
 
     study, varied = task.study, task.design.columns.get(NAME)
     base = study.parameters.for_mode(study.modes[0]) if study.modes else study.parameters
@@ -133,15 +136,40 @@ def run_task(task: Task, folder: Path, options: RunOptions) -> Path:
     Raises:
         LandingError: The results folder or the scheduler cannot be used, or --strict refuses a row.
     """
-    from ..studies.sweep.result_files import Results
-    from ..studies.sweep.sweep import check_all
+    from ...studies.sweep.result_files import Results
+    from ...studies.sweep.sweep import Sweep
+
+    _check(task, options)
+    with engine_for(task.plan, options) as engine:
+        results = Results(folder, task, resume=options.resume)
+
+        def make(show: Progress) -> None:
+            Sweep(task, results, show, strict=options.strict).run(engine)
+
+        return _run_or_exit(task, results, make, len(task))
+
+
+def run_montecarlo(task: MonteCarloTask, folder: Path, options: RunOptions) -> Path:
+    """Make the runs of a Monte Carlo until there are enough; else as `run_task`."""
+    from ...studies.montecarlo.run import Tally, run_all
+
+    _check(task, options)
+    with engine_for(task.plan, options) as engine:
+        results = Tally(folder, task, resume=options.resume)
+
+        def make(show: Progress) -> None:
+            run_all(task, results, engine, show, strict=options.strict)
+
+        return _run_or_exit(task, results, make, task.montecarlo.samples)
+
+
+def _check(task: Task, options: RunOptions) -> None:
+    """Check that the machine has what the landings need; with --strict, check every row."""
+    from ...studies.sweep.sweep import check_all
 
     _check_effort(task, options)
     if options.strict:
         check_all(task)
-    with engine_for(task.plan, options) as engine:
-        results = Results(folder, task, resume=options.resume)
-        return _run_or_exit(task, results, engine, strict=options.strict)
 
 
 def _check_effort(task: Task, options: RunOptions) -> None:
@@ -150,8 +178,8 @@ def _check_effort(task: Task, options: RunOptions) -> None:
     Raises:
         LandingError: They need too much. The time on a cluster is not known here.
     """
-    from ..studies.study_effort import check_landings
-    from ..workers import default_workers
+    from ...studies.study_effort import check_landings
+    from ...workers import default_workers
 
     plan = task.plan
     check_landings(
@@ -164,14 +192,17 @@ def _check_effort(task: Task, options: RunOptions) -> None:
     )
 
 
-def _run_or_exit(task: Task, results: Results, engine: Engine, *, strict: bool) -> Path:
+def _run_or_exit(
+    task: Task, results: Results, make: Callable[[Progress], None], total: int
+) -> Path:
+    """Make landings, of which there are so many in `total`, and join their rows."""
     from tqdm import tqdm
 
-    from ..studies.sweep.sweep import LostError, Sweep
+    from ...studies.sweep.sweep import LostError
 
     failed = 0
     with tqdm(
-        total=len(task),
+        total=total,
         initial=results.rows_done,
         desc=task.study.name,
         unit=" landings",
@@ -187,7 +218,7 @@ def _run_or_exit(task: Task, results: Results, engine: Engine, *, strict: bool) 
 
         try:
             with results:
-                Sweep(task, results, show_progress, strict=strict).run(engine)
+                make(show_progress)
                 return results.finish()
         except KeyboardInterrupt:
             answer()
@@ -199,7 +230,7 @@ def _run_or_exit(task: Task, results: Results, engine: Engine, *, strict: bool) 
             reason, status = f"error: {e}", FAILED
     click.echo(
         one_line(
-            f"{reason}; {results.rows_done} of {len(task)} landings are kept in {results.folder}, "
+            f"{reason}; {results.rows_done} of {total} landings are kept in {results.folder}, "
             "--resume continues"
         ),
         err=True,

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..quantities import shown
-from ..studies.envelope.search import Envelope, Family
-from .style import INK
+from ...quantities import shown
+from ...studies.envelope.search import Envelope, Family
+from ..style import INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,0 +1,1 @@
+"""The commands of studies: sweeps, Sobol indices, envelopes, Monte Carlo."""

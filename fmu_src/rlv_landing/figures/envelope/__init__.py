@@ -1,0 +1,1 @@
+"""The figures of an envelope, on plain axes and as a polar chart."""
