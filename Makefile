@@ -14,12 +14,12 @@ SOURCES := fmu_src/fmu_build/sources.py
 MODULES := $(shell sed -n '/^MODULES = /,/^.$$/s/^ *"\(.*\)",/\1/p' $(SOURCES))
 FOLDERS := $(shell sed -n '/^FOLDERS = /s/[^"]*"\([^"]*\)"[^"]*/\1 /gp' $(SOURCES))
 FMU_FILES := fmu_src/landing_fmu.py CHANGELOG.md LICENSE \
-  $(addprefix fmu_src/rlv_landing/figures/,plots.py style.py) \
+  $(addprefix fmu_src/rlv_landing/figures/,plots.py style.py page.css) \
   $(addprefix fmu_src/rlv_landing/,$(MODULES)) \
   $(shell find $(addprefix fmu_src/rlv_landing/,$(FOLDERS)) -name '*.py') \
   $(shell find fmu_src/fmu_build fmu_src/fmu_front -name '*.py' -o -name '*.j2' -o -name '*.[ch]')
 
-.PHONY: help run test lint torture bench wheels annotate coverage docs clean
+.PHONY: help run test lint torture bench wheels annotate coverage docs site clean
 help:
 	@echo "make run [MODE=2-2|1-2-1]  land the drop test: FMU, ROS 2 node, MCAP log, table, picture"
 	@echo "make test                  the whole suite"
@@ -31,6 +31,7 @@ help:
 	@echo "make coverage              coverage, measured on the pure core"
 	@echo "make docs                  pictures and marked numbers of README, docs and examples anew"
 	@echo "                           (some minutes; measured times are those of the last make bench)"
+	@echo "make site                  the documentation as a site with a search, in build/site"
 	@echo "make clean                 remove .venv and build (logs stay)"
 
 # what is missing is said in one line; a half-made environment is made anew
@@ -115,8 +116,9 @@ coverage: $(FMU) $(FMU3)
 
 docs: $(FMU)
 	$(BIN)/rlv-landing simulate --mode 2-2 --plot docs/landing-2-2.png --force
-	$(BIN)/rlv-landing animate --mode 2-2 docs/landing-2-2.gif \
+	$(BIN)/rlv-landing animate --mode 2-2 docs/landing-2-2.gif --view 3d \
 	  --fps 20 --end 0.6 --width 880 --force
+	$(BIN)/rlv-landing draw yue2022-figures docs/vehicle.png --force
 	rm -rf build/envelope
 	$(BIN)/rlv-landing envelope examples/envelope.toml --work build/envelope \
 	  --plot docs/envelope.png --force
@@ -124,8 +126,13 @@ docs: $(FMU)
 	$(BIN)/rlv-landing envelope examples/polar_envelope.toml --work build/polar_envelope \
 	  --plot docs/polar_envelope.png --force
 	$(BIN)/python examples/ship_deck/run.py --picture examples/ship_deck/ship_deck.png
+	RLV_FMU=$(CURDIR)/$(FMU) $(BIN)/python docs/notebooks.py
 	$(BIN)/python docs/claims --update
 	$(BIN)/python docs/claims --update --slow
+
+# every warning of Sphinx is an error: a link that leads nowhere, a page without a place
+site: $(VENV)/.core
+	$(BIN)/python docs/site build/site
 
 clean:
 	rm -rf $(VENV) build fmu_src/rlv_landing/core/compiled.*

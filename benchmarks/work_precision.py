@@ -16,6 +16,8 @@ from time import thread_time
 from peers import Peer
 from problem import Error, Problem
 
+from rlv_landing.figures.style import FAINT
+
 TURNS = 15
 # of processor time [s], after which a run takes no more turns
 ENOUGH_SECONDS = 0.3
@@ -140,7 +142,7 @@ def draw(runs: dict[str, list[Run]], path: Path, note: str) -> None:
                     color=colour,
                     label=peer.name,
                 )
-        ax.axhline(1e-3, color="#888888", linewidth=0.8, linestyle=":")
+        ax.axhline(1e-3, color=FAINT, linewidth=0.8, linestyle=":")
         ax.set(
             xscale="log",
             yscale="log",

@@ -13,7 +13,7 @@ PAGES = sorted(
     [
         ROOT / "README.md",
         ROOT / "CHANGELOG.md",
-        *(ROOT / "docs").glob("*.md"),
+        *(ROOT / "docs").rglob("*.md"),
         *(ROOT / "examples").glob("*/README.md"),
     ]
 )
@@ -52,7 +52,8 @@ def test_every_link_leads_to_a_file_and_a_heading_that_exist(page):
 def test_the_index_lists_every_page():
     targets = re.findall(r"\]\(([^)\s]+)\)", INDEX.read_text(encoding="utf-8"))
     listed = {(INDEX.parent / target).resolve() for target in targets}
-    assert listed == {page for page in PAGES if page != INDEX}
+    notebooks = set((ROOT / "examples" / "notebooks").glob("*.ipynb"))
+    assert listed == {page for page in PAGES if page != INDEX} | notebooks
 
 
 def test_every_path_on_the_map_exists():

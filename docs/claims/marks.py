@@ -58,7 +58,7 @@ def pages() -> list[Path]:
     return sorted(
         [
             ROOT / "README.md",
-            *(ROOT / "docs").glob("*.md"),
+            *(ROOT / "docs").rglob("*.md"),
             *(ROOT / "examples").glob("*/README.md"),
         ]
     )

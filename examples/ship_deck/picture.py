@@ -7,7 +7,9 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-COLOURS = {"calm": "#5b8c3e", "moving": "#0b6e99"}
+from rlv_landing.figures.style import COLOURS
+
+OF_DECKS = {"calm": COLOURS[2], "moving": COLOURS[0]}
 STYLES = {1: "-", 3: "--"}
 
 
@@ -19,7 +21,7 @@ def save_picture(results: dict[str, dict[str, np.ndarray]], path: Path) -> None:
     figure = Figure(figsize=(10.0, 11.0), layout="constrained")
     axes = figure.subplots(5, 1, sharex=True)
     for name, result in results.items():
-        time, colour = result["time"], COLOURS[name]
+        time, colour = result["time"], OF_DECKS[name]
         axes[0].plot(time, result["deck.heave"] * 1e3, color=colour, label=f"{name} deck")
         axes[1].plot(time, result["landing.body.y"] - result["deck.heave"], color=colour)
         for leg, style in STYLES.items():
@@ -38,7 +40,7 @@ def save_picture(results: dict[str, dict[str, np.ndarray]], path: Path) -> None:
         axes[4].plot(time, np.degrees(result["landing.body.pitch"]), color=colour)
         axes[4].plot(time, np.degrees(result["deck.tilt"]), color=colour, linestyle=":")
     axes[3].plot(
-        time, result["engine.force_y"] / 1e3, color="#c8553d", linewidth=1.0, label="thrust"
+        time, result["engine.force_y"] / 1e3, color=COLOURS[1], linewidth=1.0, label="thrust"
     )
     labels = (
         "heave of\nthe deck [mm]",

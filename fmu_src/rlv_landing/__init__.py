@@ -10,27 +10,45 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from .errors import LandingError
+    from .errors import IntegrationError, LandingError
+    from .history import History
     from .landing import Landing
+    from .outputs import Extreme
     from .parameters import Parameters
+    from .presets import read_toml
     from .studies.many import land_many
 
 __version__ = "0.1.0"
 # of the model in FMI, where its user gives it no other
 MODEL_NAME = "RlvLanding"
-__all__ = ["Landing", "LandingError", "Parameters", "__version__", "land_many", "load_preset"]
+__all__ = [
+    "Extreme",
+    "History",
+    "IntegrationError",
+    "Landing",
+    "LandingError",
+    "Parameters",
+    "__version__",
+    "land_many",
+    "load_preset",
+    "read_toml",
+]
 # the modules of the names that are imported when they are asked for: the command line's first
 # lines come before all that takes time
 _MODULES = {
+    "Extreme": "outputs",
+    "History": "history",
+    "IntegrationError": "errors",
     "Landing": "landing",
     "LandingError": "errors",
     "Parameters": "parameters",
     "land_many": "studies.many",
+    "read_toml": "presets",
 }
 
 
 def __getattr__(name: str) -> Any:
-    """`Landing`, `LandingError`, `Parameters` or `land_many`."""
+    """One of the names that are imported when they are asked for."""
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from importlib import import_module

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -228,18 +227,3 @@ def test_a_signal_leaves_no_unfinished_animation(
     assert [line for line in stderr.splitlines() if "Traceback" in line or "error" in line] == []
     assert stderr.splitlines()[-1] == "interrupted"
     assert not list(tmp_path.iterdir())
-
-
-def test_the_python_example_of_the_documentation_runs(tmp_path: Path) -> None:
-    text = (Path(__file__).resolve().parents[2] / "docs" / "pictures.md").read_text(
-        encoding="utf-8"
-    )
-    (snippet,) = re.findall(r"```python\n(.*?)```", text, re.S)
-    subprocess.run(
-        [sys.executable, "-c", snippet],
-        cwd=tmp_path,
-        env=environment(),
-        check=True,
-        timeout=TIMEOUT,
-    )
-    assert len(frames_of(tmp_path / "landing.gif")) == 26

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from five_legs import five_legs
+from scipy.spatial.transform import Rotation
 
-from rlv_landing import Landing, LandingError, load_preset
+from rlv_landing import Landing, load_preset
+from rlv_landing.audit.spatial_momentum import inertia_tensor
 from rlv_landing.figures.landing_report.loads import FOOTPAD, interface_loads, peaks
 from rlv_landing.quantities import azimuth, groups_of
+from rlv_landing.touchdown import leg_directions
 
 
 def in_body(vectors, history, leg):
@@ -18,6 +22,11 @@ def in_body(vectors, history, leg):
         for number, side in g.legs
         if number == leg
     )
+    return turned_to_body(vectors, sine, cosine)
+
+
+def turned_to_body(vectors, sine, cosine):
+    """Vectors radial, axial, tangential of a leg at an azimuth, in axes of the body."""
     radial, axial, tangential = vectors.T
     return np.stack(
         [cosine * radial - sine * tangential, axial, sine * radial + cosine * tangential], axis=-1
@@ -55,7 +64,29 @@ def test_a_peak_comes_with_the_whole_load_at_its_time(drop_test):
             assert abs(peak.load[peak.component]) == np.abs(found.load[:, peak.component]).max()
 
 
-def test_a_landing_in_space_is_refused():
-    history = Landing(load_preset("yue2022-figures").with_values({"drop.mode": "space"})).run(0.01)
-    with pytest.raises(LandingError, match="symmetric landing"):
-        interface_loads(history)
+@pytest.mark.parametrize("at", ["footpad", "joint"])
+def test_in_space_they_are_the_acceleration_of_a_body_whose_cg_is_off_the_axis(at):
+    p = five_legs().with_values({"vehicle.transverse_load_at": at})
+    history = Landing(p).run(0.5, 1e-3)
+    force, moment = np.zeros((2, len(history), 3))
+    directions = leg_directions(p)
+    for found in interface_loads(history):
+        if found.name != FOOTPAD:
+            sine, cosine = directions[found.leg]
+            push, about, point = (
+                turned_to_body(v, sine, cosine) for v in (*np.split(found.load, 2, 1), found.point)
+            )
+            force += push
+            moment += about + np.cross(point, push)
+    turn = Rotation.from_quat(np.column_stack([history[f"body.q_{c}"] for c in "xyzw"]))
+    pull = np.column_stack([history[f"body.a{c}"] for c in "xyz"])
+    pull[:, 1] += p.ground.gravity
+    wanted = p.vehicle.mass * turn.inv().apply(pull)
+    assert np.abs(force - wanted).max() < 1e-7 * np.abs(wanted).max()
+    spin, rate = (
+        np.column_stack([history[f"body.spin_{kind}{c}"] for c in "xyz"])
+        for kind in ("", "acceleration_")
+    )
+    inertia = inertia_tensor(p)
+    turning = rate @ inertia + np.cross(spin, spin @ inertia)
+    assert np.abs(moment - turning).max() < 1e-7 * np.abs(turning).max()

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from five_legs import five_legs
 from test_report import Page
 
 from rlv_landing import Landing, load_preset
 from rlv_landing.figures.landing_report.page import page
 from rlv_landing.figures.landing_report.sections import Landed, side_by_side, tables_of
+from rlv_landing.figures.wireframe import wireframe
+from rlv_landing.studies.whole_landing import whole_landing
 from rlv_landing.summary import summarise
 
 
@@ -61,9 +65,7 @@ def test_the_command_writes_page_and_pdf_and_refuses_what_is_no_vehicle_of_it(
     content = (tmp_path / "mine.pdf").read_bytes()
     assert content.startswith(b"%PDF")
     assert content.count(b"/Type /Page ") >= 9
-    space = ("--set", "drop.mode=space", "-o", "space.html")
     for arguments, said in (
-        (("yue2022-figures", *space), "reports are of symmetric landings"),
         (("missing.toml",), "missing.toml"),
         (("yue2022-figures", "-o", "mine.txt"), "must end in .html or .pdf"),
         (("yue2022-figures", "-o", "mine.pdf"), "--force"),
@@ -71,3 +73,37 @@ def test_the_command_writes_page_and_pdf_and_refuses_what_is_no_vehicle_of_it(
         refused = command("report", *arguments)
         assert (refused.code, refused.err.count("\n")) == (2, 1)
         assert said in refused.err
+
+
+def test_a_landing_in_space_has_every_leg_and_its_own_touchdown(tmp_path, command):
+    written = command(
+        *("report", "yue2022-figures", "--mode", "space", "--no-audit", "--until", "0.2"),
+        *("-o", str(tmp_path / "space.html")),
+    )
+    assert (written.code, written.err) == (0, "")
+    text = (tmp_path / "space.html").read_text()
+    for title in ("The vehicle", "Movement", "Loads at the interfaces", "All parameters"):
+        assert title in text
+    found = Landed("five", Landing(five_legs()).run(0.4, 1e-3))
+    tables = {table.title: table for table in tables_of(found)}
+    names = {row[0] for row in tables["Touchdown"].rows}
+    assert {"drop.heading", "drop.roll_rate", "ground.slope_direction"} <= names
+    assert [row[0] for row in tables["Legs"].rows] == ["1", "2", "3", "4", "5"]
+    loads = {row[0] for row in tables["Loads at the interfaces"].rows}
+    assert {f"leg {leg}, footpad" for leg in range(1, 6)} <= loads
+
+
+def test_a_vehicle_that_topples_in_space_says_over_which_edge():
+    p = five_legs().with_values({"drop.lateral_velocity": 6.0, "ground.friction": 1.0})
+    found = Landed("over", whole_landing(Landing(p), 3.0, 1e-3))
+    assert found.outcome.name == "toppled"
+    (over,) = (row[1] for t in tables_of(found) for row in t.rows if row[0] == "toppled over")
+    assert over.startswith("the edge legs ")
+
+
+def test_in_space_feet_are_drawn_where_the_landing_has_them():
+    history = Landing(five_legs()).run(0.4, 1e-2)
+    feet = wireframe(history, history.parameters, range(len(history)))["feet"][:, :, 0]
+    for i, leg in enumerate(history.legs):
+        place = np.column_stack([history[f"leg[{leg}].footpad.{axis}"] for axis in "xyz"])
+        assert np.abs(feet[:, i] - place).max() < 1e-12

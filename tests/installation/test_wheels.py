@@ -76,6 +76,10 @@ def test_a_newcomer_lands_with_the_wheel_without_a_compiler(made, environment, t
     (tmp_path / "lines").write_text(COMMANDS)
     script = Path(__file__).with_name("newcomer.py")
     run(environment, script, tmp_path / "lines", cwd=folder, PATH=str(tmp_path), CC="")
+    prefix = environment.parents[1]
+    assert (prefix / "share" / "rlv_ros_bridge" / "launch" / "landing.launch.py").is_file()
+    assert (prefix / "share/ament_index/resource_index/packages/rlv_ros_bridge").is_file()
+    assert os.access(prefix / "lib" / "rlv_ros_bridge" / "landing_node", os.X_OK)
     code = "from rlv_ros_bridge.commands.node import _build_first_fmu as b; b()"
     said = run(environment, "-c", code, cwd=folder, XDG_CACHE_HOME=str(tmp_path / "cache"))
     (built,) = (tmp_path / "cache").rglob("*.fmu")

@@ -2,29 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
 from bridge_tools import new_domain, start
-from page_pixels import HEIGHT, WIDTH, NotingProxy, Started, free_port
+from page_pixels import CHROMIUM, HEIGHT, SWITCHES, WIDTH, NotingProxy, Started, free_port
 from playwright.sync_api import Browser, Page, sync_playwright
-
-CHROMIUM = Path(
-    os.environ.get(
-        "RLV_CHROMIUM", Path(__file__).resolve().parent.parent.parent / "build" / "chromium"
-    )
-)
-# No graphics card, no sandbox of its own (CI is root), and nothing that Chromium does by itself in
-# the background.
-SWITCHES = (
-    "--no-sandbox", "--no-zygote", "--disable-dev-shm-usage", "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-component-update",
-    "--disable-sync", "--no-first-run",
-)  # fmt: skip
 
 
 @pytest.fixture(scope="module")

@@ -1,11 +1,13 @@
-"""Pixels of a viewer's page, and a proxy in the place of all other machines."""
+"""The browser, pixels of a viewer's page, and a proxy in the place of all other machines."""
 
 from __future__ import annotations
 
 import io
+import os
 import socket
 import subprocess
 import threading
+from pathlib import Path
 from types import TracebackType
 
 import numpy as np
@@ -13,6 +15,18 @@ from numpy.typing import NDArray
 from PIL import Image
 from playwright.sync_api import Page
 
+CHROMIUM = Path(
+    os.environ.get(
+        "RLV_CHROMIUM", Path(__file__).resolve().parent.parent.parent / "build" / "chromium"
+    )
+)
+# No graphics card, no sandbox of its own (CI is root), and nothing that Chromium does by itself in
+# the background.
+SWITCHES = (
+    "--no-sandbox", "--no-zygote", "--disable-dev-shm-usage", "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-component-update",
+    "--disable-sync", "--no-first-run",
+)  # fmt: skip
 WIDTH, HEIGHT = 640, 460
 # Rerun's own bars above and below the views, and the titles of the views.
 TOP, BOTTOM, TITLE = 36, 28, 29

@@ -23,9 +23,8 @@ from page_pixels import (
 from playwright.sync_api import Browser, Page
 from pytest import approx
 
-from rlv_landing.figures.style import COLOURS
+from rlv_landing.figures.style import COLOURS, FORCE, GRID, INK
 from rlv_ros_bridge.logs.history import log_history
-from rlv_ros_bridge.viewer.rerun_scene import FORCE, GROUND, INK
 
 FIRST, SECOND = COLOURS[:2]
 
@@ -97,7 +96,7 @@ def pushes(pixels: Pixels) -> int:
 def test_the_vehicle_stands_on_its_legs_each_group_in_its_colour(pictures: Pictures) -> None:
     vehicle = vehicle_of(pictures.playing)
     rows, columns = zip(
-        *(pixels_of_colour(vehicle, colour) for colour in (FIRST, SECOND, INK, FORCE, GROUND))
+        *(pixels_of_colour(vehicle, colour) for colour in (FIRST, SECOND, INK, FORCE, GRID))
     )
     first, second, body, force, ground = range(5)
     assert all(len(found) > 20 for found in rows)

@@ -18,6 +18,7 @@ from markupsafe import Markup
 from rlv_landing import __version__
 from rlv_landing.errors import one_line
 from rlv_landing.figures.plots import inline_svg
+from rlv_landing.figures.style import page_css
 from rlv_landing.landing import LOOSEST_RTOL
 from rlv_landing.quantities import STATISTIC_QUANTITIES, Quantity, flat_name, whole_name
 
@@ -84,6 +85,7 @@ def render(files: Path, description: Element, wanted: Wanted) -> str:
     named = flat_name if wanted.flat_names else str
     fmi = int(description.attrib["fmiVersion"][0])
     return environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
+        css=Markup(page_css()),
         version=__version__,
         wanted=wanted,
         named=named,

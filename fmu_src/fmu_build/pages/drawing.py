@@ -5,6 +5,17 @@ from __future__ import annotations
 from math import atan2, cos, pi, radians, sin
 from typing import TYPE_CHECKING, Any
 
+from rlv_landing.figures.style import (
+    AUXILIARY,
+    BODY,
+    INK,
+    MAIN,
+    SOLID,
+    SOLID_EDGE,
+    SOLID_GROUND,
+    SOLID_GROUND_EDGE,
+    SOLID_TOP,
+)
 from rlv_landing.parameters import Parameters
 from rlv_landing.touchdown import footpad_at_rest, leg_directions
 
@@ -13,7 +24,6 @@ if TYPE_CHECKING:
 
 # direction of view: azimuth, so that no leg hides another, and elevation
 VIEW_AZIMUTH, VIEW_ELEVATION = radians(20.0), radians(12.0)
-BODY, MAIN, AUXILIARY, PAD, GROUND = "#c3ccd2", "#0b6e99", "#c8553d", "#1d2830", "#eef1e6"
 
 
 def vehicle_figure(parameters: Parameters, *, named: bool = False) -> Figure:
@@ -31,8 +41,8 @@ def vehicle_figure(parameters: Parameters, *, named: bool = False) -> Figure:
     ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     ax.set_aspect("equal")
     ax.set_axis_off()
-    ax.fill(*_ring(1.35 * radius, height), color=GROUND, zorder=0)
-    ax.plot(*_ring(1.35 * radius, height), color="#b9c0a8", linewidth=0.8, zorder=0)
+    ax.fill(*_ring(1.35 * radius, height), color=SOLID_GROUND, zorder=0)
+    ax.plot(*_ring(1.35 * radius, height), color=SOLID_GROUND_EDGE, linewidth=0.8, zorder=0)
     points = {}
     for leg, azimuth in _azimuths(parameters).items():
         foot = _project(radius, height, azimuth)
@@ -49,7 +59,7 @@ def vehicle_figure(parameters: Parameters, *, named: bool = False) -> Figure:
                 solid_capstyle="round",
                 zorder=near,
             )
-        ax.fill(*_ring(0.11 * radius, height, foot), color=PAD, zorder=near + 1)
+        ax.fill(*_ring(0.11 * radius, height, foot), color=INK, zorder=near + 1)
     _body(ax, min(m.joint_radius, a.joint_radius), -max(m.joint_depth, a.joint_depth), v.top_height)
     if named:
         _name_parts(ax, parameters, points)
@@ -85,11 +95,11 @@ def _ring(
 
 def _body(ax: Any, r: float, bottom: float, top: float) -> None:
     low, high = _project(0.0, bottom, 0.0)[1], _project(0.0, top, 0.0)[1]
-    ax.fill(*_ring(r, bottom), color=BODY, zorder=3)
-    ax.fill((-r, r, r, -r), (low, low, high, high), color=BODY, zorder=3)
-    ax.fill(*_ring(r, top), color="#dde4e8", zorder=3)
-    ax.plot(*_ring(r, top), color="#8d99a1", linewidth=0.8, zorder=3)
-    ax.plot(0.0, 0.0, "o", color="#1d2830", markersize=6, zorder=5)
+    ax.fill(*_ring(r, bottom), color=SOLID, zorder=3)
+    ax.fill((-r, r, r, -r), (low, low, high, high), color=SOLID, zorder=3)
+    ax.fill(*_ring(r, top), color=SOLID_TOP, zorder=3)
+    ax.plot(*_ring(r, top), color=SOLID_EDGE, linewidth=0.8, zorder=3)
+    ax.plot(0.0, 0.0, "o", color=INK, markersize=6, zorder=5)
 
 
 def _name_parts(ax: Any, parameters: Parameters, feet: dict[int, tuple[float, float]]) -> None:
@@ -105,7 +115,7 @@ def _name_parts(ax: Any, parameters: Parameters, feet: dict[int, tuple[float, fl
             at,
             fontsize=10,
             va="center",
-            arrowprops={"arrowstyle": "-", "color": "#5b6a74", "linewidth": 0.8},
+            arrowprops={"arrowstyle": "-", "color": BODY, "linewidth": 0.8},
             zorder=6,
         )
 
@@ -138,13 +148,13 @@ def _number_legs(ax: Any, feet: dict[int, tuple[float, float]]) -> None:
             str(leg),
             fontsize=10,
             ha="center",
-            color="#5b6a74",
+            color=BODY,
             zorder=6,
         )
 
 
 def _draw_axes(ax: Any, parameters: Parameters, span: float) -> None:
-    arrow = {"arrowstyle": "->", "color": "#1d2830", "linewidth": 1.2}
+    arrow = {"arrowstyle": "->", "color": INK, "linewidth": 1.2}
     origin = (-1.25 * span, 0.1 * span)
     for text, (dx, dy) in (("x", (0.35 * span, 0.0)), ("y", (0.0, 0.35 * span))):
         ax.annotate("", (origin[0] + dx, origin[1] + dy), origin, arrowprops=arrow)

@@ -125,6 +125,8 @@ def main() -> None:
             ),
             err=True,
         )
+    # a notebook's choice for its own pictures, which may not be installed here; ours are files
+    os.environ.pop("MPLBACKEND", None)
     sys.exit(run(cli))
 
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..errors import LandingError
 from ..text.durable import writing
 from .number_types import Number
 from .options import (
@@ -36,7 +35,7 @@ ENDINGS = (".html", ".pdf")
     show_default=True,
     help="The report.",
 )
-@click.option("--mode", metavar="MODE", help="Landing mode of all: 2-2 or 1-2-1.")
+@click.option("--mode", metavar="MODE", help="Landing mode of all: 2-2, 1-2-1 or space.")
 @set_option()
 @click.option(
     "--until", type=Number("s"), metavar="S", help="End time [s] [default: at rest, or lost]."
@@ -86,22 +85,16 @@ def _landed(
     """The landing of a vehicle, with the audit of its mode.
 
     Raises:
-        LandingError: There is no such vehicle, it lands in space, or it cannot land.
+        LandingError: There is no such vehicle, or it cannot land.
     """
     from ..audit.audit import audit as audited
     from ..figures.landing_report.sections import Landed
     from ..landing import Landing
     from ..presets import preset_names
-    from ..quantities import SPACE
     from ..studies.whole_landing import whole_landing
 
     preset = vehicle if vehicle in preset_names() else None
     parameters = chosen_parameters(preset, None if preset else vehicle, mode, pairs)
-    if parameters.drop.mode == SPACE:
-        raise LandingError(
-            f"{vehicle} lands with drop.mode = {SPACE}, and reports are of symmetric landings; "
-            "name one: --mode 2-2"
-        )
     history = whole_landing(Landing(parameters), until, every, decided=until is None)
     found = audited(parameters, (parameters.drop.mode,)) if audit else ()
     return Landed(preset or _name(Path(vehicle)), history, found)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 Point = tuple[float, float]
 # what the table says beside the lengths
 UNDRAWN = (
-    *("vehicle.mass", "vehicle.footpad_mass", "vehicle.inertia"),
+    *("vehicle.legs", "vehicle.mass", "vehicle.footpad_mass", "vehicle.inertia"),
     *("main_strut.stroke_max", "main_strut.area_upper", "main_strut.area_lower"),
     *("main_strut.volume_upper", "main_strut.volume_lower", "main_strut.charge_pressure"),
     *("main_strut.orifice_area_compression", "main_strut.orifice_area_rebound"),
@@ -56,6 +56,8 @@ def dimensions(parameters: Parameters) -> list[Dimension]:
     main, auxiliary, foot = _leg(parameters)
     cg, top = (0.0, 0.0), (0.0, parameters.vehicle.top_height)
     opposite = (-foot[0], foot[1])
+    odd = int(parameters.vehicle.legs) % 2 == 1
+    across = "diameter of the footpads' circle" if odd else "distance of opposite footpads"
     return [
         Dimension("main_strut.length", main, foot, 0),
         Dimension("auxiliary_strut.length", auxiliary, foot, 0),
@@ -66,7 +68,7 @@ def dimensions(parameters: Parameters) -> list[Dimension]:
         Dimension("main_strut.joint_radius", cg, main, 1),
         Dimension("auxiliary_strut.joint_radius", cg, auxiliary, 2),
         Dimension("radius of the footpads", cg, foot, 3),
-        Dimension("distance of opposite footpads", opposite, foot, 4),
+        Dimension(across, opposite, foot, 4),
     ]
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..history import History
 from ..quantities import LEGS, groups_of
 from .plots import MAIN_FORCE, MAIN_STROKE
-from .style import COLOURS, FAINT, GROUND, INK
+from .style import COLOURS, FAINT, FILM_GROUND, GROUND, INK
 from .wireframe import ground_height, wireframe
 
 if TYPE_CHECKING:
@@ -60,7 +60,10 @@ class MovingFigure:
         first = [min(leg for leg, _ in g.legs) for g in groups]
         axes = [self.figure.add_subplot(grid[i, 1]) for i in range(len(CURVES))]
         self._curves = [self._curve(ax, first, *curve) for ax, curve in zip(axes, CURVES)]
-        axes[0].legend(loc="lower right", frameon=False, fontsize=8)
+        # above the curves, so that it covers none
+        axes[0].legend(
+            loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, frameon=False, fontsize=8
+        )
         axes[-1].set_xlabel("time [s]")
         self.show(0)
         # the first layout is kept: one that is made for each frame would shake
@@ -115,7 +118,7 @@ class MovingFigure:
                 x,
                 y,
                 ground_height(parameters, x),
-                color="#d9dde0",
+                color=FILM_GROUND,
                 alpha=0.6,
                 shade=False,
                 linewidth=0,
@@ -129,13 +132,13 @@ class MovingFigure:
                 ylabel="y [m]",
                 zlabel="z [m]",
             )
-            ax.set_box_aspect((ends[1] - ends[0], 2.0 * across, high[1] - low[1]), zoom=1.1)
+            ax.set_box_aspect((ends[1] - ends[0], 2.0 * across, high[1] - low[1]), zoom=0.97)
             ax.view_init(elev=14.0, azim=-62.0)
             ax.locator_params(nbins=4)
             ax.tick_params(labelsize=7)
         else:
             ax.plot(ends, heights, color=GROUND, linewidth=1.2, zorder=0)
-            ax.fill_between(ends, heights, low[1] - 0.1, color="#e4e7e9", zorder=0)
+            ax.fill_between(ends, heights, low[1] - 0.1, color=FILM_GROUND, zorder=0)
             ax.set(xlim=ends, ylim=(low[1] - 0.1, high[1]), xlabel="x [m]", ylabel="y [m]")
             ax.set_aspect("equal")
             ax.spines[["top", "right"]].set_visible(False)

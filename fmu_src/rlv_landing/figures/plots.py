@@ -66,7 +66,7 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
 
     figure = Figure(figsize=(10.0, 8.0), layout="constrained")
     axes = figure.subplots(4, 1, sharex=True)
-    groups = _groups(history)
+    groups = drawn_legs(history)
     for legs, colour in zip(groups, COLOURS):
         leg = legs[0]
         label = "leg " + "/".join(map(str, legs))
@@ -151,7 +151,8 @@ def inline_svg(
     return svg.replace("<svg ", f'<svg role="img" aria-label="{escape(label)}" ', 1)
 
 
-def _groups(history: History) -> list[tuple[int, ...]]:
+def drawn_legs(history: History) -> list[tuple[int, ...]]:
+    """The legs that share a curve: mirror images, by touchdown; in space each alone."""
     mode = history.parameters.drop.mode if history.parameters is not None else None
     if mode is None or mode == SPACE:
         return [(leg,) for leg in history.legs]

@@ -28,10 +28,10 @@ from .report_bars import error_figure, measures_figure
 from .report_figures import NUMBERS, acceleration_figure, curve_figure, loop_figure
 from .report_marks import AUXILIARY, FORCE, STROKE
 from .report_movement import movement_figure
+from .style import page_css
 
 TEMPLATE = Path(__file__).with_name("report.html.j2")
 # of all pages
-CSS = Path(__file__).with_name("page.css")
 
 
 def write_report(
@@ -74,7 +74,7 @@ def render_report(
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     return environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
-        css=CSS.read_text(encoding="utf-8"),
+        css=page_css(),
         label=label,
         version=__version__,
         modes=found.modes,

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .report_marks import PAPER
-from .style import COLOURS, FAINT, TEST
+from .style import BANDS, COLOURS, FAINT, TEST
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -80,7 +80,7 @@ def error_figure(found: Validation) -> Figure:
     figure = Figure(figsize=(11.0, 0.9 + 0.19 * len(comparisons)), layout="constrained")
     ax = figure.subplots()
     y = -np.arange(len(comparisons), dtype=float)
-    for level, shade in ((20, "#f3f6f8"), (10, "#e6edf1"), (5, "#d5e1e8")):
+    for level, shade in zip((20, 10, 5), BANDS):
         ax.axvspan(-level, level, color=shade, linewidth=0)
     ax.axvline(0.0, color=FAINT, linewidth=0.6)
     ours = _shown([c.error for c in comparisons])

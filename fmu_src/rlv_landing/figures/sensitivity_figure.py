@@ -14,6 +14,7 @@ import numpy as np
 
 from ..studies.sweep.sensitivity import Indices
 from .plots import save_whole
+from .style import COLOURS, FAINT, INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,7 +23,7 @@ PANELS_ACROSS = 3
 WIDTH, HEIGHT = 4.6, 0.42
 LEFT, RIGHT = -0.25, 1.25
 # what is drawn of each factor: place beside its name, index, label, colour
-BARS = ((-0.2, "first", "alone", "tab:blue"), (0.2, "total", "in all", "tab:orange"))
+BARS = ((-0.2, "first", "alone", COLOURS[0]), (0.2, "total", "in all", COLOURS[4]))
 
 
 def save_bars(found: Sequence[Indices], path: Path, title: str) -> None:
@@ -86,20 +87,20 @@ def _draw(axis: Axes, indices: Indices) -> None:
                 ha="center",
                 va="center",
                 fontsize=8,
-                color="tab:red",
+                color=COLOURS[1],
                 bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 1},
             )
     axis.set_yticks(places, indices.factors, fontsize=8)
     axis.invert_yaxis()
     axis.set_xlim(LEFT, RIGHT)
     axis.set_title(f"{indices.response}, {indices.mode}", fontsize=9)
-    axis.axvline(0.0, color="0.6", lw=0.8)
+    axis.axvline(0.0, color=FAINT, lw=0.8)
     axis.grid(axis="x", alpha=0.3)
 
 
 def _draw_interval(axis: Axes, place: float, low: float, high: float) -> None:
     """An interval as a line with a stroke at each end, or an arrow where it leaves the axis."""
-    style: dict[str, Any] = {"color": "0.3", "lw": 1.1}
+    style: dict[str, Any] = {"color": INK, "lw": 1.1}
     inside = np.clip([low, high], LEFT, RIGHT)
     axis.plot(inside, [place, place], **style)
     for end in (e for e in (low, high) if LEFT <= e <= RIGHT):
@@ -111,4 +112,4 @@ def _draw_interval(axis: Axes, place: float, low: float, high: float) -> None:
         if beyond:
             axis.plot(limit, place, marker, markersize=5, clip_on=False, **style)
             text = f"  {' to '.join(f'{e:.3g}' for e in beyond)}  "
-            axis.text(limit, place - 0.05, text, ha=side, va="bottom", fontsize=7, color="0.3")
+            axis.text(limit, place - 0.05, text, ha=side, va="bottom", fontsize=7, color=INK)

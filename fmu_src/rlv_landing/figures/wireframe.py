@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from ..history import History
 from ..parameters import Parameters
-from ..quantities import LEGS, azimuth, groups_of
-from ..touchdown import footpad_between
+from ..quantities import SPACE
+from ..touchdown import footpad_between, leg_directions
 
 Lines = NDArray[np.float64]
 RING = 24
@@ -51,15 +52,10 @@ def wireframe(
     across = np.stack([np.zeros(5), corners[:, 1], corners[:, 0]], axis=-1)
     across = np.concatenate([across, np.repeat(across[-1:], RING - 4, axis=0)])
     outline = np.stack([corners[:, 0], corners[:, 1], np.zeros(5)], axis=-1)
-    azimuths = {
-        leg: (*azimuth(g.azimuth), side)
-        for g in groups_of(parameters.drop.mode)
-        for leg, side in g.legs
-    }
-    main, auxiliary = np.empty((2, len(rows), len(LEGS), 2, 3))
-    for i, leg in enumerate(LEGS):
-        sine, cosine, side = azimuths[leg]
-        out = np.array([cosine, 0.0, side * sine])
+    directions = leg_directions(parameters)
+    main, auxiliary = np.empty((2, len(rows), len(directions), 2, 3))
+    for i, (leg, (sine, cosine)) in enumerate(directions.items()):
+        out = np.array([cosine, 0.0, sine])
         up = np.array([0.0, 1.0, 0.0])
         lengths = [
             s.length - history[f"leg[{leg}].{n}.stroke"][rows]
@@ -76,16 +72,35 @@ def wireframe(
         "auxiliary": auxiliary,
     }
     parts["feet"] = main[:, :, 1:]
+    if parameters.drop.mode == SPACE:
+        v = parameters.vehicle
+        cg = np.array([v.cg_offset_x, 0.0, v.cg_offset_z])
+        return {name: _turned(history, rows, points - cg) for name, points in parts.items()}
     return {name: _in_inertial_axes(history, rows, points) for name, points in parts.items()}
 
 
-def ground_height(parameters: Parameters, x: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Height [m] at `x` [m] of the ground at rest.
+def ground_height(
+    parameters: Parameters, x: NDArray[np.float64], z: NDArray[np.float64] | float = 0.0
+) -> NDArray[np.float64]:
+    """Height [m] at `x`, `z` [m] of the plane of the ground at rest.
 
-    A positive slope falls along x.
+    A positive slope falls along x, in space in its direction.
     """
-    height: NDArray[np.float64] = -np.tan(parameters.ground.slope) * x
+    ground = parameters.ground
+    towards = ground.slope_direction
+    way = np.cos(towards) * x + np.sin(towards) * z
+    height: NDArray[np.float64] = -np.tan(ground.slope) * way
     return height
+
+
+def _turned(history: History, rows: Sequence[int] | NDArray[np.intp], points: Lines) -> Lines:
+    """Points of the body in a landing in space; arguments as for `_in_inertial_axes`."""
+    place = np.column_stack([history[f"body.{axis}"][rows] for axis in "xyz"])
+    turns = Rotation.from_quat(
+        np.column_stack([history[f"body.q_{part}"][rows] for part in "xyzw"])
+    ).as_matrix()
+    turned: Lines = points @ np.swapaxes(turns, 1, 2)[:, None]
+    return turned + place[:, None, None, :]
 
 
 def _in_inertial_axes(

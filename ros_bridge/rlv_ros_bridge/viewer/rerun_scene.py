@@ -17,14 +17,12 @@ import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
 from rlv_landing.figures.plots import DRAWN_OF_A_LEG
-from rlv_landing.figures.style import COLOURS
+from rlv_landing.figures.style import COLOURS, FORCE, GRID, INK, PAPER
 from rlv_landing.quantities import LEGS, touchdown_groups
 from rlv_landing.text.durable import whole_file, writing
 
 Array = NDArray[np.float64]
 TIMELINE = "sim_time"
-# Colours of lines, ground, contact forces and background.
-INK, GROUND, FORCE, PAPER = "#222222", "#a8adb2", "#e0a100", "#f4f5f6"
 BODY, MAIN, AUXILIARY, FOOTPADS, CONTACT, FLOOR = (
     f"vehicle/{part}"
     for part in ("body", "main_struts", "auxiliary_struts", "footpads", "contact_force", "ground")
@@ -95,7 +93,7 @@ class Scene:
             (BODY, [rgb(INK)]),
             (MAIN, legs),
             (AUXILIARY, legs),
-            (FLOOR, [rgb(GROUND)]),
+            (FLOOR, [rgb(GRID)]),
         ):
             self._log(part, rr.LineStrips3D.from_fields(radii=RADII[part], colors=shades))
         self._log(FOOTPADS, rr.Points3D.from_fields(radii=RADII[FOOTPADS], colors=[rgb(INK)]))

@@ -12,7 +12,7 @@ from ...studies.envelope.results import lost_text, stretches
 from ...studies.envelope.search import Envelope, Family
 from ...studies.sweep.factors import value_text
 from ..plots import save_whole
-from ..style import AREA, COLOURS, FAINT, plain_axes
+from ..style import AREA, FAINT, MORE_COLOURS, plain_axes
 from .polar import make_polar, scales
 from .sides import name_stable_side, shade, stable_word
 
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-MORE_COLOURS = (*COLOURS, "#7a4fa3", "#b8860b", "#3d3d3d")
 # more families than colours begin them anew in the next style
 STYLES = ("-", "--", ":")
 # a picture has no more marks; conditions beyond share the last

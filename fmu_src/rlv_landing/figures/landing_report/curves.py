@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
-from ...quantities import touchdown_groups
+from ...quantities import SPACE
 from ..drawing import vehicle_drawing
 from ..plots import (
     AUXILIARY_FORCE,
@@ -13,8 +13,9 @@ from ..plots import (
     MAIN_STROKE,
     TOP_ACCELERATION,
     draw_peaks,
+    drawn_legs,
 )
-from ..report_movement import sequence
+from ..report_movement import movement_in_space, sequence
 from ..style import COLOURS, plain_axes
 from .sections import Landed
 
@@ -43,7 +44,9 @@ class Picture(NamedTuple):
 
 def pictures(found: Landed) -> list[Picture]:
     """The pictures of a landing."""
-    legs = "one curve for legs that are mirror images; triangles: true peaks"
+    in_space = found.parameters.drop.mode == SPACE
+    each = "a curve for each leg" if in_space else "one curve for legs that are mirror images"
+    legs = f"{each}; triangles: true peaks"
     liquid = found.parameters.main_strut.kind == "liquid-spring"
     pairs = [
         ("Main struts", f"compression negative; {legs}", (MAIN_FORCE, MAIN_STROKE)),
@@ -54,11 +57,17 @@ def pictures(found: Landed) -> list[Picture]:
         Picture(
             "The vehicle", "struts at full length, to scale", vehicle_drawing(found.parameters, "")
         ),
-        Picture("Movement", "light to dark in time", sequence(found.history, _end(found))[0]),
+        Picture("Movement", "light to dark in time", _movement(found)),
         *(Picture(title, note, _pair(found, _of_legs, *each)) for title, note, each in pairs),
         Picture("Body", "", _pair(found, _of_body, TOP_ACCELERATION, MARGIN)),
         Picture("Energies over time", "", _energies(found)),
     ]
+
+
+def _movement(found: Landed) -> Figure:
+    if found.parameters.drop.mode == SPACE:
+        return movement_in_space(found.history, _end(found))
+    return sequence(found.history, _end(found))[0]
 
 
 def _end(found: Landed) -> float:
@@ -79,7 +88,7 @@ def _pair(
         _finish(ax, found)
     if axes[0].get_legend_handles_labels()[1]:
         figure.legend(
-            *axes[0].get_legend_handles_labels(), loc="outside upper right", ncols=4, frameon=False
+            *axes[0].get_legend_handles_labels(), loc="outside upper right", ncols=8, frameon=False
         )
     return figure
 
@@ -100,7 +109,7 @@ def _finish(ax: Axes, found: Landed) -> None:
 def _of_legs(ax: Axes, found: Landed, column: Column) -> None:
     name, factor, _ = column
     history = found.history
-    for legs, colour in zip(touchdown_groups(found.parameters.drop.mode), COLOURS):
+    for legs, colour in zip(drawn_legs(history), COLOURS):
         of_leg = f"leg[{legs[0]}].{name}"
         label = "leg " + "/".join(map(str, legs))
         ax.plot(history.time, factor * history[of_leg], color=colour, label=label, linewidth=1.2)

@@ -11,7 +11,8 @@ from ... import __version__
 from ...tables.landing import parameter_records
 from ...text.durable import whole_file
 from ..plots import inline_svg
-from ..report import CSS, write_whole
+from ..report import write_whole
+from ..style import page_css
 from .curves import pictures
 from .sections import Landed, Table, side_by_side, tables_of
 
@@ -46,7 +47,7 @@ def page(landings: Sequence[Landed]) -> str:
         autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     return environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
-        css=CSS.read_text(encoding="utf-8"),
+        css=page_css(),
         version=__version__,
         names=[found.title for found in landings],
         results=side_by_side(landings),

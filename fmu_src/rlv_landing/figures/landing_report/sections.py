@@ -11,16 +11,22 @@ from ...audit.audit import Audit
 from ...audit.bounds import BOUNDS
 from ...history import History
 from ...parameters import PARAMETER_QUANTITIES, Parameters
-from ...quantities import ENERGY_QUANTITIES, shown, touchdown_groups
+from ...quantities import ENERGY_QUANTITIES, SPACE, shown
 from ...studies.outcome import Outcome, outcome
 from ...summary import summarise, unfinished
 from ...tables.landing import decimals, number
+from ..plots import drawn_legs
 from .loads import COMPONENTS, FOOTPAD, interface_loads, peaks
 
 # of the touchdown, the parameters that are shown
 TOUCHDOWN = (
     *("drop.mode", "drop.contact_time", "drop.vertical_velocity", "drop.horizontal_velocity"),
     *("drop.tilt", "drop.pitch_rate", "ground.slope", "ground.friction", "ground.gravity"),
+)
+# of a landing in space, beside them
+TOUCHDOWN_IN_SPACE = (
+    *("vehicle.legs", "vehicle.leg_azimuth", "drop.lateral_velocity", "drop.heading", "drop.roll"),
+    *("drop.roll_rate", "drop.yaw_rate", "ground.slope_direction"),
 )
 MARGINS = {
     "stability_min": "least stability margin",
@@ -127,7 +133,8 @@ def _has_liquid(parameters: Parameters) -> bool:
 
 def _touchdown(found: Landed) -> Table:
     rows = []
-    for name in TOUCHDOWN:
+    in_space = found.parameters.drop.mode == SPACE
+    for name in (*TOUCHDOWN, *(TOUCHDOWN_IN_SPACE if in_space else ())):
         q, value = PARAMETER_QUANTITIES[name], found.parameters[name]
         unit, size = shown(q)
         text = value if isinstance(value, str) else f"{float(value) / size:.5g}"
@@ -138,6 +145,9 @@ def _touchdown(found: Landed) -> Table:
 def _margins(found: Landed) -> Table:
     end = found.outcome
     rows = [("outcome", f"{end.name} at {end.time:.3f} s")]
+    if end.direction is not None:
+        over = f"the edge {end.edge}, towards" if end.edge else "towards"
+        rows.append(("toppled over", f"{over} {np.degrees(end.direction):.0f} deg from x to z"))
     rows += [(MARGINS[name], f"{value:.4f} m") for name, value in end.margins.items()]
     return Table(
         "Outcome and margins", ("", ""), rows, " ".join(unfinished(summarise(found.history)))
@@ -183,7 +193,8 @@ def _legs(found: Landed) -> Table:
 
 def _loads(found: Landed) -> Table:
     time, rows = found.history.time, []
-    groups = touchdown_groups(found.parameters.drop.mode)
+    in_space = found.parameters.drop.mode == SPACE
+    groups = drawn_legs(found.history)
     for each in interface_loads(found.history):
         legs = next(g for g in groups if each.leg in g)
         if each.leg != legs[0]:
@@ -202,8 +213,8 @@ def _loads(found: Landed) -> Table:
         "Each row is the largest amount of a component, with the whole load at that time: what "
         f"acts on the body, at the {FOOTPAD} what the ground does to it, at samples {step:.3g} ms "
         "apart. Axes are fixed in the body: radial outward, axial towards the top, tangential = "
-        "radial x axial. A component that is zero throughout has no row. Of legs that are mirror "
-        "images the first is shown.",
+        "radial x axial. A component that is zero throughout has no row."
+        + ("" if in_space else " Of legs that are mirror images the first is shown."),
     )
 
 

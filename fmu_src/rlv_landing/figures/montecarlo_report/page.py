@@ -14,7 +14,8 @@ from ...studies.sweep.factors import value_text
 from ...studies.sweep.responses import every_response
 from ...tables.montecarlo_tables import number, rate_text
 from ..plots import inline_svg
-from ..report import CSS, write_whole
+from ..report import write_whole
+from ..style import page_css
 from .pictures import pictures
 
 TEMPLATE = Path(__file__).with_name("page.html.j2")
@@ -45,7 +46,7 @@ def page(found: Summary, study: MonteCarlo, results: Path, again: str) -> str:
     )
     drawn = pictures(found, study, read_rows(results, study))
     return environment.from_string(TEMPLATE.read_text(encoding="utf-8")).render(
-        css=CSS.read_text(encoding="utf-8"),
+        css=page_css(),
         version=__version__,
         name=found.name,
         runs=found.runs,
