@@ -11,16 +11,18 @@ LOADS = frozenset(q.name for q in SPACE_INPUTS if q.name.startswith("external.")
 GROUND = frozenset(q.name for q in SPACE_INPUTS if q.name.startswith("ground."))
 RATES = frozenset(name for name in GROUND if name.endswith("_rate"))
 
-LEG = frozenset(
+# what single legs have for themselves may be any of a leg's parameters
+OVERRIDES = frozenset({"vehicle.leg_overrides"})
+LEG = OVERRIDES | {
     f"{strut}.{what}"
     for strut in ("main_strut", "auxiliary_strut")
     for what in ("joint_radius", "joint_depth", "length")
-)
-# the rigid vehicle, which tumbles until its first contact
+}
+# the rigid vehicle, which tumbles until its first contact; legs that differ count where they stand
 MASSES = frozenset(
     f"vehicle.{what}"
     for what in (
-        *("mass", "footpad_mass", "cg_offset_x", "cg_offset_z"),
+        *("mass", "footpad_mass", "cg_offset_x", "cg_offset_z", "leg_azimuth"),
         *(f"inertia{axes}" for axes in ("", "_roll", "_yaw", "_xy", "_xz", "_yz")),
     )
 )
@@ -33,13 +35,13 @@ VX = MOTION | {"drop.horizontal_velocity"}
 VY = MOTION | {"drop.vertical_velocity", "ground.gravity"}
 VZ = MOTION | {"drop.lateral_velocity"}
 FEET = frozenset({"vehicle.leg_azimuth"})
-HEIGHT = VY | FEET | {"ground.slope", "ground.slope_direction"}
-CHARGE = frozenset(
+HEIGHT = VY | FEET | {"ground.slope", "ground.slope_direction", "ground.step"}
+CHARGE = OVERRIDES | {
     f"main_strut.{what}"
     for what in ("kind", "charge_pressure", "ambient_pressure", "area_upper", "area_lower")
-)
+}
 LOADED = MOTION | CHARGE | {"vehicle.transverse_load_at"}
-PRESSURE = frozenset({"main_strut.kind", "main_strut.charge_pressure"})
+PRESSURE = OVERRIDES | {"main_strut.kind", "main_strut.charge_pressure"}
 LIQUID = PRESSURE | {
     f"main_strut.{what}"
     for what in (

@@ -46,9 +46,11 @@ def summarise(history: History) -> dict[str, Any]:
     legs = [_leg_summary(history, leg, work.get(leg)) for leg in history.legs]
     result["legs"] = legs
     if history.parameters is not None:
-        limit = history.parameters.main_strut.stroke_max
         result["bottomed_out"] = [
-            leg["leg"] for leg in legs if leg["main_strut_stroke_max"] > limit
+            leg["leg"]
+            for leg in legs
+            if leg["main_strut_stroke_max"]
+            > history.parameters.of_leg(leg["leg"]).main_strut.stroke_max
         ]
     return result
 

@@ -23,6 +23,10 @@ FIVE_LEGS: dict[str, float | str] = {
     "drop.lateral_velocity": 0.3,
     "ground.slope": radians(3.0),
     "ground.slope_direction": radians(50.0),
+    "leg[2].ground.step": 0.012,
+    "leg[2].main_strut.orifice_area_compression": 7e-6,
+    "leg[4].ground.friction": 0.15,
+    "leg[5].vehicle.footpad_mass": 4.8,
 }
 # a deck on its way, and a gust, from the start on
 DECK: dict[str, float] = {

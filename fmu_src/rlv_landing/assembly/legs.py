@@ -49,8 +49,14 @@ def state_sizes(
     return scale, flat_state([0.0] * len(body), [LEG_RELATIVE] * groups, NO_ENERGY)
 
 
-def leg_model(parameters: Parameters) -> LegModel:
-    """The numbers of a leg that does not lie in a symmetric plane."""
+def leg_model(whole: Parameters, leg: int = 0) -> LegModel:
+    """The numbers of a leg that does not lie in a symmetric plane.
+
+    Args:
+        whole: The parameters of the landing.
+        leg: The leg's number; 0: one without values for itself.
+    """
+    parameters = whole.of_leg(leg)
     strut = parameters.auxiliary_strut
     play = strut.play_tension + strut.play_compression > 0.0
     mu = parameters.ground.friction
@@ -60,7 +66,7 @@ def leg_model(parameters: Parameters) -> LegModel:
         "friction_kind": law_number(FRICTION_LAWS, parameters.ground.friction_law),
         "mu": mu if mu >= LEAST_FRICTION else 0.0,
         "fill": liquid_fill(parameters),
-        "K_t": tangential_stiffness(parameters),
+        "K_t": tangential_stiffness(parameters, whole),
         "zone": parameters.ground.slip_zone * parameters.ground.stick_displacement,
         "Lb": -parameters.main_strut.joint_depth,
         "Ld": -parameters.auxiliary_strut.joint_depth,
@@ -92,23 +98,27 @@ def touchdown_energy(parameters: Parameters) -> float:
     length.
     """
     vehicle, drop = parameters.vehicle, parameters.drop
-    mass = vehicle.mass + vehicle.footpad_mass * parameters.vehicle.legs
+    mass = parameters.whole_mass
     moving = drop.horizontal_velocity**2 + drop.vertical_velocity**2 + drop.lateral_velocity**2
     turning = drop.pitch_rate**2 + drop.roll_rate**2 + drop.yaw_rate**2
     fall = mass * parameters.ground.gravity * 0.1 * parameters.main_strut.length
     return max(0.5 * mass * moving + 0.5 * vehicle.inertia * turning + fall, LEAST_ENERGY)
 
 
-def tangential_stiffness(parameters: Parameters) -> float:
+def tangential_stiffness(parameters: Parameters, whole: Parameters | None = None) -> float:
     """Stiffness of a sticking footpad along the ground [N/m] (closure).
 
     It is `ground.tangential_stiffness`; 0 stands for the weight of the whole vehicle (at standard
     gravity) over the stick displacement.
+
+    Args:
+        parameters: The parameters as the footpad's leg has them.
+        whole: Those of the whole vehicle, where they are others.
     """
-    given, vehicle = parameters.ground.tangential_stiffness, parameters.vehicle
+    given = parameters.ground.tangential_stiffness
     if given > 0.0:
         return given
-    mass = vehicle.mass + vehicle.footpad_mass * parameters.vehicle.legs
+    mass = (whole or parameters).whole_mass
     return mass * STANDARD_GRAVITY / parameters.ground.stick_displacement
 
 

@@ -14,7 +14,7 @@ from ..core.records import Rotation, Vector
 from ..core.vectors import added, cross, dot, less, rotation, scaled, solved, to_body, to_inertial
 from ..errors import LandingError
 from ..parameters import Parameters
-from ..touchdown import DEPTH_LIMIT, STEEPEST, footpad_at_rest
+from ..touchdown import DEPTH_LIMIT, STEEPEST, each_leg, footpad_at_rest
 
 # parts of the free flight's duration at which the footpads are checked to be above the ground
 CHECKS = 64
@@ -73,14 +73,19 @@ class SpatialFlight:
         deck: DeckMotion,
     ) -> None:
         drop = parameters.drop
-        self.footpad = footpad_at_rest(parameters)
-        self._feet = [less(in_leg(p, *self.footpad), cg_of(body)) for p in places]
+        legs = each_leg(parameters)
+        self.footpads = [footpad_at_rest(leg) for leg in legs]
+        self._feet = [less(in_leg(p, *f), cg_of(body)) for p, f in zip(places, self.footpads)]
+        self._steps = [leg.ground.step for leg in legs]
         self._body, self._deck = body, deck
         self._duration, self._gravity = drop.contact_time, parameters.ground.gravity
-        m_d = parameters.vehicle.footpad_mass
-        mass = body.m_u + m_d * len(places)
-        self._center = scaled(_sum(self._feet), m_d / mass)
-        self._inertia = _whole_inertia(body, self._feet, self._center, m_d)
+        masses = [leg.vehicle.footpad_mass for leg in legs]
+        mass = body.m_u + masses[0] * len(places)
+        self._center = scaled(_sum(self._feet), masses[0] / mass)
+        if len(set(masses)) > 1:
+            moments = [scaled(foot, m_d) for foot, m_d in zip(self._feet, masses)]
+            self._center = scaled(_sum(moments), 1.0 / (body.m_u + sum(masses)))
+        self._inertia = _whole_inertia(body, self._feet, self._center, masses)
         q = attitude(drop.tilt, drop.roll, drop.heading)
         turn = rotation(*q)
         spin = to_body(turn, Vector(drop.roll_rate, drop.yaw_rate, -drop.pitch_rate))
@@ -102,7 +107,7 @@ class SpatialFlight:
         deck = self._deck.at(t)
         axes, above = ground_axes(deck_turn(deck), self._body), from_origin(deck, cg)
         places = (added(above, to_inertial(turn, foot)) for foot in self._feet)
-        return min(to_body(axes, place).y for place in places)
+        return min(to_body(axes, place).y - step for place, step in zip(places, self._steps))
 
     def start(self) -> SpatialState:
         """The body's state at time 0.
@@ -192,7 +197,7 @@ def _sum(vectors: Sequence[Vector]) -> Vector:
 
 
 def _whole_inertia(
-    body: SpatialModel, feet: Sequence[Vector], center: Vector, m_d: float
+    body: SpatialModel, feet: Sequence[Vector], center: Vector, masses: Sequence[float]
 ) -> Tensor:
     """Inertia [kg m2] of body and footpads about their common CG, body axes."""
     rows = [
@@ -200,7 +205,7 @@ def _whole_inertia(
         [body.I_xy, body.I_y, body.I_yz],
         [body.I_xz, body.I_yz, body.I_z],
     ]
-    for mass, place in [(body.m_u, Vector(0.0, 0.0, 0.0)), *((m_d, foot) for foot in feet)]:
+    for mass, place in [(body.m_u, Vector(0.0, 0.0, 0.0)), *zip(masses, feet)]:
         d = less(place, center)
         for i in range(3):
             for j in range(3):

@@ -28,7 +28,7 @@ class EventSearch:
         solver: The solver.
         names: The outputs' names.
         order: For each output its place in the solver's outputs and its factor.
-        stroke_max: Stroke at which the main struts meet their compression stops [m].
+        stops: Strokes at which the legs' main struts meet their compression stops [m].
     """
 
     def __init__(
@@ -36,7 +36,7 @@ class EventSearch:
         solver: Solver,
         names: Sequence[str],
         order: Sequence[tuple[int, float]],
-        stroke_max: float,
+        stops: Sequence[float],
     ) -> None:
         self._solver = solver
         self._y = array("d", bytes(8 * solver.n))
@@ -44,10 +44,11 @@ class EventSearch:
         places = {name: i for name, (i, _) in zip(names, order)}
         # legs that move alike have one place
         depths = {i for name, i in places.items() if name.endswith(".contact.penetration")}
-        strokes = {i for name, i in places.items() if name.endswith(".main_strut.stroke")}
+        strokes = [i for name, i in places.items() if name.endswith(".main_strut.stroke")]
+        ends = dict(zip(strokes, stops))
         # (place, edge): outputs for which it matters on which side of an edge they are
         self._edges = [(i, 0.0) for i in sorted(depths)] + [
-            (i, edge) for i in sorted(strokes) for edge in (ROUNDING, stroke_max)
+            (i, edge) for i in sorted(ends) for edge in (ROUNDING, ends[i])
         ]
         self._phase = places["status.phase"]
 

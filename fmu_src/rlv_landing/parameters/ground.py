@@ -22,6 +22,12 @@ class Ground:
         "direction in which the slope falls, from +x towards +z; mode = space",
         real("rad", -3.2, 3.2, display_unit="deg"),
     ] = 0.0
+    step: Annotated[
+        float,
+        "height of the ground below a footpad above its plane, along its normal: a stone, or a "
+        "hole; of one leg by leg[i].ground.step; mode = space",
+        real("m", -5.0, 5.0, "step", display_unit="mm"),
+    ] = 0.0
     gravity: Annotated[
         float, "gravitational acceleration", real("m/s2", 0.0, 50.0, "g", "closure")
     ] = 9.81

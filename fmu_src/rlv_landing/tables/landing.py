@@ -199,7 +199,7 @@ def parameter_table(parameters: Parameters) -> str:
     )
     for name, value in parameters.items():
         q = PARAMETER_QUANTITIES[name]
-        bounds = " | ".join(q.choices) if q.choices else f"[{q.lo:g}, {q.hi:g}]"
+        bounds = " | ".join(q.choices) if q.kind == "string" else f"[{q.lo:g}, {q.hi:g}]"
         table.add_row(
             name,
             value if isinstance(value, str) else f"{value:.6g}",

@@ -124,7 +124,7 @@ class NodeParameters:
             descriptor.additional_constraints = _constraints(
                 q.choices, "start" if start else "paused"
             )
-            if not q.choices:
+            if q.kind != "string":
                 descriptor.floating_point_range = [
                     FloatingPointRange(from_value=q.lo, to_value=q.hi, step=0.0)
                 ]

@@ -19,6 +19,13 @@ from rlv_landing.quantities import interface_of
 SPACE = interface_of("space", 5)
 SCALE = {q.name: q.nominal if q.kind == "real" else 1.0 for q in SPACE.outputs}
 TURNS = ("roll", "yaw", "tilt")
+# texts that say something else than the vehicle's own
+TEXTS = {
+    "vehicle.leg_overrides": [
+        "leg[2].main_strut.length = 1.44; leg[3].vehicle.footpad_mass = 6.0",
+        "leg[1].ground.step = 0.001; leg[4].main_strut.charge_pressure = 1.5e6",
+    ],
+}
 MOVED = FIVE_LEGS | {
     "vehicle.inertia_xy": 20.0,
     "vehicle.inertia_xz": 15.0,
@@ -99,7 +106,7 @@ def at_start() -> tuple[dict[str, set[str]], dict[str, set[str]]]:
         for name, q in table.items():
             value = base[name]
             if isinstance(value, str):
-                others = [c for c in q.choices if c != value]
+                others = [c for c in q.choices if c != value] or TEXTS.get(name, [])
             else:
                 # these count by little in the short flight
                 part = 0.8 if "inertia" in name or "offset" in name else 0.99

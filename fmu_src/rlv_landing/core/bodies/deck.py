@@ -78,8 +78,11 @@ def deck_velocity(u: SpatialInputs, spin: Vector, place: Vector) -> Vector:
     return added(Vector(u.surge_rate, u.heave_rate, u.sway_rate), cross(spin, place))
 
 
-def motion_on_ground(axes: Rotation, place: Vector, velocity: Vector) -> FootMotion:
-    """A place from the deck's origin against the ground, by its velocity relative to it."""
+def motion_on_ground(axes: Rotation, place: Vector, velocity: Vector, step: float) -> FootMotion:
+    """A place from the deck's origin against the ground, by its velocity relative to it.
+
+    The ground there is a `step` [m] above its plane.
+    """
     slip = to_body(axes, velocity)
-    depth = -(axes.y_x * place.x + axes.y_y * place.y + axes.y_z * place.z)
+    depth = step - (axes.y_x * place.x + axes.y_y * place.y + axes.y_z * place.z)
     return FootMotion(depth, -slip.y, slip.x, slip.z)

@@ -245,7 +245,7 @@ class SpatialMotion(Legged):
         above = from_origin(now, point)
         ground = deck_velocity(now, rolling, above)
         velocity = less(added(Vector(s.vx, s.vy, s.vz), to_inertial(turn, moved)), ground)
-        keep(motion_on_ground(axes, above, velocity), self._motions, i)
+        keep(motion_on_ground(axes, above, velocity, model.step), self._motions, i)
         motion = foot_motion_of(self._motions, i)
         keep(leg_forces(leg, motion, model), self._forces, i)
         forces = leg_forces_of(self._forces, i)
