@@ -35,7 +35,14 @@ VX = MOTION | {"drop.horizontal_velocity"}
 VY = MOTION | {"drop.vertical_velocity", "ground.gravity"}
 VZ = MOTION | {"drop.lateral_velocity"}
 FEET = frozenset({"vehicle.leg_azimuth"})
-HEIGHT = VY | FEET | {"ground.slope", "ground.slope_direction", "ground.step"}
+HEIGHT = (
+    VY
+    | FEET
+    | {
+        *("ground.slope", "ground.slope_direction", "ground.step", "ground.terrain"),
+        "vehicle.body_points",
+    }
+)
 CHARGE = OVERRIDES | {
     f"main_strut.{what}"
     for what in ("kind", "charge_pressure", "ambient_pressure", "area_upper", "area_lower")
@@ -58,6 +65,7 @@ INPUTS: dict[str, frozenset[str]] = {
     **dict.fromkeys(ACCELERATIONS, LOADS | RATES),
     "body.top_axial_acceleration": LOADS | RATES,
     "status.phase": LOADS | RATES,
+    **{f"body.strike_{what}_{axis}": RATES for what in ("force", "moment") for axis in "xyz"},
     "contact.force_x": RATES,
     "contact.force_y": RATES,
     "contact.force_z": RATES,
@@ -69,6 +77,7 @@ START_INPUTS: dict[str, frozenset[str]] = {
     **dict.fromkeys(ACCELERATIONS, LOADS),
     "body.y": GROUND,
     "body.top_axial_acceleration": LOADS,
+    "body.clearance": GROUND - {"ground.heave"},
     "energy.potential": GROUND,
     "auxiliary_strut.transverse_force": LOADS,
     "footpad.y": GROUND,
@@ -81,6 +90,7 @@ PARAMETERS: dict[str, frozenset[str]] = {
     "body.x": VX,
     "body.y": HEIGHT,
     "body.z": VZ,
+    "body.clearance": VX | VZ | HEIGHT,
     "body.vx": VX,
     "body.vy": VY,
     "body.vz": VZ,

@@ -212,9 +212,10 @@ class Landing:
     def advance_within_step(self, time: float, step_end: float, *, to_event: bool) -> bool:
         """Go on to `time` [s] in a step that ends at `step_end` [s], not before `time`.
 
-        With `to_event`, go on to the first event before `time`, if there is one: a footpad touches
-        the ground or leaves it, a main strut comes to an end stop or leaves it, or `status.phase`
-        changes. It is found to 1e-9 s. Results do not depend on where a step is left and continued.
+        With `to_event`, go on to the first event before `time`, if there is one: a footpad or the
+        body touches the ground or leaves it, a main strut comes to an end stop or leaves it, or
+        `status.phase` changes. It is found to 1e-9 s. Results do not depend on where a step is left
+        and continued.
 
         Returns whether there is an event at the time reached; False without `to_event`.
         """

@@ -83,8 +83,10 @@ def spatial_impulse(history: History, parameters: Parameters) -> SpatialMomentum
         weight = parameters.of_leg(leg).vehicle.footpad_mass * down
         force = _columns(history, f"leg[{leg}].contact.force_") + weight
         loads.append((_columns(history, f"leg[{leg}].footpad."), force))
+    loads.append((_place(history), _columns(history, "body.strike_force_")))
     force = np.sum([f for _, f in loads], axis=0)
-    moment = np.sum([np.cross(x, f) for x, f in loads], axis=0)
+    turning = _columns(history, "body.strike_moment_")
+    moment = turning + np.sum([np.cross(x, f) for x, f in loads], axis=0)
     linear, turn = (
         np.asarray(cumulative_simpson(f, x=history.time, axis=0, initial=0.0))
         for f in (force, moment)

@@ -1,8 +1,9 @@
 """Finds the first event on the way of a landing.
 
-Events are: a footpad touches the ground or leaves it; a main strut comes to an end stop or leaves
-it; `status.phase` changes. The search reads the interpolants of the integrator's own steps and
-changes none of them, so a landing has the same numbers whether events are looked for or not.
+Events are: a footpad or the body touches the ground or leaves it; a main strut comes to an end stop
+or leaves it; `status.phase` changes. The search reads the interpolants of the integrator's own
+steps and changes none of them, so a landing has the same numbers whether events are looked for or
+not.
 """
 
 from __future__ import annotations
@@ -47,6 +48,7 @@ class EventSearch:
         strokes = [i for name, i in places.items() if name.endswith(".main_strut.stroke")]
         ends = dict(zip(strokes, stops))
         # (place, edge): outputs for which it matters on which side of an edge they are
+        depths |= {i for name, i in places.items() if name == "body.clearance"}
         self._edges = [(i, 0.0) for i in sorted(depths)] + [
             (i, edge) for i in sorted(ends) for edge in (ROUNDING, ends[i])
         ]

@@ -8,6 +8,7 @@ from .drop import Drop, Integration
 from .ground import Ground
 from .one_leg import groups_of_a_leg
 from .parameters import Parameters
+from .surroundings import terrain_from_table, terrain_of
 from .table import GROUPS, PARAMETER_QUANTITIES, check_value, parameters_of
 from .vehicle import AuxiliaryStrut, MainStrut, Vehicle
 
@@ -24,4 +25,6 @@ __all__ = [
     "check_value",
     "groups_of_a_leg",
     "parameters_of",
+    "terrain_from_table",
+    "terrain_of",
 ]

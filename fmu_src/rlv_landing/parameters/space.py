@@ -13,11 +13,11 @@ from .vehicle import Vehicle
 # a symmetric landing cannot have them otherwise than by default
 ONLY_IN_SPACE = {
     Vehicle: (
-        *("legs", "leg_overrides", "cg_offset_x", "cg_offset_z"),
+        *("legs", "leg_overrides", "body_points", "cg_offset_x", "cg_offset_z"),
         *("inertia_xy", "inertia_xz", "inertia_yz"),
     ),
     Drop: ("heading", "roll", "roll_rate", "yaw_rate", "lateral_velocity"),
-    Ground: ("slope_direction", "step"),
+    Ground: ("slope_direction", "step", "terrain"),
 }
 # a symmetric landing may have them, and does not depend on them
 NO_EFFECT_IN_A_PLANE = ("vehicle.leg_azimuth", "vehicle.inertia_roll", "vehicle.inertia_yaw")

@@ -13,6 +13,14 @@ from .drop import Drop, Integration
 from .ground import Ground
 from .one_leg import OVERRIDES, read_overrides, split_leg, written_overrides
 from .space import NO_EFFECT_IN_A_PLANE, ONLY_IN_SPACE
+from .surroundings import (
+    POINTS,
+    TERRAIN,
+    read_points,
+    read_terrain,
+    written_points,
+    written_terrain,
+)
 from .vehicle import AuxiliaryStrut, MainStrut, Vehicle
 
 GROUPS: dict[str, type] = {
@@ -166,4 +174,6 @@ def _override(name: str, text: str) -> float | str:
 # the texts that are no choices, as they are kept: always the same one for the same meaning
 FORMS: dict[str, Callable[[str], str]] = {
     OVERRIDES: lambda text: written_overrides(overrides_of(text)),
+    POINTS: lambda text: written_points(read_points(text)),
+    TERRAIN: lambda text: written_terrain(read_terrain(text)) if text.strip() else "",
 }

@@ -80,6 +80,12 @@ class Vehicle:
         "files have tables for them; mode = space",
         listed(),
     ] = ""
+    body_points: Annotated[
+        str,
+        "points of the body that meet the ground, x y z; x y z; ... in m from the CG's height on "
+        "the legs' axis, body axes: a nozzle's rim, a base ring; mode = space",
+        listed(),
+    ] = ""
 
 
 @dataclass(frozen=True)

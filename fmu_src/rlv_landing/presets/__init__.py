@@ -10,7 +10,7 @@ from ..errors import LandingError, first_of, unknown
 from ..parameters import GROUPS, PARAMETER_QUANTITIES, Parameters, groups_of_a_leg
 from ..quantities import MODES
 from ..text.files import parse_document, read_text, toml_table, toml_text
-from ..text.values import parse_value
+from ..text.listed import parse_parameter
 
 FOLDER = Path(__file__).parent
 DEFAULT_PRESET = "yue2022-figures"
@@ -56,26 +56,29 @@ def read_toml(path: str | Path) -> Parameters:
     """
     path = Path(path)
     missing = f"there is no parameter file {path}; presets are {', '.join(preset_names())}"
-    return parse_toml(read_text(path, "parameter file", missing), str(path))
+    return parse_toml(read_text(path, "parameter file", missing), str(path), path.parent)
 
 
-def parse_toml(text: str, name: str) -> Parameters:
-    """Parameters from a TOML text, as `read_toml`; errors name it `name`."""
+def parse_toml(text: str, name: str, folder: Path | None = None) -> Parameters:
+    """Parameters from a TOML text, as `read_toml`; errors name it `name`.
+
+    Names of files in it start from the `folder`; None: the present one.
+    """
     document = parse_document(text, name)
     try:
-        return _from_document(document)
+        return _from_document(document, folder)
     except LandingError as e:
         raise LandingError(f"{name}: {e}") from None
 
 
-def _from_document(document: dict[str, Any]) -> Parameters:
+def _from_document(document: dict[str, Any], folder: Path | None) -> Parameters:
     known = ("preset", "complete", "mode", "leg", *GROUPS)
     for key in document:
         if key not in known:
             raise unknown("table", key, known)
     base = document.get("preset")
     parameters = load_preset(base) if base is not None else Parameters()
-    values, sources = _flat({k: v for k, v in document.items() if k in GROUPS})
+    values, sources = _flat({k: v for k, v in document.items() if k in GROUPS}, folder=folder)
     _check_complete(document, values)
     own_values, own_sources = _of_legs(document)
     parameters = parameters.with_values({**values, **own_values}, {**sources, **own_sources})
@@ -121,8 +124,13 @@ def _of_legs(document: Mapping[str, Any]) -> tuple[dict[str, float | str], dict[
     return values, sources
 
 
-def _flat(tables: Mapping[str, Any], of: str = "") -> tuple[dict[str, float | str], dict[str, str]]:
-    """Values and sources by name, from tables by group; `of` is put before each name."""
+def _flat(
+    tables: Mapping[str, Any], of: str = "", folder: Path | None = None
+) -> tuple[dict[str, float | str], dict[str, str]]:
+    """Values and sources by name, from tables by group.
+
+    `of` is put before each name; names of files start from the `folder`.
+    """
     values: dict[str, float | str] = {}
     sources: dict[str, str] = {}
     groups = groups_of_a_leg() if of else tuple(GROUPS)
@@ -144,7 +152,7 @@ def _flat(tables: Mapping[str, Any], of: str = "") -> tuple[dict[str, float | st
                 if "source" in entry:
                     sources[name] = str(entry["source"])
                 entry = entry["value"]
-            values[name] = parse_value(PARAMETER_QUANTITIES[name], entry)
+            values[name] = parse_parameter(PARAMETER_QUANTITIES[name], entry, folder)
     return values, sources
 
 
@@ -173,7 +181,8 @@ def origins(path: str | Path | None, preset: str | None, mode: str) -> dict[str,
             0, (parse_document(read_text(file, "preset", ""), preset), f"preset {preset}")
         )
     for tables, origin in layers:
-        plain, _ = _flat({k: v for k, v in tables.items() if k in GROUPS})
+        folder = Path(path).parent if path is not None else None
+        plain, _ = _flat({k: v for k, v in tables.items() if k in GROUPS}, folder=folder)
         of_mode, _ = _flat(tables.get("mode", {}).get(mode, {}))
         found.update(dict.fromkeys(plain, origin))
         if "leg" in tables:
@@ -194,8 +203,10 @@ def to_toml(parameters: Parameters, *, comments: bool = True) -> str:
     """
     lines: list[str] = []
     group = ""
-    listed = [pair for pair in parameters.items() if pair[0] != OVERRIDES]
-    for name, value in [*listed, *parameters.overrides.items()]:
+    own = parameters.overrides
+    # they have tables of their own
+    listed = [(name, v) for name, v in parameters.items() if name != OVERRIDES or not own]
+    for name, value in [*listed, *own.items()]:
         q = PARAMETER_QUANTITIES[name]
         owner, what = name.rsplit(".", 1)
         if owner != group:
