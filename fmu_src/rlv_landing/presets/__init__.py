@@ -203,10 +203,10 @@ def to_toml(parameters: Parameters, *, comments: bool = True) -> str:
     """
     lines: list[str] = []
     group = ""
-    own = parameters.overrides
+    of_legs = parameters.overrides
     # they have tables of their own
-    listed = [(name, v) for name, v in parameters.items() if name != OVERRIDES or not own]
-    for name, value in [*listed, *own.items()]:
+    listed = [(name, v) for name, v in parameters.items() if name != OVERRIDES or not of_legs]
+    for name, value in [*listed, *of_legs.items()]:
         q = PARAMETER_QUANTITIES[name]
         owner, what = name.rsplit(".", 1)
         if owner != group:
