@@ -109,8 +109,8 @@ SPACE_BODY_QUANTITIES: tuple[Quantity, ...] = (
     _BODY["body.top_axial_acceleration"],
     Quantity(
         "m",
-        "least distance of the body's points from the ground, of the CG where there are none; "
-        "below 0 the body strikes it",
+        "least distance of the body's points from the ground, 0 where there are none; below 0 the "
+        "body strikes it",
         name="body.clearance",
     ),
     *(

@@ -93,7 +93,12 @@ def motion_on_ground(axes: Rotation, place: Vector, velocity: Vector, step: floa
     """
     slip = to_body(axes, velocity)
     depth = step - (axes.y_x * place.x + axes.y_y * place.y + axes.y_z * place.z)
-    return FootMotion(depth, -slip.y, slip.x, slip.z, 1.0)
+    return FootMotion(depth, -slip.y, slip.x, slip.z)
+
+
+def steepness(place: TerrainPlace) -> float:
+    """The area of a height field at a place, in parts of that of the ground's plane below it."""
+    return sqrt(1.0 + place.slope_1 * place.slope_1 + place.slope_2 * place.slope_2)
 
 
 def local_axes(axes: Rotation, place: TerrainPlace) -> Rotation:
@@ -101,7 +106,7 @@ def local_axes(axes: Rotation, place: TerrainPlace) -> Rotation:
 
     Its normal, and 1 and 2 along it: 1 has no part along the plane's axis 2.
     """
-    steep = sqrt(1.0 + place.slope_1 * place.slope_1 + place.slope_2 * place.slope_2)
+    steep = steepness(place)
     along = sqrt(1.0 + place.slope_1 * place.slope_1)
     first = to_inertial(axes, Vector(1.0 / along, place.slope_1 / along, 0.0))
     normal = to_inertial(axes, Vector(-place.slope_1 / steep, 1.0 / steep, -place.slope_2 / steep))
@@ -125,8 +130,7 @@ def motion_on_terrain(
     """A place against a height field, by the field's `axes` there and its relative velocity.
 
     The depth is measured along the normal of the ground's plane, so that the elastic force is the
-    gradient of its energy; the force along the field's normal is larger by `steep`.
+    gradient of its energy; the force along the field's normal is larger by its steepness.
     """
-    steep = sqrt(1.0 + place.slope_1 * place.slope_1 + place.slope_2 * place.slope_2)
     slip = to_body(axes, velocity)
-    return FootMotion(step + place.depth, -steep * slip.y, slip.x, slip.z, steep)
+    return FootMotion(step + place.depth, -steepness(place) * slip.y, slip.x, slip.z)

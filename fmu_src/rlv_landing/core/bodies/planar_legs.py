@@ -55,11 +55,7 @@ def foot_motion(foot: FootPoint, u: Inputs, turn: Turn) -> FootMotion:
     ry = foot.vy - foot.ground_vy
     depth = -(foot.x * turn.sin_a + yo * turn.cos_a)
     return FootMotion(
-        depth,
-        -(rx * turn.sin_a + ry * turn.cos_a),
-        rx * turn.cos_a - ry * turn.sin_a,
-        foot.vz,
-        1.0,
+        depth, -(rx * turn.sin_a + ry * turn.cos_a), rx * turn.cos_a - ry * turn.sin_a, foot.vz
     )
 
 

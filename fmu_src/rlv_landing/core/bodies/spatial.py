@@ -57,7 +57,7 @@ class Spatial(SpatialMotion):
         self._keep_status(y)
         self._keep_point_energies(y)
         kinetic = self._kinetic_energy(y, turn)
-        self._put_body(y, u, dy, turn, out, at)
+        self._put_body(y, dy, turn, out, at)
         at += SPATIAL_OUTPUTS
         self._put_energies(y, kinetic, self._potential_energy(y), out, at)
         at += ENERGY_OUTPUTS
@@ -88,9 +88,7 @@ class Spatial(SpatialMotion):
             way = max(way, fabs(leg.r), fabs(leg.h))
         return way
 
-    def _put_body(
-        self, y: Doubles, u: Doubles, rates: Doubles, turn: Rotation, out: Doubles, at: int
-    ) -> None:
+    def _put_body(self, y: Doubles, rates: Doubles, turn: Rotation, out: Doubles, at: int) -> None:
         s = spatial_state(y, 0)
         r = spatial_state(rates, 0)
         p = spatial_model(self._body, 0)
@@ -126,7 +124,7 @@ class Spatial(SpatialMotion):
                 spin_acceleration_y=r.spin_y,
                 spin_acceleration_z=r.spin_z,
                 top_axial_acceleration=a.a_y + turning.y + cross(spin, cross(spin, sensor)).y,
-                clearance=self._clearance(y, spatial_inputs(u, 0)),
+                clearance=self._clearance(),
                 strike_force_x=force.x,
                 strike_force_y=force.y,
                 strike_force_z=force.z,

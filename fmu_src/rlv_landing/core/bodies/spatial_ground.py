@@ -36,7 +36,7 @@ from ..access import (
     spatial_model,
     spatial_state,
 )
-from ..ground.kinds import friction_bound, friction_energy, friction_only_takes, ground_force
+from ..ground.kinds import friction_bound, friction_energy, friction_only_takes, ground_force_on
 from ..ground.normal import normal_energy
 from ..ground.terrain import terrain_place
 from ..memory import Buffer, Doubles, Records, data, room, stored
@@ -66,6 +66,7 @@ from .deck import (
     local_axes,
     motion_on_ground,
     motion_on_terrain,
+    steepness,
 )
 from .legged import Legged
 from .spatial_legs import cg_of
@@ -155,28 +156,28 @@ class SpatialGround(Legged):
             turn = deck_turn_of(self._deck, 0)
             keep(ground_axes(turn, spatial_model(self._body, 0)), self._ground, 0)
 
-    def _meet(
+    def _meet_field(
         self, above: Vector, velocity: Vector, step: float, kept: Records[FootMotion], i: int
-    ) -> None:
-        """Keep the motion of the `i`-th contact against the ground, and in a field its axes.
+    ) -> float:
+        """Keep the motion of the `i`-th contact against the height field, and its axes there.
 
         Args:
             above: The contact from the deck's origin, inertial [m].
             velocity: Its velocity against the ground there, inertial [m/s].
-            step: Height of the ground there above its plane or field [m].
+            step: Height of the ground there above its field [m].
             kept: Where to keep the motion.
             i: The contact's number.
+
+        Returns:
+            The field's steepness there.
         """
         axes = rotation_of(self._ground, 0)
-        if self._has_field:
-            place = self._terrain(to_body(axes, above))
-            if place.outside > 0.0:
-                self._outside += 1
-            keep(local_axes(axes, place), self._local, 0)
-            axes = rotation_of(self._local, 0)
-            keep(motion_on_terrain(axes, place, velocity, step), kept, i)
-        else:
-            keep(motion_on_ground(axes, above, velocity, step), kept, i)
+        place = self._terrain(to_body(axes, above))
+        if place.outside > 0.0:
+            self._outside += 1
+        keep(local_axes(axes, place), self._local, 0)
+        keep(motion_on_terrain(rotation_of(self._local, 0), place, velocity, step), kept, i)
+        return steepness(place)
 
     def _terrain(self, place: Vector) -> TerrainPlace:
         """The height field below a place from the deck's origin, in the ground's axes [m]."""
@@ -198,13 +199,16 @@ class SpatialGround(Legged):
             ground = deck_velocity(now, rolling, above)
             moved = to_inertial(turn, cross(spin, from_cg))
             velocity = less(added(Vector(s.vx, s.vy, s.vz), moved), ground)
-            self._meet(above, velocity, 0.0, self._point_motions, i)
-            motion = foot_motion_of(self._point_motions, i)
-            keep(ground_force(motion, q.q1, q.q2, law), self._point_forces, i)
-            f = ground_force_of(self._point_forces, i)
             axes = rotation_of(self._ground, 0)
+            steep = 1.0
             if self._has_field:
+                steep = self._meet_field(above, velocity, 0.0, self._point_motions, i)
                 axes = rotation_of(self._local, 0)
+            else:
+                keep(motion_on_ground(axes, above, velocity, 0.0), self._point_motions, i)
+            motion = foot_motion_of(self._point_motions, i)
+            keep(ground_force_on(motion, steep, q.q1, q.q2, law), self._point_forces, i)
+            f = ground_force_of(self._point_forces, i)
             contact = to_inertial(axes, Vector(f.f1, f.normal, f.f2))
             keep(
                 FootLoads(
@@ -271,18 +275,14 @@ class SpatialGround(Legged):
             bound = friction_bound(q.q1, q.q2, law)
             put(PointState(bound.q1, bound.q2), y, at)
 
-    def _clearance(self, y: Doubles, now: SpatialInputs) -> float:
-        """Least distance [m] of the body's points from the ground; of the CG where there are none.
+    def _clearance(self) -> float:
+        """Least distance [m] of the body's points from the ground; 0 where there are none.
 
         In a height field it is measured along the normal of the ground's plane.
         """
+        if self.points == 0:
+            return 0.0
         least = inf
         for i in range(self.points):
             least = min(least, -foot_loads_of(self._point_loads, i).depth)
-        if self.points == 0:
-            s = spatial_state(y, 0)
-            above = to_body(rotation_of(self._ground, 0), from_origin(now, Vector(s.x, s.y, s.z)))
-            least = above.y
-            if self._has_field:
-                least = -self._terrain(above).depth
         return least

@@ -24,7 +24,7 @@ from ..access import (
     spatial_model,
     spatial_state,
 )
-from ..leg import leg_forces
+from ..leg import leg_forces, leg_forces_on
 from ..memory import Buffer, Doubles, Records, room
 from ..records import (
     BodyPoint,
@@ -51,7 +51,7 @@ from ..vectors import (
     to_body,
     to_inertial,
 )
-from .deck import deck_spin, deck_velocity, from_origin
+from .deck import deck_spin, deck_velocity, from_origin, motion_on_ground
 from .spatial_ground import SpatialGround
 from .spatial_legs import (
     about_across,
@@ -215,13 +215,17 @@ class SpatialMotion(SpatialGround):
         above = from_origin(now, point)
         ground = deck_velocity(now, rolling, above)
         velocity = less(added(Vector(s.vx, s.vy, s.vz), to_inertial(turn, moved)), ground)
-        self._meet(above, velocity, model.step, self._motions, i)
-        motion = foot_motion_of(self._motions, i)
-        keep(leg_forces(leg, motion, model), self._forces, i)
-        forces = leg_forces_of(self._forces, i)
         axes = rotation_of(self._ground, 0)
         if self._has_field:
+            steep = self._meet_field(above, velocity, model.step, self._motions, i)
             axes = rotation_of(self._local, 0)
+            motion = foot_motion_of(self._motions, i)
+            keep(leg_forces_on(leg, motion, steep, model), self._forces, i)
+        else:
+            keep(motion_on_ground(axes, above, velocity, model.step), self._motions, i)
+            motion = foot_motion_of(self._motions, i)
+            keep(leg_forces(leg, motion, model), self._forces, i)
+        forces = leg_forces_of(self._forces, i)
         contact = to_inertial(axes, Vector(forces.f1, forces.normal, forces.f2))
         keep(
             FootLoads(

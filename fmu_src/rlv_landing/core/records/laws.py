@@ -83,8 +83,6 @@ class FootMotion(NamedTuple):
     depth_rate: float  # [m/s]
     slip_1: float  # [m/s]
     slip_2: float  # [m/s]
-    # the normal force in parts of the normal law's, which is that along the ground's plane: 1 on it
-    steep: float = 1.0
 
 
 class NormalForce(NamedTuple):
