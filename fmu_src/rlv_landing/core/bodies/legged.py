@@ -81,6 +81,7 @@ class Legged(System):
         most_balance: The largest energy balance since then at a step's end [J].
         rounding: How far rounding may put the balance off [J].
         mass: The whole vehicle's [kg].
+        more_contact, more_friction: What contacts of the body itself hold as the legs' do [J].
     """
 
     groups: int
@@ -88,6 +89,8 @@ class Legged(System):
     most_balance: float
     rounding: float
     mass: float
+    more_contact: float
+    more_friction: float
     _first_leg: int  # its place in the state
     _works: int  # their place in the state
     _energies: int  # their place in the outputs, behind the body's
@@ -102,19 +105,23 @@ class Legged(System):
         self,
         legs: Sequence[LegModel],
         places: Sequence[LegPlace],
-        scale: Buffer,
-        relative: Buffer,
+        sizes: tuple[Buffer, Buffer],
         inputs: int,
         row: int,
+        behind: int,
     ) -> None:
         groups = len(legs)
+        scale, relative = sizes
         super().__init__(scale, relative, ACCOUNTS + groups, inputs, row, groups)
         self.groups = groups
         self.energy_start = 0.0
         self.most_balance = 0.0
         self.rounding = 0.0
         self.mass = 0.0
-        self._first_leg = self.controlled - LEG * groups
+        self.more_contact = 0.0
+        self.more_friction = 0.0
+        # so many states of others stand behind the legs'
+        self._first_leg = self.controlled - LEG * groups - behind
         self._works = self.controlled + ACCOUNTS
         self._energies = 0
         self._places = stored(places)
@@ -272,7 +279,9 @@ class Legged(System):
         self, y: Doubles, kinetic: float, potential: float, out: Doubles, at: int
     ) -> None:
         """Write the energies to `out[at:]`, those of motion given [J], from what is kept."""
-        liquid = auxiliary = contact = friction = stop = 0.0
+        liquid = auxiliary = stop = 0.0
+        contact = self.more_contact
+        friction = self.more_friction
         for i in range(self.groups):
             n = leg_place(self._places, i).legs
             s = leg_status_of(self._status, i)
