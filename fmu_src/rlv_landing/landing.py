@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -231,11 +230,14 @@ class Landing:
     def _integrate(self, time: float, *, to_event: bool) -> bool:
         """Integrate to `time` [s], or to an event; the ground keeps its motion until then."""
         reached, found = time, False
-        with self._until(time):
+        try:
             if to_event:
                 reached, found = self._event_search().advance(self._time, time)
             else:
                 advance(self._solver, time)
+        except BaseException:
+            self._end_before(time)
+            raise
         self._time = reached
         return found
 
@@ -394,24 +396,19 @@ class Landing:
                 sample = start + reached * every
                 self._move_ground(sample, sample, to_event=False)
             time = start + (goal - 1) * every
-            with self._until(time):
+            try:
                 record(self._solver, rows, start, every, reached, goal)
+            except BaseException:
+                self._end_before(time)
+                raise
             self._time, reached = time, goal
             if progress is not None:
                 progress(time)
 
-    @contextmanager
-    def _until(self, time: float) -> Iterator[None]:
-        """Go on to `time` [s].
-
-        If a fault or Ctrl-C ends that earlier, the landing is at the end of the last internal step.
-        """
-        try:
-            yield
-        except BaseException:
-            self._time = max(self._time, min(self._solver.t, time))
-            self._reader.forget()
-            raise
+    def _end_before(self, time: float) -> None:
+        """End at the last internal step, where a fault or Ctrl-C ends the way to `time` [s]."""
+        self._time = max(self._time, min(self._solver.t, time))
+        self._reader.forget()
 
 
 def _revived(
