@@ -1,9 +1,9 @@
 """Records from and to arrays of numbers: nothing else knows where a field stands.
 
-A state is the body's, then each leg's, then the accounts, then each main strut's work. What is kept
-between two kernels is an array of records of one kind. Compiled, each of these functions is an
-access through an address (see `core_declarations`): a record that was read is that in the array, so
-a kernel must not go on reading it after it has written there.
+A state is the body's, then each leg's, then each body point's, then the accounts, then each main
+strut's work. What is kept between two kernels is an array of records of one kind. Compiled, each of
+these functions is an access through an address (see `core_declarations`): a record that was read is
+that in the array, so a kernel must not go on reading it after it has written there.
 """
 
 from __future__ import annotations
