@@ -82,7 +82,7 @@ def state_of(solver: Solver, time: float, ways: Sequence[float]) -> array[float]
 
 
 def load_state(
-    solver: Solver, positions: Sequence[int], state: array[float]
+    solver: Solver, positions: Sequence[int], state: array[float], *, checked: bool = True
 ) -> tuple[StateHeader, Sequence[float]]:
     """Load a state into the `solver`.
 
@@ -90,6 +90,7 @@ def load_state(
         solver: The landing's solver.
         positions: Places of the ground's positions among the inputs.
         state: The state.
+        checked: Whether its numbers are checked, beside their count.
 
     Returns:
         The state's header, and the ways for `DrivenInputs.restore`.
@@ -107,16 +108,9 @@ def load_state(
             f"state has {len(state)} numbers, this landing's has {expected}; "
             "it comes from another mode or version"
         )
-    if not all(map(isfinite, state)):
-        raise LandingError("state holds numbers that are not finite; take one that state() gave")
     header, ways = StateHeader(*state[:head]), state[head:at]
-    rates = state[at + len(solver.u) :]
-    for fault in itertools.chain(
-        _faults(header, len(solver.dense) // 2),
-        way_faults(ways, positions, rates, header.time),
-        _step_faults(solver, header, state[at + 2 * len(solver.u) :]),
-    ):
-        raise LandingError(f"state holds {fault}; take one that state() gave")
+    if checked:
+        _check(solver, positions, state, at)
     numbers = memoryview(state)
     for target in targets:
         target[:] = numbers[at : at + len(target)]
@@ -131,6 +125,25 @@ def load_state(
         setattr(solver, name, int(value) if name in WHOLE else value)
     solver.noted, solver.asleep = bool(header.noted), bool(header.asleep)
     return header, ways
+
+
+def _check(solver: Solver, positions: Sequence[int], state: array[float], at: int) -> None:
+    """Check the numbers of a state, whose arrays begin at the place `at`.
+
+    Raises:
+        LandingError: One is not finite, or no landing has such numbers.
+    """
+    if not all(map(isfinite, state)):
+        raise LandingError("state holds numbers that are not finite; take one that state() gave")
+    head = len(StateHeader._fields)
+    header, ways = StateHeader(*state[:head]), state[head:at]
+    rates = state[at + len(solver.u) :]
+    for fault in itertools.chain(
+        _faults(header, len(solver.dense) // 2),
+        way_faults(ways, positions, rates, header.time),
+        _step_faults(solver, header, state[at + 2 * len(solver.u) :]),
+    ):
+        raise LandingError(f"state holds {fault}; take one that state() gave")
 
 
 def _step_faults(solver: Solver, h: StateHeader, numbers: Sequence[float]) -> Iterator[str]:

@@ -189,3 +189,15 @@ def test_a_host_refuses_a_landing_in_space() -> None:
     hosted.set_parameter("drop.mode", "space")
     with pytest.raises(LandingError, match=r"drop.mode = space"):
         hosted.begin()
+
+
+@pytest.mark.parametrize("method", ["exponential", "dormand-prince"])
+def test_a_state_that_is_restored_on_the_way_goes_on_with_the_same_digits(method):
+    """Also between two steps: the rates that a step starts with are those of the state kept."""
+    parameters = vehicle(TURNING)
+    plain, again = (Landing(parameters, rtol=1e-4, method=method) for _ in range(2))
+    for k in range(1, 25):
+        for landing in (plain, again):
+            landing.advance_to(4e-3 * k)
+        again.restore(again.state())
+    assert again.state() == plain.state()
