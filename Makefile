@@ -100,6 +100,7 @@ bench: $(FMU)
 	$(BIN)/python benchmarks/bench_bridge.py
 	$(BIN)/python benchmarks/bench_quasi3d.py
 	$(BIN)/python benchmarks/bench_sweep.py 100 1000
+	$(BIN)/python benchmarks/bench_montecarlo.py
 
 # in build/dist: the source distribution, and portable wheels, which auditwheel examines
 wheels: $(VENV)/.core
@@ -121,6 +122,9 @@ docs: $(FMU)
 	rm -rf build/envelope
 	$(BIN)/rlv-landing envelope examples/envelope.toml --work build/envelope \
 	  --plot docs/envelope.png --force
+	rm -rf build/polar_envelope
+	$(BIN)/rlv-landing envelope examples/polar_envelope.toml --work build/polar_envelope \
+	  --plot docs/polar_envelope.png --force
 	$(BIN)/python examples/ship_deck/run.py --picture examples/ship_deck/ship_deck.png
 	RLV_FMU=$(CURDIR)/$(FMU) $(BIN)/python docs/notebooks.py
 	$(BIN)/python docs/claims --update

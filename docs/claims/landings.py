@@ -7,6 +7,7 @@ from functools import lru_cache
 from typing import TypeVar
 
 import numpy as np
+from directions import beyond_symmetric, heading_load, worst_heading
 from marks import Value
 
 from rlv_landing import Landing, load_preset
@@ -38,6 +39,10 @@ def quick(compute: Compute) -> Compute:
     """Register a quick value under its name."""
     QUICK[compute.__name__] = Value(compute, slow=False)
     return compute
+
+
+for of_heading in (heading_load, worst_heading, beyond_symmetric):
+    quick(of_heading)
 
 
 @lru_cache

@@ -7,6 +7,7 @@ from functools import lru_cache
 from math import radians
 from types import ModuleType
 
+from directions import speed_by_direction, worst_direction
 from marks import ROOT, Value
 
 from rlv_landing import Landing, load_preset
@@ -129,5 +130,7 @@ SLOW = {
         tip_over_deviation,
         swings,
         critical_speed,
+        speed_by_direction,
+        worst_direction,
     )
 }

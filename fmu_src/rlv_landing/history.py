@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
 from html import escape
 from importlib import import_module
 from pathlib import Path
@@ -96,7 +97,7 @@ class History:
     def __len__(self) -> int:
         return len(self.time)
 
-    @property
+    @cached_property
     def legs(self) -> tuple[int, ...]:
         """The numbers of the legs that have columns."""
         found = {int(m.group(1)) for m in map(LEG_COLUMN.match, self.names) if m}

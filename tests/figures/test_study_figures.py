@@ -161,7 +161,8 @@ def test_the_side_that_is_not_lost_is_shaded_up_to_the_boundary(tolerance):
     """A boundary along the middle: what lies on the lost side is 0 or above, whatever is near."""
     from matplotlib.tri import LinearTriInterpolator
 
-    study = SimpleNamespace(
+    study = EnvelopeStudy(
+        load_preset("yue2022-figures"),
         x=Axis("drop.horizontal_velocity", -6.0, 6.0, 12.0 * tolerance),
         y=Axis("drop.tilt", -0.3, 0.3, 0.6 * tolerance),
         criterion="toppled",

@@ -14,6 +14,7 @@ from rlv_landing.history import History
 from rlv_landing.quantities import LEGS
 from rlv_landing.studies.limits import LIMITS
 from rlv_landing.studies.outcome import SEVERITY, outcome
+from rlv_landing.studies.whole_landing import whole_landing
 
 FIGURES = "yue2022-figures"
 HARD = {"drop.vertical_velocity": -3.5, "main_strut.stroke_max": 0.03}
@@ -41,6 +42,9 @@ def landings() -> dict[str, History]:
     """One real landing of each name."""
     return {
         "settled": landed(6.0, **UPRIGHT),
+        "standing": whole_landing(
+            Landing(load_preset(FIGURES).with_values({"drop.contact_time": 0.0})), standing=True
+        ),
         "moving": landed(0.3),
         "slid": landed(1.5, **ICE),
         "bottomed out": landed(0.4, **HARD),

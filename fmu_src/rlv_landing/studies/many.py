@@ -22,6 +22,7 @@ from .study_effort import check_landings
 from .sweep.design import Design
 from .sweep.factors import column
 from .sweep.responses import expand, known_responses
+from .sweep.study import ENDS, NUMBERS, UNTIL
 from .sweep.sweep import threads
 from .sweep.sweep_row import MODE, Plan
 from .variables import check_variables, variable
@@ -103,6 +104,7 @@ def land_many(  # noqa: PLR0913  the options of a study, by name
     every: float = EVERY,
     rtol: float = RTOL,
     slide: float = float(SLIDE.default),
+    end: str = "stands",
     workers: int | None = None,
     progress: Callable[[int], object] | None = None,
 ) -> Landings:
@@ -125,6 +127,8 @@ def land_many(  # noqa: PLR0913  the options of a study, by name
         every: Time between samples [s]; peaks do not depend on it.
         rtol: Relative tolerance of the integrator.
         slide: Largest distance that a footpad may move without having slid [m].
+        end: Without `until`, where a landing ends that does not topple: where the vehicle `stands`
+            and its outcome and peaks are decided, or where it `rests`, twice as late.
         workers: Threads [all cores that this process may use].
         progress: Called with the number of landings done so far.
 
@@ -140,8 +144,11 @@ def land_many(  # noqa: PLR0913  the options of a study, by name
     count = workers or default_workers()
     if len(design):
         check_landings(len(design), count, until, every, decided=until is None)
+    if end not in ENDS:
+        raise unknown("end", end, ENDS)
+    checked = check_limits(limits or {})
     plan = Plan(
-        parameters, {}, {}, until, every, rtol, names, check_limits(limits or {}), float(slide)
+        parameters, {}, {}, until, every, rtol, names, checked, float(slide), end == "stands"
     )
     rows = _landed(plan, design, count, progress)
     known = known_responses(interface)
@@ -226,8 +233,6 @@ def _most_legs(parameters: Parameters, design: Design) -> int:
 def _check_numbers(
     until: float | None, every: float, rtol: float, slide: float, workers: int | None
 ) -> None:
-    from .sweep.study import NUMBERS, UNTIL
-
     for name, value in (("every", every), ("rtol", rtol), ("slide", slide)):
         check_value(NUMBERS[name], value)
     if until is not None:

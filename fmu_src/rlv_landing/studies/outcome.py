@@ -19,7 +19,7 @@ from .on_ground import counted_legs, crossed_edge, joint_clearance, lean, slip
 from .replay import ReplayedHistory
 
 Array = NDArray[np.float64]
-Name = Literal["toppled", "bottomed out", "slid", "moving", "settled"]
+Name = Literal["toppled", "bottomed out", "slid", "moving", "standing", "settled"]
 # the outcomes, the severest first
 SEVERITY: tuple[Name, ...] = get_args(Name)
 SETTLED, TOPPLED = float(Phase.SETTLED), float(Phase.TOPPLED)
@@ -50,6 +50,8 @@ class Outcome:
     - slid: a footpad is further than the threshold from where it first touched. `time` is the first
       such sample;
     - moving: neither at rest nor lost at the end, which is `time`: run it longer;
+    - standing: the landing ended before it was at rest, because the vehicle stood since `time`: see
+      `standing.stands`. Only landings that were made to end so have it;
     - settled: at rest since `time`.
 
     `leg` is the first that bottomed out, whatever the name, else None. Of legs that are mirror
@@ -137,6 +139,8 @@ def judged(
         name, time = "slid", float(history.time[first_slide])
     elif phase[-1] == SETTLED:
         name, time = "settled", float(history.time[_first_of_last_period(phase, SETTLED)])
+    elif isinstance(history, ReplayedHistory) and history.stands_from is not None:
+        name, time = "standing", float(history.time[history.stands_from])
     else:
         name, time = "moving", end
     leg = bottomed[0][1] if bottomed else None

@@ -25,14 +25,20 @@ class ReplayedHistory(History):
         part: The history.
         landing: The landing, at its end. Its inputs are not set on the way.
         states: Times [s] and states on the way, ascending, the first at the start.
+        stands_from: The sample from which on the vehicle stood until the end, where it ended so.
     """
 
     def __init__(
-        self, part: History, landing: Landing, states: list[tuple[float, array[float]]]
+        self,
+        part: History,
+        landing: Landing,
+        states: list[tuple[float, array[float]]],
+        stands_from: int | None = None,
     ) -> None:
         super().__init__(
             part.time, part.names, part.data, part.parameters, part.ground, part.extremes
         )
+        self.stands_from = stands_from
         self._landing = landing
         self._states = states
 

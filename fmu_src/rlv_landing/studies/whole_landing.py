@@ -13,6 +13,7 @@ from ..history import History, joined
 from ..landing import Landing
 from .outcome import SETTLED, TOPPLED
 from .replay import ReplayedHistory
+from .standing import may_stand, stands
 
 CHECK_EVERY = 0.25
 # time between samples [s], at least, of what still rocks at REST_AFTER from its first contact
@@ -20,7 +21,12 @@ LATER_EVERY = 1e-2
 
 
 def whole_landing(
-    landing: Landing, until: float | None = None, every: float = 1e-3, *, decided: bool = True
+    landing: Landing,
+    until: float | None = None,
+    every: float = 1e-3,
+    *,
+    decided: bool = True,
+    standing: bool = False,
 ) -> ReplayedHistory:
     """Land from now until the vehicle is at rest, has toppled, or `until` [s].
 
@@ -35,6 +41,8 @@ def whole_landing(
         until: The latest end [s]; None: 60 s after the first contact, as long as `audit` waits.
         every: Time between samples [s].
         decided: Whether the landing may end before `until`.
+        standing: Whether it may end where the vehicle stands, see `standing.stands`: before it is
+            at rest, where nothing but the ground at rest acts on it.
 
     Raises:
         LandingError: As `Landing.run`.
@@ -49,11 +57,15 @@ def whole_landing(
         until = contact + LONGEST_WAIT
     if not decided:
         return ReplayedHistory(landing.run(until, every, keep), landing, states)
+    standing = standing and may_stand(landing)
     with landing.span() as extremes:
-        parts = list(_until_decided(landing, until, every, keep))
+        parts = list(_until_decided(landing, until, every, keep, standing=standing))
         whole = joined(parts or [landing.sampled(until, every, keep)])
         whole.extremes = extremes()
-    return ReplayedHistory(whole, landing, states)
+    stood = standing and bool(parts) and stands(parts[-1])
+    return ReplayedHistory(
+        whole, landing, states, stands_from=len(whole) - len(parts[-1]) if stood else None
+    )
 
 
 def most_samples(until: float | None, every: float, *, decided: bool) -> float:
@@ -66,14 +78,19 @@ def most_samples(until: float | None, every: float, *, decided: bool) -> float:
 
 
 def _until_decided(
-    landing: Landing, until: float, every: float, keep: Callable[[float], object]
+    landing: Landing,
+    until: float,
+    every: float,
+    keep: Callable[[float], object],
+    *,
+    standing: bool,
 ) -> Iterator[History]:
     """The landing in parts, until it is decided or `until` [s]; see `whole_landing`."""
     contact = landing.parameters.drop.contact_time
     for end, step in ((min(until, contact + REST_AFTER), every), (until, max(every, LATER_EVERY))):
         for part in _checked(landing, end, step, keep):
             yield part
-            if _is_decided(part["status.phase"]):
+            if _is_decided(part["status.phase"]) or (standing and stands(part)):
                 return
 
 

@@ -13,6 +13,7 @@ from ...studies.envelope.search import Envelope, Family
 from ...studies.sweep.factors import value_text
 from ..plots import save_whole
 from ..style import AREA, FAINT, MORE_COLOURS, plain_axes
+from .polar import make_polar, scales
 from .sides import name_stable_side, shade, stable_word
 
 if TYPE_CHECKING:
@@ -36,15 +37,25 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
 
     There is a panel for each combination of the families' values except the first quantity's, which
     is shown by colour. Lines are boundaries; the stable side is shaded and named. Markers on a line
-    give the critical condition, where it changes and halfway between.
+    give the critical condition, where it changes and halfway between. Axes of a speed over its
+    direction are a polar chart.
     """
     from matplotlib.figure import Figure
 
     panels = _panels(envelope)
     columns = min(len(panels), 3)
     rows = -(-len(panels) // columns)
-    figure = Figure(figsize=(1.5 + 4.6 * columns, 1.6 + 4.2 * rows), layout="constrained")
-    axes = figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).flatten()
+    polar = envelope.study.is_polar
+    height = 1.6 + (4.8 if polar else 4.2) * rows
+    figure = Figure(figsize=(1.5 + 4.6 * columns, height), layout="constrained")
+    axes = figure.subplots(
+        rows,
+        columns,
+        squeeze=False,
+        sharex=not polar,
+        sharey=not polar,
+        subplot_kw={"projection": "polar" if polar else None},
+    ).flatten()
     markers = _markers(envelope)
     styles: dict[str, dict[str, Any]] = {}
     for ax, (title, families) in zip(axes, panels.items()):
@@ -53,12 +64,17 @@ def save_envelope(envelope: Envelope, path: str | Path) -> None:
             _draw(ax, envelope, family, markers, styles[_name(family)])
         name_stable_side(ax, envelope, families)
         ax.set_title(title, loc="left", fontsize="medium")
-        plain_axes(ax, zero=False)
+        if polar:
+            make_polar(ax, envelope.study)
+        else:
+            plain_axes(ax, zero=False)
     _name_axes(list(axes), len(panels), columns, envelope)
     _add_legend(figure, styles, markers, stable_word(envelope))
+    # a polar chart's outer label stands above it
+    above = "\n" if polar else ""
     title = (
         f"lost: {lost_text(envelope.study)}\n{envelope.landings} landings "
-        f"(a uniform grid: {envelope.uniform})"
+        f"(a uniform grid: {envelope.uniform}){above}"
     )
     figure.suptitle(title, fontsize="medium", x=0.01, ha="left")
     # the picture grows where legend or title are wider than the panels
@@ -95,6 +111,8 @@ def _name_axes(axes: Sequence[Axes], drawn: int, columns: int, envelope: Envelop
     """Label the outer axes of the `drawn` panels, and hide those that are not drawn."""
     for ax in axes[drawn:]:
         ax.set_visible(False)
+    if envelope.study.is_polar:
+        return
     for ax in axes[max(0, drawn - columns) : drawn]:
         ax.set_xlabel(_label(envelope.study.x.quantity))
         # below some of them is a panel that is not drawn
@@ -161,7 +179,7 @@ def _draw(
 ) -> None:
     """A family's stable side and boundaries, the latter `drawn` as matplotlib's keywords say."""
     colour = drawn["color"]
-    (_, sx), (_, sy) = shown(envelope.study.x.quantity), shown(envelope.study.y.quantity)
+    sx, sy = scales(envelope.study)
     shade(ax, envelope, family, colour)
     for line in family.lines:
         ax.plot([c.x / sx for c in line], [c.y / sy for c in line], **drawn)

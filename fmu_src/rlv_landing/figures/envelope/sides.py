@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...quantities import shown
 from ...studies.envelope.search import Envelope, Family
 from ..style import INK
+from .polar import scales
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,8 +45,9 @@ def name_stable_side(ax: Axes, envelope: Envelope, families: Sequence[Family]) -
     """Write the side's name where it is farthest from all boundaries, if there is such a place."""
     from matplotlib.tri import LinearTriInterpolator
 
-    axes = (envelope.study.x, envelope.study.y)
-    (x, y) = (np.linspace(a.low, a.high, TRIED) / shown(a.quantity)[1] for a in axes)
+    study = envelope.study
+    axes = zip((study.x, study.y), scales(study))
+    (x, y) = (np.linspace(a.low, a.high, TRIED) / size for a, size in axes)
     across, up = np.meshgrid(x, y)
     inside: Any = np.ones(across.shape, dtype=bool)
     for family in families:
@@ -88,7 +89,7 @@ def _mesh(envelope: Envelope, family: Family) -> tuple[Triangulation, Array]:
     corners, values = np.array(list(found)), np.array(list(found.values()))
     across, up = (corners / spans).T
     mesh = Triangulation(across, up)
-    x, y = (corners / [shown(a.quantity)[1] for a in (study.x, study.y)]).T
+    x, y = (corners / scales(study)).T
     flat = np.flatnonzero(~values[mesh.triangles].any(axis=1))
     mask = np.zeros(len(mesh.triangles), dtype=bool)
     mask[[t for t in flat if _side(mesh, values, drawn, int(t)) >= 0.0]] = True

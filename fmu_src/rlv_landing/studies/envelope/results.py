@@ -20,7 +20,8 @@ from .judged_landing import JudgedLanding
 from .search import Critical, Envelope, Family
 from .study import EnvelopeStudy
 
-NAMES = (*SEVERITY, FAILED)
+# an envelope's landings end at rest
+NAMES = (*(name for name in SEVERITY if name != "standing"), FAILED)
 COLUMNS = ("condition", "outcome", "outcome_time", "leg", "limit", "limit_leg", "limit_time")
 
 

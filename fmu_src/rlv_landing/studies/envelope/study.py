@@ -24,7 +24,6 @@ from ..criteria import CRITERIA
 from ..limits import LIMITS
 from ..outcome import DEFAULT_SLIDE, SLIDE
 from ..variables import (
-    DIRECTION,
     POLAR,
     VARIABLES,
     check_variables,
@@ -163,12 +162,10 @@ class EnvelopeStudy:
 
     @property
     def is_polar(self) -> bool:
-        """Whether the axes are a speed and its direction, of one turn at most."""
-        axes = {self.x.name: self.x, self.y.name: self.y}
-        if axes.keys() != set(POLAR):
-            return False
-        turn = axes[DIRECTION.name]
-        return turn.high - turn.low <= 2.0 * pi * (1.0 + 1e-9)
+        """Whether the axes are a direction along x, of one turn at most, and a speed along y."""
+        turn = self.x.high - self.x.low
+        polar = (self.y.name, self.x.name) == POLAR
+        return polar and turn <= 2.0 * pi * (1.0 + 1e-9)
 
     @property
     def lattice(self) -> Lattice:

@@ -23,7 +23,7 @@ from ..outcome import SLIDE
 from ..sweep.factors import LARGEST, read_factor
 from ..sweep.responses import expand, known_responses
 from ..sweep.states_table import read_states
-from ..sweep.study import UNTIL, Study, interface_for
+from ..sweep.study import UNTIL, Study, interface_for, read_end
 from ..variables import VARIABLES, check_variables
 from .covariance import read_correlated
 from .dispersions import Dispersions, Table
@@ -43,7 +43,18 @@ NUMBERS = {
 LEVEL = Quantity("", "confidence of the intervals", 0.5, 0.9999, name="level", default=0.95)
 WIDTH = Quantity("", "width of the interval of the rate of success", 1e-5, 1.0, name="width")
 KEYS = (
-    *("name", "samples", "seed", "preset", "parameters", "mode", "until", "criterion", "width"),
+    *(
+        "name",
+        "samples",
+        "seed",
+        "preset",
+        "parameters",
+        "mode",
+        "until",
+        "end",
+        "criterion",
+        "width",
+    ),
     *("level", "responses", "loads", "percentiles", "worst", *NUMBERS),
 )
 # what every study takes from its landings
@@ -163,6 +174,7 @@ def _montecarlo(document: Mapping[str, Any], path: Path, text: str) -> MonteCarl
         every=numbers["every"],
         rtol=numbers["rtol"],
         slide=numbers["slide"],
+        end=read_end(keys, "stands"),
     )
     return MonteCarlo(
         sweep=sweep,

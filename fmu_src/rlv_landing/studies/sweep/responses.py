@@ -38,7 +38,12 @@ OVER_LEGS: dict[str, Callable[[Iterable[float]], float]] = {"min": min, "max": m
 WORK = {"absorbed": "J", "dissipated": "J", "efficiency": ""}
 MARGINS = ("stability_min", "stability_end", "stroke_left", "slid", "joint_clearance")
 OUTCOME = (
-    Quantity("", "toppled, bottomed out, slid, moving or settled", name="outcome", kind="string"),
+    Quantity(
+        "",
+        "toppled, bottomed out, slid, moving, standing or settled",
+        name="outcome",
+        kind="string",
+    ),
     Quantity("s", "time of the outcome", name="outcome.time"),
     Quantity("", "the leg that bottomed out first", name="outcome.leg", kind="integer"),
     Quantity(

@@ -29,6 +29,11 @@ from .responses import expand
 from .states_table import read_states
 
 LEGS = "vehicle.legs"
+# where a landing without `until` ends, unless it topples
+ENDS = {
+    "rests": "the vehicle is at rest",
+    "stands": "it stands, and can neither tip over nor be loaded further",
+}
 METHODS = ("grid", "lhs", "sobol", "table")
 TABLES = ("study", "set", "limits", "factor")
 UNTIL = Quantity("s", "end of each landing", 1e-6, 3600.0, name="until", display_unit="s")
@@ -56,6 +61,7 @@ KEYS = (
     "modes",
     "responses",
     "until",
+    "end",
     *NUMBERS,
 )
 
@@ -76,6 +82,7 @@ class Study:
         every: Time between samples [s].
         rtol: Relative tolerance of the integrator.
         slide: Largest distance that a footpad may move without having slid [m].
+        end: Where a landing without `until` ends: of ENDS.
         responses: Names of the responses.
         limits: Limits by name.
         fixed: Values that are set in every landing, by name.
@@ -95,6 +102,7 @@ class Study:
     every: float
     rtol: float
     slide: float
+    end: str
     responses: tuple[str, ...]
     limits: Mapping[str, float]
     fixed: Mapping[str, float | str]
@@ -135,6 +143,7 @@ class Study:
             "every": self.every,
             "rtol": self.rtol,
             "slide": self.slide,
+            "end": self.end,
             "responses": list(self.responses),
             "limits": dict(self.limits),
             "set": dict(self.fixed),
@@ -213,8 +222,25 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
         table=table,
         text=text,
         until=until,
+        end=read_end(keys, "rests"),
         **numbers,
     )
+
+
+def read_end(keys: Mapping[str, Any], default: str) -> str:
+    """Where landings end, of ENDS.
+
+    Raises:
+        LandingError: It is none of them, or there is an `until` too.
+    """
+    end = toml_keys.text(keys, "end", default)
+    if end not in ENDS:
+        raise unknown("end", end, ENDS)
+    if "until" in keys and "end" in keys:
+        raise LandingError(
+            f"end = {end!r} and until = {keys['until']!r} both say where a landing ends; leave one"
+        )
+    return end
 
 
 def _check_given_once(given: list[str]) -> None:

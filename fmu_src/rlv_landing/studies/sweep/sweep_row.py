@@ -39,6 +39,7 @@ class Plan:
         responses: Names of the responses.
         limits: Limits by name [SI].
         slide: Largest distance that a footpad may move without having slid [m].
+        standing: Whether a landing may end where the vehicle stands, before it is at rest.
     """
 
     parameters: Parameters
@@ -50,6 +51,7 @@ class Plan:
     responses: tuple[str, ...]
     limits: Mapping[str, float]
     slide: float
+    standing: bool = False
 
     def __reduce__(self) -> tuple[type[Plan], tuple[Any, ...]]:
         return Plan, tuple(getattr(self, f.name) for f in fields(self))
@@ -93,7 +95,13 @@ class Plan:
         Raises:
             LandingError: As `Landing.run`.
         """
-        return whole_landing(landing, self.until, self.every, decided=self.until is None)
+        return whole_landing(
+            landing,
+            self.until,
+            self.every,
+            decided=self.until is None,
+            standing=self.standing,
+        )
 
     def sweep_row(self, values: Mapping[str, Any]) -> list[Any]:
         """Make the landing with these values and take its responses.
@@ -139,6 +147,7 @@ class Task:
             responses=study.responses,
             limits=study.limits,
             slide=study.slide,
+            standing=study.end == "stands",
         )
         self.names = [MODE, *(name for name in design.columns if name != MODE)]
         self._modes = study.modes
