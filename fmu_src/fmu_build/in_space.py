@@ -11,16 +11,18 @@ LOADS = frozenset(q.name for q in SPACE_INPUTS if q.name.startswith("external.")
 GROUND = frozenset(q.name for q in SPACE_INPUTS if q.name.startswith("ground."))
 RATES = frozenset(name for name in GROUND if name.endswith("_rate"))
 
-LEG = frozenset(
+# what single legs have for themselves may be any of a leg's parameters
+OVERRIDES = frozenset({"vehicle.leg_overrides"})
+LEG = OVERRIDES | {
     f"{strut}.{what}"
     for strut in ("main_strut", "auxiliary_strut")
     for what in ("joint_radius", "joint_depth", "length")
-)
-# the rigid vehicle, which tumbles until its first contact
+}
+# the rigid vehicle, which tumbles until its first contact; legs that differ count where they stand
 MASSES = frozenset(
     f"vehicle.{what}"
     for what in (
-        *("mass", "footpad_mass", "cg_offset_x", "cg_offset_z"),
+        *("mass", "footpad_mass", "cg_offset_x", "cg_offset_z", "leg_azimuth"),
         *(f"inertia{axes}" for axes in ("", "_roll", "_yaw", "_xy", "_xz", "_yz")),
     )
 )
@@ -33,13 +35,20 @@ VX = MOTION | {"drop.horizontal_velocity"}
 VY = MOTION | {"drop.vertical_velocity", "ground.gravity"}
 VZ = MOTION | {"drop.lateral_velocity"}
 FEET = frozenset({"vehicle.leg_azimuth"})
-HEIGHT = VY | FEET | {"ground.slope", "ground.slope_direction"}
-CHARGE = frozenset(
+HEIGHT = (
+    VY
+    | FEET
+    | {
+        *("ground.slope", "ground.slope_direction", "ground.step", "ground.terrain"),
+        "vehicle.body_points",
+    }
+)
+CHARGE = OVERRIDES | {
     f"main_strut.{what}"
     for what in ("kind", "charge_pressure", "ambient_pressure", "area_upper", "area_lower")
-)
+}
 LOADED = MOTION | CHARGE | {"vehicle.transverse_load_at"}
-PRESSURE = frozenset({"main_strut.kind", "main_strut.charge_pressure"})
+PRESSURE = OVERRIDES | {"main_strut.kind", "main_strut.charge_pressure"}
 LIQUID = PRESSURE | {
     f"main_strut.{what}"
     for what in (
@@ -56,6 +65,7 @@ INPUTS: dict[str, frozenset[str]] = {
     **dict.fromkeys(ACCELERATIONS, LOADS | RATES),
     "body.top_axial_acceleration": LOADS | RATES,
     "status.phase": LOADS | RATES,
+    **{f"body.strike_{what}_{axis}": RATES for what in ("force", "moment") for axis in "xyz"},
     "contact.force_x": RATES,
     "contact.force_y": RATES,
     "contact.force_z": RATES,
@@ -67,6 +77,7 @@ START_INPUTS: dict[str, frozenset[str]] = {
     **dict.fromkeys(ACCELERATIONS, LOADS),
     "body.y": GROUND,
     "body.top_axial_acceleration": LOADS,
+    "body.clearance": GROUND - {"ground.heave"},
     "energy.potential": GROUND,
     "auxiliary_strut.transverse_force": LOADS,
     "footpad.y": GROUND,
@@ -79,6 +90,7 @@ PARAMETERS: dict[str, frozenset[str]] = {
     "body.x": VX,
     "body.y": HEIGHT,
     "body.z": VZ,
+    "body.clearance": VX | VZ | HEIGHT,
     "body.vx": VX,
     "body.vy": VY,
     "body.vz": VZ,

@@ -114,7 +114,6 @@ class Wanted:
         """The vehicle and its drop, in words."""
         p = self.parameters
         legs = int(p.vehicle.legs)
-        mass = p.vehicle.mass + legs * p.vehicle.footpad_mass
         how = "in space" if self.interface.in_space else p.drop.mode
         speed = abs(p.drop.vertical_velocity)
-        return f"{mass:.4g} kg on {COUNTS[legs]} legs, {how} at {speed:.3g} m/s"
+        return f"{p.whole_mass:.4g} kg on {COUNTS[legs]} legs, {how} at {speed:.3g} m/s"

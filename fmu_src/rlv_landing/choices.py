@@ -13,7 +13,7 @@ from .errors import LandingError, unknown
 from .parameters import Parameters
 from .presets import DEFAULT_PRESET, load_preset, read_toml
 from .quantities import Quantity
-from .text.values import parse_value
+from .text.listed import parse_parameter
 
 
 def split_pair(pair: str, what: str) -> tuple[str, str]:
@@ -52,7 +52,7 @@ def parse_pairs(
         name, value = split_pair(pair, what)
         if name not in table:
             raise unknown(what, name, table)
-        values[name] = parse_value(table[name], value)
+        values[name] = parse_parameter(table[name], value)
     return values
 
 

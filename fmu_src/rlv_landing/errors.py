@@ -76,6 +76,10 @@ class StepLimitError(IntegrationError):
     """More steps are needed for a second of landing than `solver.max_steps_per_second` allows."""
 
 
+class OffGroundError(IntegrationError):
+    """A footpad or a point of the body is beyond the height field."""
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """`; did you mean X?` for the known name nearest to `name`; empty where none is near.
 

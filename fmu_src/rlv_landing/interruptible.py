@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from .core import Fault, Solver
 from .core.memory import Buffer
-from .errors import StepLimitError, StepSizeError
+from .errors import OffGroundError, StepLimitError, StepSizeError
 
 if TYPE_CHECKING:
     from numpy import float64
@@ -41,6 +41,11 @@ def check_going(solver: Solver) -> None:
         raise StepSizeError(
             f"the integrator's step size has collapsed at t = {s.t:g} s; "
             "soften the parameters or the loads"
+        )
+    if s.fault == Fault.OFF_GROUND:
+        raise OffGroundError(
+            f"a footpad or a point of the body is beyond the height field ground.terrain at "
+            f"t = {s.t:g} s; give a larger field, or land nearer to its middle"
         )
     if s.fault == Fault.TOO_MANY_STEPS:
         raise StepLimitError(

@@ -18,7 +18,7 @@ from .outputs import Extreme, OutputReader, output_order
 from .parameters import Parameters
 from .quantities import SPACE, Interface, interface_of
 from .state import LATEST, load_state, state_of
-from .touchdown import AT_REST, GroundMotion
+from .touchdown import AT_REST, GroundMotion, each_leg
 
 if TYPE_CHECKING:
     from numpy import float64
@@ -212,9 +212,10 @@ class Landing:
     def advance_within_step(self, time: float, step_end: float, *, to_event: bool) -> bool:
         """Go on to `time` [s] in a step that ends at `step_end` [s], not before `time`.
 
-        With `to_event`, go on to the first event before `time`, if there is one: a footpad touches
-        the ground or leaves it, a main strut comes to an end stop or leaves it, or `status.phase`
-        changes. It is found to 1e-9 s. Results do not depend on where a step is left and continued.
+        With `to_event`, go on to the first event before `time`, if there is one: a footpad or the
+        body touches the ground or leaves it, a main strut comes to an end stop or leaves it, or
+        `status.phase` changes. It is found to 1e-9 s. Results do not depend on where a step is left
+        and continued.
 
         Returns whether there is an event at the time reached; False without `to_event`.
         """
@@ -230,20 +231,23 @@ class Landing:
     def _integrate(self, time: float, *, to_event: bool) -> bool:
         """Integrate to `time` [s], or to an event; the ground keeps its motion until then."""
         reached, found = time, False
-        with self._until(time):
+        try:
             if to_event:
                 reached, found = self._event_search().advance(self._time, time)
             else:
                 advance(self._solver, time)
+        except BaseException:
+            self._end_before(time)
+            raise
         self._time = reached
         return found
 
     def _event_search(self) -> EventSearch:
         if self._search is None:
-            stroke_max = self.parameters.main_strut.stroke_max
+            stops = [p.main_strut.stroke_max for p in each_leg(self.parameters)]
             names = self.interface.output_names
             order = output_order(self.parameters.drop.mode, len(names))
-            self._search = EventSearch(self._solver, names, order, stroke_max)
+            self._search = EventSearch(self._solver, names, order, stops)
         return self._search
 
     def _move_ground(self, time: float, step_end: float, *, to_event: bool) -> bool:
@@ -393,24 +397,19 @@ class Landing:
                 sample = start + reached * every
                 self._move_ground(sample, sample, to_event=False)
             time = start + (goal - 1) * every
-            with self._until(time):
+            try:
                 record(self._solver, rows, start, every, reached, goal)
+            except BaseException:
+                self._end_before(time)
+                raise
             self._time, reached = time, goal
             if progress is not None:
                 progress(time)
 
-    @contextmanager
-    def _until(self, time: float) -> Iterator[None]:
-        """Go on to `time` [s].
-
-        If a fault or Ctrl-C ends that earlier, the landing is at the end of the last internal step.
-        """
-        try:
-            yield
-        except BaseException:
-            self._time = max(self._time, min(self._solver.t, time))
-            self._reader.forget()
-            raise
+    def _end_before(self, time: float) -> None:
+        """End at the last internal step, where a fault or Ctrl-C ends the way to `time` [s]."""
+        self._time = max(self._time, min(self._solver.t, time))
+        self._reader.forget()
 
 
 def _revived(

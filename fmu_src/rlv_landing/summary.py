@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from .history import History
-from .validation.measures import DamperWork, first_push, leg_work
+from .validation.first_contact import first_contact
+from .validation.measures import DamperWork, leg_work
 
 UNFINISHED = {
     "in compression": "largest stroke, efficiency and energies are not known",
@@ -26,7 +27,9 @@ def summarise(history: History) -> dict[str, Any]:
         Outcome, end time [s], smallest stability margin [m], and per leg: contact time [s], peak
         forces [N] and stroke [m] with their times [s], all until the end; and the first compression
         and rebound, as `DamperWork` has them: how far they are known, energies [J], efficiency.
-        `peaks_of` is `landing` where peaks are those between the samples too, else `samples`.
+        Of a vehicle with body points their least distance from the ground [m], and when they met it
+        first [s], None if never. `peaks_of` is `landing` where peaks are those between the samples
+        too, else `samples`.
     """
     t = history.time
     result: dict[str, Any] = {
@@ -37,6 +40,8 @@ def summarise(history: History) -> dict[str, Any]:
         result["outcome"] = OUTCOMES[int(history["status.phase"][-1])]
     if _has(history, "status.stability_margin"):
         result["stability_margin_min"] = history.extreme("status.stability_margin").minimum
+    if history.parameters is not None and history.parameters.vehicle.body_points:
+        result |= _clearance(history)
     if "energy.balance" in history:
         result["energy_balance_worst"] = float(np.abs(history["energy.balance"]).max())
     top = history.extreme("body.top_axial_acceleration")
@@ -46,9 +51,11 @@ def summarise(history: History) -> dict[str, Any]:
     legs = [_leg_summary(history, leg, work.get(leg)) for leg in history.legs]
     result["legs"] = legs
     if history.parameters is not None:
-        limit = history.parameters.main_strut.stroke_max
         result["bottomed_out"] = [
-            leg["leg"] for leg in legs if leg["main_strut_stroke_max"] > limit
+            leg["leg"]
+            for leg in legs
+            if leg["main_strut_stroke_max"]
+            > history.parameters.of_leg(leg["leg"]).main_strut.stroke_max
         ]
     return result
 
@@ -58,10 +65,10 @@ def _leg_summary(history: History, leg: int, work: DamperWork | None) -> dict[st
     force = history.extreme(f"leg[{leg}].main_strut.force")
     stroke = history.extreme(f"leg[{leg}].main_strut.stroke")
     auxiliary = history.extreme(f"leg[{leg}].auxiliary_strut.force")
-    first = first_push(history, leg)
+    contact = first_contact(history, leg)
     return {
         "leg": leg,
-        "contact_time": None if first is None else float(history.time[first]),
+        "contact_time": None if contact is None else contact.time,
         "main_strut_force_min": force.minimum,
         "main_strut_force_min_time": force.minimum_time,
         "main_strut_stroke_max": stroke.maximum,
@@ -75,6 +82,24 @@ def _leg_summary(history: History, leg: int, work: DamperWork | None) -> dict[st
         "main_strut_absorbed": None if work is None else work.absorbed,
         "main_strut_dissipated": None if work is None else work.dissipated,
         "main_strut_efficiency": None if work is None else work.efficiency,
+    }
+
+
+def _clearance(history: History) -> dict[str, float | None]:
+    """The least distance of the body's points from the ground [m], and when they met it first [s].
+
+    That is known to a sample; None where they did not.
+    """
+    name = "body.clearance"
+    if not _has(history, name):
+        return {}
+    least = history.extreme(name)
+    first = least.minimum_time
+    if name in history and (history[name] < 0.0).any():
+        first = float(history.time[np.argmax(history[name] < 0.0)])
+    return {
+        "body_clearance_min": least.minimum,
+        "body_strike_time": first if least.minimum < 0.0 else None,
     }
 
 

@@ -60,6 +60,11 @@ def leg_directions(parameters: Parameters) -> dict[int, tuple[float, float]]:
     return dict(sorted(found.items()))
 
 
+def each_leg(parameters: Parameters) -> list[Parameters]:
+    """The parameters as each leg of a landing in space has them."""
+    return [parameters.of_leg(leg) for leg in range(1, int(parameters.vehicle.legs) + 1)]
+
+
 def footpad_at_rest(parameters: Parameters) -> tuple[float, float]:
     """Radius and height [m] of a footpad whose struts are both at full length.
 

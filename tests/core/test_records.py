@@ -94,8 +94,9 @@ def test_a_record_is_written_in_the_order_of_its_fields(values):
 
 def test_the_compiled_outputs_have_the_length_that_the_records_say(mode):
     system = new_solver(Parameters().for_mode(mode), DEFAULT_RTOL).system
-    groups = (system.n - access.BODY - access.ACCOUNTS) // access.LEG
-    assert system.n == access.BODY + access.LEG * groups + access.ACCOUNTS
+    # each group has a leg's state and a main strut's work
+    groups = (system.n - access.BODY - access.ACCOUNTS) // (access.LEG + 1)
+    assert system.n == access.BODY + (access.LEG + 1) * groups + access.ACCOUNTS
     assert (
         system.row
         == access.BODY_OUTPUTS

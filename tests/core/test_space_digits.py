@@ -8,7 +8,8 @@ import pytest
 
 from rlv_landing.core import COMPILED
 
-# five legs, the CG off their axis, a turned deck that moves in all directions; prints every bit
+# five legs that differ, points of the body, a height field on a slope, the CG off the legs' axis, a
+# turned deck that moves in all directions; prints every bit
 LAND = """
 import sys
 from rlv_landing import Landing, core, load_preset
@@ -18,6 +19,9 @@ values = {
     "drop.yaw_rate": 0.2, "drop.roll_rate": -0.1, "drop.lateral_velocity": 0.2,
     "drop.contact_time": 0.0, "ground.slope": 0.03, "ground.slope_direction": 0.7,
     "vehicle.transverse_load_at": sys.argv[2],
+    "vehicle.body_points": "0.2 -2.12 0.1; -0.3 -2.12 0.0",
+    "ground.terrain": "x -3 3 3 z -3 2 4 h 0 0.1 0 0.02 0 0.03 0 0 0.05 0.01 0 0",
+    "leg[1].main_strut.kind": "spring-damper", "leg[2].ground.step": 0.01,
 }
 landing = Landing(load_preset("yue2022-figures").with_values(values), "space", 1e-3, sys.argv[3])
 landing.set_inputs(

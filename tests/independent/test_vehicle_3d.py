@@ -55,7 +55,7 @@ def random_state(
     now: the body's height is chosen so that one footpad is near it.
     """
     groups = max(g for g, _ in GROUPS[mode]) + 1
-    y = np.zeros(leg_at(groups) + access.ACCOUNTS)
+    y = np.zeros(leg_at(groups) + access.ACCOUNTS + groups)
     y[:6] = rng.uniform([-0.5, 0.0, -0.4, -2.0, -2.0, -3.0], [0.5, 0.0, 0.4, 2.0, 2.0, 3.0])
     rest = model.start(np.zeros(6))[LEGS:].reshape(8, 4)
     body = [

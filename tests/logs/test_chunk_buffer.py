@@ -10,6 +10,7 @@ from log_tools import CDR, CLOCK_TYPE, messages_of
 from mcap.reader import make_reader
 
 from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.logs.recording import bag_writer, chunk_queue
 from rlv_ros_bridge.logs.recording.bag_writer import CHUNK_BYTES
 from rlv_ros_bridge.messages.qos import TELEMETRY
 from rlv_ros_bridge.messages.wire import TIMES
@@ -69,8 +70,11 @@ def test_a_log_is_byte_for_byte_what_mcaps_own_writer_makes_of_its_messages(
 
 @pytest.mark.parametrize("by_the_library", [False, True])
 def test_every_message_is_in_a_chunk_of_bounded_size_and_found_by_its_index(
-    tmp_path: Path, *, by_the_library: bool
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, by_the_library: bool
 ) -> None:
+    limit = 64 * 1024
+    for module in (bag_writer, chunk_queue):
+        monkeypatch.setattr(module, "CHUNK_BYTES", limit)
     path, expected = record(tmp_path / "log", 10**9, by_the_library=by_the_library)
     found = messages_of(path)
     for name, messages in expected.items():
@@ -82,7 +86,7 @@ def test_every_message_is_in_a_chunk_of_bounded_size_and_found_by_its_index(
         summary = reader.get_summary()
         assert summary is not None
         assert len(summary.chunk_indexes) > 1
-        assert max(c.uncompressed_size for c in summary.chunk_indexes) <= CHUNK_BYTES
+        assert max(c.uncompressed_size for c in summary.chunk_indexes) <= limit
         # By the indexes: a span of one topic.
         part = [
             m.data

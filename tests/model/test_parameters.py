@@ -15,14 +15,14 @@ from rlv_landing.quantities import BASE_UNITS, DISPLAY_UNITS, INPUT_QUANTITIES, 
 from rlv_landing.text.values import parse_value
 from rlv_landing.touchdown import footpad_at_rest
 
-REALS = [q for q in PARAMETER_QUANTITIES.values() if not q.choices]
+REALS = [q for q in PARAMETER_QUANTITIES.values() if q.kind == "real"]
 
 
 def test_every_quantity_has_bounds_a_meaning_a_known_unit_and_a_source():
     for q in PARAMETER_QUANTITIES.values():
         assert q.meaning
         assert q.source in ("paper", "derived", "closure", "identified")
-        assert q.choices or (q.lo <= q.default <= q.hi and abs(q.lo) < inf and q.hi < inf)
+        assert q.kind == "string" or (q.lo <= q.default <= q.hi and abs(q.lo) < inf and q.hi < inf)
     for q in (*PARAMETER_QUANTITIES.values(), *INPUT_QUANTITIES, *OUTPUT_QUANTITIES):
         assert q.unit in BASE_UNITS or q.unit == ""
         assert q.display_unit == "" or DISPLAY_UNITS[q.display_unit][0] == q.unit

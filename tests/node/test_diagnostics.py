@@ -25,4 +25,7 @@ def test_the_level_is_ok_again_a_second_after_the_last_problem() -> None:
     assert level(1.0, 3) == (DiagnosticStatus.WARN, "3 steps late")
     assert level(2.0, 3) == (DiagnosticStatus.WARN, "3 steps late")
     assert level(2.1, 3) == (DiagnosticStatus.OK, "falling")
-    assert level(2.2, 3, "disk full") == (DiagnosticStatus.ERROR, "disk full")
+    message.note(4 * SECOND, {"steps late": 4})
+    assert level(4.5, 4) == (DiagnosticStatus.WARN, "4 steps late")
+    assert level(5.1, 4) == (DiagnosticStatus.OK, "falling")
+    assert level(5.2, 4, "disk full") == (DiagnosticStatus.ERROR, "disk full")

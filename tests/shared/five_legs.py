@@ -23,6 +23,12 @@ FIVE_LEGS: dict[str, float | str] = {
     "drop.lateral_velocity": 0.3,
     "ground.slope": radians(3.0),
     "ground.slope_direction": radians(50.0),
+    "leg[2].ground.step": 0.012,
+    "leg[2].main_strut.orifice_area_compression": 7e-6,
+    "leg[4].ground.friction": 0.15,
+    "leg[5].vehicle.footpad_mass": 4.8,
+    # a nozzle's rim that strikes
+    "vehicle.body_points": "0.25 -2.105 0.0; -0.12 -2.105 0.22; -0.12 -2.105 -0.22",
 }
 # a deck on its way, and a gust, from the start on
 DECK: dict[str, float] = {

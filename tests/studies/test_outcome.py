@@ -109,9 +109,8 @@ def test_on_a_slope_without_friction_the_feet_slide_as_far_as_gravity_takes_them
         names = [f"leg[{leg}].footpad.{axis}" for axis in "xyz"]
         return hypot(*(h[n][i] - h[n][start[leg]] for n in names))
 
-    assert found.time == min(
-        h.time[i] for i in range(len(h)) for leg in LEGS if i >= start[leg] and moved(leg, i) > 0.3
-    )
+    first = min(i for i in range(len(h)) for leg in LEGS if i >= start[leg] and moved(leg, i) > 0.3)
+    assert h.time[first - 1] < found.time <= h.time[first]
     assert outcome(h, slide=5.0).name != "slid"
 
 

@@ -14,7 +14,7 @@ from rlv_landing.quantities import LEGS, MODES
 from rlv_landing.studies.limits import LIMITS
 from rlv_landing.studies.outcome import outcome
 from rlv_landing.studies.replay import ReplayedHistory
-from rlv_landing.studies.sweep.responses import EXTREMES, Measure, known_responses
+from rlv_landing.studies.sweep.responses import EXTREMES, WORK, Measure, known_responses
 from rlv_landing.studies.whole_landing import whole_landing
 
 UNTIL = 0.6
@@ -24,9 +24,15 @@ PEAKS = tuple(
     if name.rpartition(".")[2] in EXTREMES and not name.startswith(("outcome", "margin"))
 )
 LEAST_MARGINS = ("margin.stability_min", "margin.stroke_left", "margin.joint_clearance")
+# works and places that are found between samples of 1 ms
+FOUND = (
+    *(name for name in known_responses() if name.rpartition(".")[2] in (*WORK, "first_stroke")),
+    *(f"leg[{leg}].contact.time" for leg in LEGS),
+    *("margin.slid", "margin.stability_end"),
+)
 EVENTS = ("outcome", "outcome.first_limit", "outcome.leg")
 TIMES = ("outcome.time", "outcome.first_limit_time")
-NAMES = (*PEAKS, *LEAST_MARGINS, *EVENTS, *TIMES)
+NAMES = (*PEAKS, *LEAST_MARGINS, *FOUND, *EVENTS, *TIMES)
 # of each kind of loss one
 CASES = {
     "moving": {},
@@ -60,6 +66,17 @@ def test_peaks_do_not_depend_on_the_samples(mode, case, every):
         assert found[name] == exact[name], name
     assert found["outcome.first_limit_time"] == approx(exact["outcome.first_limit_time"], abs=1e-8)
     assert found["outcome.time"] == approx(exact["outcome.time"], abs=1e-8)
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("mode", MODES)
+def test_works_contacts_and_slides_do_not_depend_on_samples_of_1_ms(mode, case):
+    found, exact = responses(case, mode, 1e-3), responses(case, mode, 1e-5)
+    for name in FOUND:
+        if isinstance(exact[name], float):
+            assert found[name] == approx(exact[name], rel=1e-3, abs=1e-12), name
+        else:
+            assert found[name] == exact[name], name
 
 
 @pytest.mark.parametrize("mode", MODES)

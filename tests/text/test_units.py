@@ -300,7 +300,7 @@ def _for_pint(symbol: str, power: str | None) -> str:
     "q", [*PARAMETER_QUANTITIES.values(), *INPUT_QUANTITIES, *LIMITS.values()], ids=lambda q: q.name
 )
 def test_the_text_that_an_error_recommends_is_accepted(q):
-    if q.choices:
+    if q.kind == "string":
         return
     with pytest.raises(LandingError, match="write for example") as e:
         parse_value(q, "much")

@@ -272,7 +272,8 @@ def test_what_another_vehicles_landing_does_not_show_is_a_dash():
         assert ("22-s3-end" in missing) == bool(dashes)
     found = {c.scalar.id: c.ours for c in compare(history, "2-2")}
     assert found["22-s3-max"] == approx(1e3 * work[3].stroke_max)
-    assert found["22-s1-reb-t"] == approx(work[1].end)
+    # the paper's reading is the smallest stroke, at the stop, which is met 2 ms earlier
+    assert work[1].end < found["22-s1-reb-t"] < work[1].end + 2.5e-3
 
 
 def test_measured_forces_of_the_wrong_sign_are_refused(validation, tmp_path):

@@ -3,9 +3,17 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
-from ..core import AUXILIARY_STRUTS, FRICTION_LAWS, MAIN_STRUTS, Accounts, LegModel, LegState
+from ..core import (
+    AUXILIARY_STRUTS,
+    FRICTION_LAWS,
+    MAIN_STRUTS,
+    Accounts,
+    LegModel,
+    LegState,
+    PointState,
+)
 from ..core.struts.fluid import fluid
 from ..core.struts.kinds import auxiliary_strut, auxiliary_strut_energy
 from ..parameters import PARAMETER_QUANTITIES, Parameters
@@ -15,6 +23,8 @@ from ..parameters import PARAMETER_QUANTITIES, Parameters
 LEG_SCALE = LegState(r=0.1, h=0.1, vr=1.0, vh=1.0, z1=1e5, z2=1e5, q1=1e-3, q2=1e-3)
 # the states whose error is relative to their own size as well: the liquid's pressures
 LEG_RELATIVE = LegState(r=0.0, h=0.0, vr=0.0, vh=0.0, z1=1.0, z2=1.0, q1=0.0, q2=0.0)
+POINT_SCALE = PointState(q1=1e-3, q2=1e-3)
+AT_REST = PointState(q1=0.0, q2=0.0)
 # [J], of a vehicle that has none
 LEAST_ENERGY = 1e-3
 # [m/s2], so that a footpad's stiffness does not depend on where the vehicle lands
@@ -27,13 +37,23 @@ NO_ENERGY = Accounts(*(0.0 for _ in Accounts._fields))
 BY_SYMBOL = {q.symbol: name for name, q in PARAMETER_QUANTITIES.items() if q.symbol}
 
 
-def flat_state(body: Iterable[float], legs: Iterable[LegState], accounts: Accounts) -> array[float]:
-    """The numbers of a state: the body's, each leg group's, the accounts."""
-    return array("d", [*body, *(number for leg in legs for number in leg), *accounts])
+def flat_state(
+    body: Iterable[float],
+    legs: Sequence[LegState],
+    accounts: Accounts,
+    points: Iterable[PointState] = (),
+    work: float = 0.0,
+) -> array[float]:
+    """The numbers of a state.
+
+    They are the body's, each leg group's, each point's, the accounts, and each main strut's `work`.
+    """
+    of_legs, of_points = ((n for one in all_ for n in one) for all_ in (legs, points))
+    return array("d", [*body, *of_legs, *of_points, *accounts, *([work] * len(legs))])
 
 
 def state_sizes(
-    body_scale: Iterable[float], groups: int, parameters: Parameters
+    body_scale: Iterable[float], groups: int, parameters: Parameters, points: int = 0
 ) -> tuple[array[float], array[float]]:
     """The sizes of a state's numbers, and which numbers count by their own size as well.
 
@@ -41,16 +61,24 @@ def state_sizes(
         body_scale: Typical sizes of the body's numbers.
         groups: How many leg groups there are.
         parameters: The parameters of the landing.
+        points: How many points of the body meet the ground.
     """
     body = list(body_scale)
     energy = touchdown_energy(parameters)
     accounts = Accounts(*(energy for _ in Accounts._fields))
-    scale = flat_state(body, [LEG_SCALE] * groups, accounts)
-    return scale, flat_state([0.0] * len(body), [LEG_RELATIVE] * groups, NO_ENERGY)
+    scale = flat_state(body, [LEG_SCALE] * groups, accounts, [POINT_SCALE] * points, energy)
+    relative = [LEG_RELATIVE] * groups
+    return scale, flat_state([0.0] * len(body), relative, NO_ENERGY, [AT_REST] * points)
 
 
-def leg_model(parameters: Parameters) -> LegModel:
-    """The numbers of a leg that does not lie in a symmetric plane."""
+def leg_model(whole: Parameters, leg: int = 0) -> LegModel:
+    """The numbers of a leg that does not lie in a symmetric plane.
+
+    Args:
+        whole: The parameters of the landing.
+        leg: The leg's number; 0: one without values for itself.
+    """
+    parameters = whole.of_leg(leg)
     strut = parameters.auxiliary_strut
     play = strut.play_tension + strut.play_compression > 0.0
     mu = parameters.ground.friction
@@ -60,7 +88,7 @@ def leg_model(parameters: Parameters) -> LegModel:
         "friction_kind": law_number(FRICTION_LAWS, parameters.ground.friction_law),
         "mu": mu if mu >= LEAST_FRICTION else 0.0,
         "fill": liquid_fill(parameters),
-        "K_t": tangential_stiffness(parameters),
+        "K_t": tangential_stiffness(parameters, whole),
         "zone": parameters.ground.slip_zone * parameters.ground.stick_displacement,
         "Lb": -parameters.main_strut.joint_depth,
         "Ld": -parameters.auxiliary_strut.joint_depth,
@@ -92,23 +120,27 @@ def touchdown_energy(parameters: Parameters) -> float:
     length.
     """
     vehicle, drop = parameters.vehicle, parameters.drop
-    mass = vehicle.mass + vehicle.footpad_mass * parameters.vehicle.legs
+    mass = parameters.whole_mass
     moving = drop.horizontal_velocity**2 + drop.vertical_velocity**2 + drop.lateral_velocity**2
     turning = drop.pitch_rate**2 + drop.roll_rate**2 + drop.yaw_rate**2
     fall = mass * parameters.ground.gravity * 0.1 * parameters.main_strut.length
     return max(0.5 * mass * moving + 0.5 * vehicle.inertia * turning + fall, LEAST_ENERGY)
 
 
-def tangential_stiffness(parameters: Parameters) -> float:
+def tangential_stiffness(parameters: Parameters, whole: Parameters | None = None) -> float:
     """Stiffness of a sticking footpad along the ground [N/m] (closure).
 
     It is `ground.tangential_stiffness`; 0 stands for the weight of the whole vehicle (at standard
     gravity) over the stick displacement.
+
+    Args:
+        parameters: The parameters as the footpad's leg has them.
+        whole: Those of the whole vehicle, where they are others.
     """
-    given, vehicle = parameters.ground.tangential_stiffness, parameters.vehicle
+    given = parameters.ground.tangential_stiffness
     if given > 0.0:
         return given
-    mass = vehicle.mass + vehicle.footpad_mass * parameters.vehicle.legs
+    mass = (whole or parameters).whole_mass
     return mass * STANDARD_GRAVITY / parameters.ground.stick_displacement
 
 

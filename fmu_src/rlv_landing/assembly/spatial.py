@@ -8,9 +8,10 @@ from math import cos, sin
 
 from ..core import LegPlace, LegState, Spatial, SpatialInputs, SpatialModel, SpatialState
 from ..parameters import Parameters
-from ..touchdown import leg_directions
-from .legs import NO_ENERGY, flat_state, leg_model, state_sizes
+from ..touchdown import each_leg, leg_directions
+from .legs import AT_REST, NO_ENERGY, flat_state, leg_model, state_sizes
 from .spatial_flight import DeckMotion, SpatialFlight
+from .surroundings import body_points, height_field
 
 # see LEG_SCALE; half a quaternion's change is an angle's
 BODY_SCALE = SpatialState(*([0.1] * 3 + [0.05] * 4 + [1.0] * 6))
@@ -64,9 +65,15 @@ def spatial_system(parameters: Parameters, kind: type[Spatial] = Spatial) -> Spa
         kind: The class of the compiled or of the pure core.
     """
     places = spatial_places(parameters)
-    scale, relative = state_sizes(BODY_SCALE, len(places), parameters)
-    legs = [leg_model(parameters)] * len(places)
-    return kind(spatial_model(parameters), legs, places, scale, relative)
+    points = body_points(parameters)
+    scale, relative = state_sizes(BODY_SCALE, len(places), parameters, len(points))
+    if parameters.vehicle.leg_overrides:
+        legs = [leg_model(parameters, leg) for leg in range(1, len(places) + 1)]
+    else:
+        legs = [leg_model(parameters)] * len(places)
+    body, law = spatial_model(parameters), leg_model(parameters)
+    met = (points, law, *height_field(parameters))
+    return kind(body, legs, places, scale, relative, met)
 
 
 def spatial_start(
@@ -86,7 +93,10 @@ def spatial_start(
     """
     deck = DeckMotion(SpatialInputs(*inputs), SpatialInputs(*rates))
     flight = SpatialFlight(parameters, spatial_model(parameters), spatial_places(parameters), deck)
-    radius, height = flight.footpad
-    charge = parameters.main_strut.charge_pressure
-    leg = LegState(r=radius, h=height, vr=0.0, vh=0.0, z1=charge, z2=charge, q1=0.0, q2=0.0)
-    return flat_state(flight.start(), [leg] * int(parameters.vehicle.legs), NO_ENERGY)
+    legs = [
+        LegState(r=radius, h=height, vr=0.0, vh=0.0, z1=charge, z2=charge, q1=0.0, q2=0.0)
+        for own, (radius, height) in zip(each_leg(parameters), flight.footpads)
+        for charge in [own.main_strut.charge_pressure]
+    ]
+    points = [AT_REST] * len(body_points(parameters))
+    return flat_state(flight.start(), legs, NO_ENERGY, points)

@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import ceil, cos, sin, sqrt
+from math import ceil, cos, inf, sin, sqrt
 from typing import NamedTuple
 
 from ..core import LegPlace, SpatialInputs, SpatialModel, SpatialState
 from ..core.bodies.deck import deck_turn, from_origin, ground_axes
 from ..core.bodies.spatial_legs import cg_of, in_leg
 from ..core.bodies.spatial_motion import gone_on
-from ..core.records import Rotation, Vector
+from ..core.ground.terrain import terrain_place
+from ..core.records import Rotation, TerrainPlace, Vector
 from ..core.vectors import added, cross, dot, less, rotation, scaled, solved, to_body, to_inertial
 from ..errors import LandingError
 from ..parameters import Parameters
-from ..touchdown import DEPTH_LIMIT, STEEPEST, footpad_at_rest
+from ..touchdown import DEPTH_LIMIT, STEEPEST, each_leg, footpad_at_rest
+from .surroundings import body_points, height_field
 
 # parts of the free flight's duration at which the footpads are checked to be above the ground
 CHECKS = 64
+# steps down to a height field, the shortest one [m], and how often the last is halved
+DESCENT, LEAST_DESCENT, HALVINGS = 200, 1e-3, 60
 # longest turn of the body in a step of the tumbling flight [rad]
 TURN = 0.01
 Quaternion = tuple[float, float, float, float]
@@ -55,8 +59,9 @@ class SpatialFlight:
     """The free flight with the legs fully extended, up to the first contact.
 
     The whole vehicle's CG flies a parabola, and the rigid vehicle turns free of moments. The first
-    contact is `drop.contact_time` after time 0: the lowest footpad touches the ground as it is
-    then, and the body's CG is above the inertial origin. [derived]
+    contact is `drop.contact_time` after time 0: the footpad, or point of the body, that is lowest
+    above the ground as it is then touches it, and the body's CG is above the inertial origin.
+    [derived]
 
     Args:
         parameters: The vehicle, its drop and its ground.
@@ -73,14 +78,25 @@ class SpatialFlight:
         deck: DeckMotion,
     ) -> None:
         drop = parameters.drop
-        self.footpad = footpad_at_rest(parameters)
-        self._feet = [less(in_leg(p, *self.footpad), cg_of(body)) for p in places]
+        legs = each_leg(parameters)
+        self.footpads = [footpad_at_rest(leg) for leg in legs]
+        self._feet = [less(in_leg(p, *f), cg_of(body)) for p, f in zip(places, self.footpads)]
+        # what may meet the ground, and how far the ground there is above its plane or field
+        struck = [less(Vector(*point), cg_of(body)) for point in body_points(parameters)]
+        self._contacts = [
+            *zip(self._feet, (leg.ground.step for leg in legs)),
+            *((point, 0.0) for point in struck),
+        ]
+        self._field, self._heights = height_field(parameters)
         self._body, self._deck = body, deck
         self._duration, self._gravity = drop.contact_time, parameters.ground.gravity
-        m_d = parameters.vehicle.footpad_mass
-        mass = body.m_u + m_d * len(places)
-        self._center = scaled(_sum(self._feet), m_d / mass)
-        self._inertia = _whole_inertia(body, self._feet, self._center, m_d)
+        masses = [leg.vehicle.footpad_mass for leg in legs]
+        mass = body.m_u + masses[0] * len(places)
+        self._center = scaled(_sum(self._feet), masses[0] / mass)
+        if len(set(masses)) > 1:
+            moments = [scaled(foot, m_d) for foot, m_d in zip(self._feet, masses)]
+            self._center = scaled(_sum(moments), 1.0 / (body.m_u + sum(masses)))
+        self._inertia = _whole_inertia(body, self._feet, self._center, masses)
         q = attitude(drop.tilt, drop.roll, drop.heading)
         turn = rotation(*q)
         spin = to_body(turn, Vector(drop.roll_rate, drop.yaw_rate, -drop.pitch_rate))
@@ -94,22 +110,85 @@ class SpatialFlight:
                 f"the ground's normal is {up:.3g} upwards at the first contact, "
                 f"{self._duration:g} s, the limit is {cos(STEEPEST):.3g}; tilt the ground less"
             )
-        height = -self._clearance(Vector(0.0, 0.0, 0.0), turn, self._duration) / up
+        height = self._contact_height(turn, up)
         self._place = added(Vector(0.0, height, 0.0), center)
 
+    def _contact_height(self, turn: Rotation, up: float) -> float:
+        """Height [m] of the body's CG at which the vehicle, coming from above, meets the ground.
+
+        Args:
+            turn: Its attitude.
+            up: Part upwards of the normal of the ground's plane.
+
+        Raises:
+            LandingError: It meets the ground beyond the height field.
+        """
+        over, height = Vector(0.0, 0.0, 0.0), 0.0
+        if self._field.columns == 0.0:
+            return -self._clearance(over, turn, self._duration) / up
+        highest, lowest = max(self._heights), min(self._heights)
+        deck = self._deck.at(self._duration)
+        axes, above = ground_axes(deck_turn(deck), self._body), from_origin(deck, over)
+        plane = min(
+            to_body(axes, added(above, to_inertial(turn, place))).y - step
+            for place, step in self._contacts
+        )
+        # above all heights, then down by parts of what they differ by, and to the digit
+        high = (highest - plane) / up
+        part = (highest - lowest) / up / DESCENT
+        low = high
+        while self._clearance(Vector(0.0, low, 0.0), turn, self._duration) > 0.0:
+            if low < high - (DESCENT + 1) * part - 1.0:
+                break
+            high, low = low, low - max(part, LEAST_DESCENT)
+        for _ in range(HALVINGS):
+            height = 0.5 * (high + low)
+            if self._clearance(Vector(0.0, height, 0.0), turn, self._duration) > 0.0:
+                high = height
+            else:
+                low = height
+        self._check_inside(Vector(0.0, height, 0.0), turn, self._duration)
+        return high
+
     def _clearance(self, cg: Vector, turn: Rotation, t: float) -> float:
-        """Height [m] of the lowest footpad above the ground at time `t` [s], along its normal."""
+        """Height [m] of the lowest contact above the ground at time `t` [s], along its normal."""
         deck = self._deck.at(t)
         axes, above = ground_axes(deck_turn(deck), self._body), from_origin(deck, cg)
-        places = (added(above, to_inertial(turn, foot)) for foot in self._feet)
-        return min(to_body(axes, place).y for place in places)
+        least = inf
+        for place, step in self._contacts:
+            point = to_body(axes, added(above, to_inertial(turn, place)))
+            height = point.y
+            if self._field.columns > 0.0:
+                height = -self._terrain(point).depth
+            least = min(least, height - step)
+        return least
+
+    def _terrain(self, point: Vector) -> TerrainPlace:
+        """The height field below a point, in the axes of the ground's plane."""
+        return terrain_place(self._field, self._heights, int(self._field.columns) + 2, point)
+
+    def _check_inside(self, cg: Vector, turn: Rotation, t: float) -> None:
+        """Check that the height field is below all contacts."""
+        if self._field.columns == 0.0:
+            return
+        deck, f = self._deck.at(t), self._field
+        axes, above = ground_axes(deck_turn(deck), self._body), from_origin(deck, cg)
+        for place, _ in self._contacts:
+            point = to_body(axes, added(above, to_inertial(turn, place)))
+            if self._terrain(point).outside > 0.0:
+                x, z = f.cos_d * point.x - f.sin_d * point.z, f.sin_d * point.x + f.cos_d * point.z
+                raise LandingError(
+                    f"a footpad or a point of the body is at x = {x:g} m, z = {z:g} m at {t:g} s, "
+                    f"beyond ground.terrain, x from {f.u0:g} to {f.u0 + f.du * (f.columns - 1):g} "
+                    f"m, z from {f.v0:g} to {f.v0 + f.dv * (f.rows - 1):g} m; give a larger field"
+                )
 
     def start(self) -> SpatialState:
         """The body's state at time 0.
 
         Raises:
-            LandingError: Before the contact a footpad would pass below the ground. 65 times are
-                checked.
+            LandingError: Before the contact a footpad or point of the body would pass below the
+                ground, or beyond its height field. 65 times are checked.
         """
         end, now = self._duration, self._contact
         state, lowest = self._state(now, 0.0), 0.0
@@ -121,7 +200,9 @@ class SpatialFlight:
             before = end * (k + 1) / CHECKS
             state = self._state(now, before)
             turn = rotation(*now.q)
-            height = self._clearance(Vector(state.x, state.y, state.z), turn, end - before)
+            cg = Vector(state.x, state.y, state.z)
+            self._check_inside(cg, turn, end - before)
+            height = self._clearance(cg, turn, end - before)
             lowest = min(lowest, height)
         if lowest < -DEPTH_LIMIT:
             raise LandingError(
@@ -192,7 +273,7 @@ def _sum(vectors: Sequence[Vector]) -> Vector:
 
 
 def _whole_inertia(
-    body: SpatialModel, feet: Sequence[Vector], center: Vector, m_d: float
+    body: SpatialModel, feet: Sequence[Vector], center: Vector, masses: Sequence[float]
 ) -> Tensor:
     """Inertia [kg m2] of body and footpads about their common CG, body axes."""
     rows = [
@@ -200,7 +281,7 @@ def _whole_inertia(
         [body.I_xy, body.I_y, body.I_yz],
         [body.I_xz, body.I_yz, body.I_z],
     ]
-    for mass, place in [(body.m_u, Vector(0.0, 0.0, 0.0)), *((m_d, foot) for foot in feet)]:
+    for mass, place in [(body.m_u, Vector(0.0, 0.0, 0.0)), *zip(masses, feet)]:
         d = less(place, center)
         for i in range(3):
             for j in range(3):

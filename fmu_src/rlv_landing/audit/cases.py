@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from ..landing import Landing
 from ..parameters import Parameters
+from ..touchdown import each_leg
 
 
 class Case(NamedTuple):
@@ -26,10 +27,12 @@ class Case(NamedTuple):
     def holds(self) -> bool:
         """Whether friction can hold the vehicle.
 
-        It can if the ground's slope and the side load together are within the friction angle.
+        It can if the ground's slope and the side load together are within the friction angle of the
+        footpad that has least.
         """
-        ground = self.parameters.ground
-        return abs(tan(ground.slope)) + abs(self.side_load) < ground.friction
+        p = self.parameters
+        friction = min(leg.ground.friction for leg in each_leg(p))
+        return abs(tan(p.ground.slope)) + abs(self.side_load) < friction
 
 
 SLOPE, SIDE_LOAD = radians(5.0), 0.1
@@ -50,7 +53,7 @@ def cases(parameters: Parameters) -> tuple[Case, ...]:
 
 def mass(parameters: Parameters) -> float:
     """Mass [kg] of body and footpads."""
-    return parameters.vehicle.mass + parameters.vehicle.legs * parameters.vehicle.footpad_mass
+    return parameters.whole_mass
 
 
 def weight(parameters: Parameters) -> float:

@@ -62,7 +62,8 @@ def spatial_momentum(history: History, parameters: Parameters) -> SpatialMomentu
         foot = _columns(history, f"leg[{leg}].footpad.")
         from_cg = turn.inv().apply(foot - place)
         own = _in_plane(history, parameters, leg, azimuth, from_cg) + np.cross(spin, from_cg)
-        points.append((v.footpad_mass, foot, speed + turn.apply(own)))
+        mass = parameters.of_leg(leg).vehicle.footpad_mass
+        points.append((mass, foot, speed + turn.apply(own)))
     linear: Array = np.sum([m * u for m, _, u in points], axis=0)
     turning: Array = np.sum([m * np.cross(x, u) for m, x, u in points], axis=0)
     about_origin = turning + turn.apply(spin @ inertia_tensor(parameters))
@@ -79,10 +80,13 @@ def spatial_impulse(history: History, parameters: Parameters) -> SpatialMomentum
     down = np.array([0.0, -g, 0.0])
     loads = [(_place(history), np.tile(v.mass * down, (len(history), 1)))]
     for leg in history.legs:
-        force = _columns(history, f"leg[{leg}].contact.force_") + v.footpad_mass * down
+        weight = parameters.of_leg(leg).vehicle.footpad_mass * down
+        force = _columns(history, f"leg[{leg}].contact.force_") + weight
         loads.append((_columns(history, f"leg[{leg}].footpad."), force))
+    loads.append((_place(history), _columns(history, "body.strike_force_")))
     force = np.sum([f for _, f in loads], axis=0)
-    moment = np.sum([np.cross(x, f) for x, f in loads], axis=0)
+    turning = _columns(history, "body.strike_moment_")
+    moment = turning + np.sum([np.cross(x, f) for x, f in loads], axis=0)
     linear, turn = (
         np.asarray(cumulative_simpson(f, x=history.time, axis=0, initial=0.0))
         for f in (force, moment)
@@ -131,7 +135,8 @@ def rates_in_plane(
         r: The footpad's distance from the body's axis [m], (n,).
         h: Its height above the CG [m], (n,).
     """
-    m, a = parameters.main_strut, parameters.auxiliary_strut
+    own = parameters.of_leg(leg)
+    m, a = own.main_strut, own.auxiliary_strut
     main_r, main_h = r - m.joint_radius, h + m.joint_depth
     aux_r, aux_h = r - a.joint_radius, h + a.joint_depth
     main_rate = -history[f"leg[{leg}].main_strut.stroke_rate"] * np.hypot(main_r, main_h)

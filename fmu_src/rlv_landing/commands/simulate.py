@@ -53,6 +53,7 @@ def simulate(output: Path | None, plot: Path | None, *, force: bool, **options: 
     rlv-landing simulate --set ground.friction=0.4 --set ground.slope="3 deg" --output landing.csv
     """
     from ..audit.transverse import warning_of
+    from ..studies.whole_landing import whole_landing
     from ..tables.history_file import ENDINGS, write_history
 
     check_writable(output, ENDINGS, force=force)
@@ -62,7 +63,9 @@ def simulate(output: Path | None, plot: Path | None, *, force: bool, **options: 
         _check_comparison(landing, as_json=options["as_json"])
     mode = landing.parameters.drop.mode
     with landing_progress(options["until"]) as show_progress:
-        history = landing.run(options["until"], options["every"], show_progress)
+        history = whole_landing(
+            landing, options["until"], options["every"], decided=False, progress=show_progress
+        )
     print_warning(warning_of(history))
     title = f"{mode} landing"
     printed = landing_text(history, title, as_json=options["as_json"])

@@ -1,9 +1,9 @@
 """Records from and to arrays of numbers: nothing else knows where a field stands.
 
-A state is the body's, then each leg's, then the accounts. What is kept between two kernels is an
-array of records of one kind. Compiled, each of these functions is an access through an address (see
-`core_declarations`): a record that was read is that in the array, so a kernel must not go on
-reading it after it has written there.
+A state is the body's, then each leg's, then each body point's, then the accounts, then each main
+strut's work. What is kept between two kernels is an array of records of one kind. Compiled, each of
+these functions is an access through an address (see `core_declarations`): a record that was read is
+that in the array, so a kernel must not go on reading it after it has written there.
 """
 
 from __future__ import annotations
@@ -17,11 +17,14 @@ from .records import (
     BodyAcceleration,
     BodyModel,
     BodyOutputs,
+    BodyPoint,
     BodyState,
     DeckTurn,
     EnergyOutputs,
     FootLoads,
     FootMotion,
+    GroundForce,
+    HeightField,
     Inputs,
     LegForces,
     LegLoadOutputs,
@@ -32,6 +35,7 @@ from .records import (
     LegStatus,
     PhiWeights,
     PlanarLoads,
+    PointState,
     Rotation,
     SpatialAttitude,
     SpatialInputs,
@@ -51,6 +55,8 @@ ACCOUNTS = len(Accounts._fields)
 INPUTS = len(Inputs._fields)
 FOOT_LOADS = len(FootLoads._fields)
 FOOT_MOTION = len(FootMotion._fields)
+GROUND_FORCE = len(GroundForce._fields)
+POINT_STATE = len(PointState._fields)
 LEG_FORCES = len(LegForces._fields)
 LEG_STATUS = len(LegStatus._fields)
 PLANAR_LOADS = len(PlanarLoads._fields)
@@ -79,6 +85,9 @@ BALANCE = EnergyOutputs._fields.index("balance")
 
 # where the accounts have what friction has dissipated, the last of what is dissipated
 FRICTION = Accounts._fields.index("friction")
+# and what the ground's normal damping has, and the work of the ground
+CONTACT_ACCOUNT = Accounts._fields.index("contact")
+GROUND_ACCOUNT = Accounts._fields.index("ground")
 
 # where a leg's state has what may be stiff in it
 Z1 = LegState._fields.index("z1")
@@ -98,6 +107,11 @@ def spatial_state(y: Doubles, at: int) -> SpatialState:
 def leg_state(y: Doubles, at: int) -> LegState:
     """The leg's state that stands at `y[at:]`."""
     return LegState(*y[at : at + LEG])
+
+
+def point_state(y: Doubles, at: int) -> PointState:
+    """The state of a point of the body that stands at `y[at:]`."""
+    return PointState(*y[at : at + POINT_STATE])
 
 
 def accounts(y: Doubles, at: int) -> Accounts:
@@ -157,6 +171,21 @@ def foot_loads_of(kept: Records[FootLoads], i: int) -> FootLoads:
 
 
 def foot_motion_of(kept: Records[FootMotion], i: int) -> FootMotion:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def ground_force_of(kept: Records[GroundForce], i: int) -> GroundForce:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def body_point_of(kept: Records[BodyPoint], i: int) -> BodyPoint:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def height_field_of(kept: Records[HeightField], i: int) -> HeightField:
     """The `i`-th record of those kept."""
     return kept[i]
 

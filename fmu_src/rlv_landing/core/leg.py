@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from math import fabs, sqrt
 
-from .ground.kinds import friction_energy, ground_force
+from .ground.kinds import friction_energy, ground_force_on
 from .ground.normal import normal_energy
 from .records import FootMotion, LegForces, LegModel, LegState, LegStatus, StrutMotion
 from .struts.kinds import auxiliary_strut, auxiliary_strut_energy, main_strut, main_strut_status
@@ -38,11 +38,16 @@ def leg_forces(leg: LegState, foot: FootMotion, p: LegModel) -> LegForces:
 
     `foot` is the footpad's motion against the ground.
     """
+    return leg_forces_on(leg, foot, 1.0, p)
+
+
+def leg_forces_on(leg: LegState, foot: FootMotion, steep: float, p: LegModel) -> LegForces:
+    """As `leg_forces`, on ground whose normal force is `steep` times that of the normal law."""
     main = strut_motion(leg, p.La, p.Lb, p.Lm0)
     aux = strut_motion(leg, p.Lc, p.Ld, p.Ls0)
     strut = main_strut(main.stroke, main.rate, leg.z1, leg.z2, p)
     link = auxiliary_strut(aux.stroke, aux.rate, p)
-    ground = ground_force(foot, leg.q1, leg.q2, p)
+    ground = ground_force_on(foot, steep, leg.q1, leg.q2, p)
     main_r = strut.force * main.e_r
     main_h = strut.force * main.e_h
     aux_r = link.force * aux.e_r

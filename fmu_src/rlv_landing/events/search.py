@@ -1,8 +1,9 @@
 """Finds the first event on the way of a landing.
 
-Events are: a footpad touches the ground or leaves it; a main strut comes to an end stop or leaves
-it; `status.phase` changes. The search reads the interpolants of the integrator's own steps and
-changes none of them, so a landing has the same numbers whether events are looked for or not.
+Events are: a footpad or the body touches the ground or leaves it; a main strut comes to an end stop
+or leaves it; `status.phase` changes. The search reads the interpolants of the integrator's own
+steps and changes none of them, so a landing has the same numbers whether events are looked for or
+not.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ class EventSearch:
         solver: The solver.
         names: The outputs' names.
         order: For each output its place in the solver's outputs and its factor.
-        stroke_max: Stroke at which the main struts meet their compression stops [m].
+        stops: Strokes at which the legs' main struts meet their compression stops [m].
     """
 
     def __init__(
@@ -36,7 +37,7 @@ class EventSearch:
         solver: Solver,
         names: Sequence[str],
         order: Sequence[tuple[int, float]],
-        stroke_max: float,
+        stops: Sequence[float],
     ) -> None:
         self._solver = solver
         self._y = array("d", bytes(8 * solver.n))
@@ -44,10 +45,12 @@ class EventSearch:
         places = {name: i for name, (i, _) in zip(names, order)}
         # legs that move alike have one place
         depths = {i for name, i in places.items() if name.endswith(".contact.penetration")}
-        strokes = {i for name, i in places.items() if name.endswith(".main_strut.stroke")}
+        strokes = [i for name, i in places.items() if name.endswith(".main_strut.stroke")]
+        ends = dict(zip(strokes, stops))
         # (place, edge): outputs for which it matters on which side of an edge they are
+        depths |= {i for name, i in places.items() if name == "body.clearance"}
         self._edges = [(i, 0.0) for i in sorted(depths)] + [
-            (i, edge) for i in sorted(strokes) for edge in (ROUNDING, stroke_max)
+            (i, edge) for i in sorted(ends) for edge in (ROUNDING, ends[i])
         ]
         self._phase = places["status.phase"]
 

@@ -137,10 +137,9 @@ def quantity(name: str) -> Quantity:
     if name != ROD_AREA and name not in PARAMETER_QUANTITIES:
         raise unknown("parameter", name, [*PARAMETER_QUANTITIES, ROD_AREA])
     q = PARAMETER_QUANTITIES[BORE if name == ROD_AREA else name]
-    if q.choices:
-        raise LandingError(
-            f"{name} is a choice ({', '.join(q.choices)}); only numbers can be identified"
-        )
+    if q.kind == "string":
+        what = f"a choice ({', '.join(q.choices)})" if q.choices else "a text"
+        raise LandingError(f"{name} is {what}; only numbers can be identified")
     return replace(q, name=name)
 
 

@@ -6,7 +6,9 @@ from identified ones. Lengths down from the CG are positive depths, as in the pa
 
 from .drop import Drop, Integration
 from .ground import Ground
+from .one_leg import groups_of_a_leg
 from .parameters import Parameters
+from .surroundings import terrain_from_table, terrain_of
 from .table import GROUPS, PARAMETER_QUANTITIES, check_value, parameters_of
 from .vehicle import AuxiliaryStrut, MainStrut, Vehicle
 
@@ -21,5 +23,8 @@ __all__ = [
     "Parameters",
     "Vehicle",
     "check_value",
+    "groups_of_a_leg",
     "parameters_of",
+    "terrain_from_table",
+    "terrain_of",
 ]

@@ -24,3 +24,8 @@ def real(
 def text(*choices: str, source: Source = "closure") -> Quantity:
     """One of the texts `choices`."""
     return Quantity("", "", source=source, choices=choices)
+
+
+def listed(source: Source = "closure") -> Quantity:
+    """A text with a form of its own: a list of values."""
+    return Quantity("", "", source=source, kind="string")

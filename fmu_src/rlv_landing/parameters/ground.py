@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from .declaration import real, text
+from .declaration import listed, real, text
 
 
 @dataclass(frozen=True)
@@ -22,6 +22,18 @@ class Ground:
         "direction in which the slope falls, from +x towards +z; mode = space",
         real("rad", -3.2, 3.2, display_unit="deg"),
     ] = 0.0
+    step: Annotated[
+        float,
+        "height of the ground below a footpad above its plane, along its normal: a stone, or a "
+        "hole; of one leg by leg[i].ground.step; mode = space",
+        real("m", -5.0, 5.0, "step", display_unit="mm"),
+    ] = 0.0
+    terrain: Annotated[
+        str,
+        "height field above the ground's plane on a regular grid; files and --set name a table, "
+        "x along its head, z in its first column, heights in m; mode = space",
+        listed(),
+    ] = ""
     gravity: Annotated[
         float, "gravitational acceleration", real("m/s2", 0.0, 50.0, "g", "closure")
     ] = 9.81

@@ -10,8 +10,9 @@ from ..errors import LandingError, unknown
 from ..quantities import MODES, SPACE
 from .drop import Drop, Integration
 from .ground import Ground
+from .one_leg import LEG_NAME, OVERRIDES, split_leg, written_overrides
 from .space import check_space
-from .table import FIELDS, GROUPS, PARAMETER_QUANTITIES, check_value
+from .table import FIELDS, GROUPS, PARAMETER_QUANTITIES, check_value, overrides_of
 from .vehicle import AuxiliaryStrut, MainStrut, Vehicle
 
 # sources of values by name; of values that belong to one mode by (mode, name)
@@ -56,10 +57,41 @@ class Parameters:
 
     def __getitem__(self, name: str) -> float | str:
         if name not in FIELDS:
-            raise unknown("parameter", name, PARAMETER_QUANTITIES)
+            own = split_leg(name)
+            if own is None or own[1] not in FIELDS:
+                raise unknown("parameter", name, PARAMETER_QUANTITIES)
+            return self.overrides.get(name, self[own[1]])
         group, what = FIELDS[name]
         value: float | str = getattr(getattr(self, group), what)
         return value
+
+    @property
+    def overrides(self) -> dict[str, float | str]:
+        """The values that single legs have for themselves, by name: `leg[2].ground.friction`."""
+        return overrides_of(self.vehicle.leg_overrides) if self.vehicle.leg_overrides else {}
+
+    @property
+    def whole_mass(self) -> float:
+        """Mass of the vehicle with its footpads [kg]."""
+        v = self.vehicle
+        more = (
+            float(value) - v.footpad_mass
+            for name, value in self.overrides.items()
+            if name.endswith("vehicle.footpad_mass")
+        )
+        return v.mass + v.footpad_mass * v.legs + sum(more)
+
+    def of_leg(self, leg: int) -> Parameters:
+        """The parameters as the leg with this number has them, without those of other legs."""
+        if not self.vehicle.leg_overrides:
+            return self
+        own = {
+            whole: value
+            for name, value in self.overrides.items()
+            for number, whole in [split_leg(name) or (0, "")]
+            if number == leg
+        }
+        return self._replaced({**own, OVERRIDES: ""}, {})
 
     def _repr_html_(self) -> str:
         """The table that notebooks show: every value with its unit, source and meaning."""
@@ -89,7 +121,8 @@ class Parameters:
         """A copy with `values` by name, each checked; they are valid in every mode.
 
         Args:
-            values: Values in SI by name.
+            values: Values in SI by name; a leg's own, `leg[2].ground.friction`, add to those that
+                legs have.
             source: Their source: one for all, or by name (default `user`).
 
         Raises:
@@ -143,7 +176,8 @@ class Parameters:
 
     def _replaced(self, values: Mapping[str, Any], sources: Sources) -> Parameters:
         grouped: dict[str, dict[str, float | str]] = {}
-        for name, value in values.items():
+        own = {name: value for name, value in values.items() if LEG_NAME.fullmatch(name)}
+        for name, value in self._with_overrides(values, own).items():
             if name not in FIELDS:
                 raise unknown("parameter", name, PARAMETER_QUANTITIES)
             group, what = FIELDS[name]
@@ -153,8 +187,36 @@ class Parameters:
         }
         return replace(self, **parts, sources={**self.sources, **sources})
 
+    def _with_overrides(
+        self, values: Mapping[str, Any], own: Mapping[str, Any]
+    ) -> Mapping[str, Any]:
+        """The `values`, with the values of single legs among them, `own`, as one text."""
+        if not own:
+            return values
+        for name in own:
+            if name not in PARAMETER_QUANTITIES:
+                raise unknown("parameter", name, PARAMETER_QUANTITIES)
+        text = check_value(
+            PARAMETER_QUANTITIES[OVERRIDES], values.get(OVERRIDES, self.vehicle.leg_overrides)
+        )
+        checked = {name: check_value(PARAMETER_QUANTITIES[name], v) for name, v in own.items()}
+        written = written_overrides({**overrides_of(str(text)), **checked})
+        return {**{n: v for n, v in values.items() if n not in own}, OVERRIDES: written}
+
+    def _check_legs(self) -> None:
+        """Check the values that single legs have for themselves."""
+        legs = int(self.vehicle.legs)
+        for leg, name in sorted(((split_leg(n) or (0, ""))[0], n) for n in self.overrides):
+            if leg > legs:
+                raise LandingError(f"{name} is of a leg that is not there: vehicle.legs = {legs}")
+            try:
+                self.of_leg(leg)
+            except LandingError as e:
+                raise LandingError(f"leg[{leg}]: {e}") from None
+
     def _check_together(self) -> None:
         check_space(self.vehicle, self.drop, self.ground)
+        self._check_legs()
         m, a = self.main_strut, self.auxiliary_strut
         swept = m.area_lower * m.stroke_max
         if swept >= 0.95 * m.volume_lower:

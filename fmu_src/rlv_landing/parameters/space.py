@@ -12,9 +12,12 @@ from .vehicle import Vehicle
 
 # a symmetric landing cannot have them otherwise than by default
 ONLY_IN_SPACE = {
-    Vehicle: ("legs", "cg_offset_x", "cg_offset_z", "inertia_xy", "inertia_xz", "inertia_yz"),
+    Vehicle: (
+        *("legs", "leg_overrides", "body_points", "cg_offset_x", "cg_offset_z"),
+        *("inertia_xy", "inertia_xz", "inertia_yz"),
+    ),
     Drop: ("heading", "roll", "roll_rate", "yaw_rate", "lateral_velocity"),
-    Ground: ("slope_direction",),
+    Ground: ("slope_direction", "step", "terrain"),
 }
 # a symmetric landing may have them, and does not depend on them
 NO_EFFECT_IN_A_PLANE = ("vehicle.leg_azimuth", "vehicle.inertia_roll", "vehicle.inertia_yaw")
@@ -35,11 +38,13 @@ def check_space(vehicle: Vehicle, drop: Drop, ground: Ground) -> None:
     for name, group in (("vehicle", vehicle), ("drop", drop), ("ground", ground)):
         defaults = {f.name: f.default for f in fields(group)}
         for what in ONLY_IN_SPACE[type(group)]:
-            value = getattr(group, what)
-            if value != defaults[what]:
+            value, default = getattr(group, what), defaults[what]
+            if value != default:
+                told = value if isinstance(value, str) else f"{value:g}"
+                usual = f"{default:g}" if default != "" else "none"
                 raise LandingError(
-                    f"{name}.{what} = {value:g} needs drop.mode = {SPACE}; drop.mode = {drop.mode} "
-                    f"is a symmetric landing, which has {defaults[what]:g}"
+                    f"{name}.{what} = {told} needs drop.mode = {SPACE}; drop.mode = {drop.mode} "
+                    f"is a symmetric landing, which has {usual}"
                 )
 
 

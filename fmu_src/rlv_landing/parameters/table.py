@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import fields, replace
 from math import isfinite, isinf
 from typing import Any, Literal, get_args, get_type_hints
@@ -10,7 +11,16 @@ from ..errors import LandingError
 from ..quantities import MODES, SPACE, Quantity
 from .drop import Drop, Integration
 from .ground import Ground
+from .one_leg import OVERRIDES, read_overrides, split_leg, written_overrides
 from .space import NO_EFFECT_IN_A_PLANE, ONLY_IN_SPACE
+from .surroundings import (
+    POINTS,
+    TERRAIN,
+    read_points,
+    read_terrain,
+    written_points,
+    written_terrain,
+)
 from .vehicle import AuxiliaryStrut, MainStrut, Vehicle
 
 GROUPS: dict[str, type] = {
@@ -23,20 +33,42 @@ GROUPS: dict[str, type] = {
 }
 
 
-def _table() -> dict[str, Quantity]:
-    table: dict[str, Quantity] = {}
+class ParameterTable(dict[str, Quantity]):
+    """The parameters by name.
+
+    It finds those that one leg may have for itself, too, which it does not list:
+    `leg[2].ground.friction`.
+    """
+
+    def __missing__(self, name: str) -> Quantity:
+        own = split_leg(name)
+        if own is None or own[1] not in self:
+            raise KeyError(name)
+        leg, whole = own
+        q = self[whole]
+        return replace(q, name=name, meaning=f"leg {leg}: {q.meaning}", symbol="")
+
+    def __contains__(self, name: object) -> bool:
+        if super().__contains__(name):
+            return True
+        own = split_leg(name) if isinstance(name, str) else None
+        return own is not None and super().__contains__(own[1])
+
+
+def _table() -> ParameterTable:
+    table = ParameterTable()
     for group, owner in GROUPS.items():
         hints = get_type_hints(owner, include_extras=True)
         for f in fields(owner):
-            _, meaning, q = get_args(hints[f.name])
+            type_, meaning, q = get_args(hints[f.name])
             name = f"{group}.{f.name}"
             default: Any = f.default
-            kind: Literal["string", "real"] = "string" if q.choices else "real"
+            kind: Literal["string", "real"] = "string" if type_ is str else "real"
             table[name] = replace(q, meaning=meaning, name=name, default=default, kind=kind)
     return table
 
 
-PARAMETER_QUANTITIES: dict[str, Quantity] = _table()
+PARAMETER_QUANTITIES: ParameterTable = _table()
 # name -> (group, field of the group)
 FIELDS: dict[str, tuple[str, str]] = {
     name: (name.split(".")[0], name.split(".")[1]) for name in PARAMETER_QUANTITIES
@@ -81,6 +113,10 @@ def check_value(q: Quantity, value: Any) -> float | str:
         if not isinstance(value, str) or value not in q.choices:
             raise LandingError(f"{q.name} = {value!r} is not one of {', '.join(q.choices)}")
         return value
+    if q.kind == "string":
+        if not isinstance(value, str):
+            raise LandingError(f"{q.name} = {value!r} is no text")
+        return FORMS[q.name](value)
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise LandingError(
             f"{q.name} = {value!r} is not a number; give it in {q.unit or 'plain numbers'}"
@@ -104,3 +140,40 @@ def _to_float(q: Quantity, value: float) -> float:
             f"{q.name} is beyond the largest number, 1.8e308; it is outside "
             + f"[{q.lo:g}, {q.hi:g}] {q.unit}".rstrip()
         ) from None
+
+
+def overrides_of(text: str) -> dict[str, float | str]:
+    """The values that legs have for themselves, by name, from `vehicle.leg_overrides`.
+
+    Raises:
+        LandingError: A name is none that a leg can have for itself, or a value is bad.
+    """
+    return {name: _override(name, value) for name, value in read_overrides(text).items()}
+
+
+def _override(name: str, text: str) -> float | str:
+    if split_leg(name) is None or name not in PARAMETER_QUANTITIES:
+        raise LandingError(
+            f"{OVERRIDES}: {name} is nothing that a leg has for itself; write leg[i]. before a "
+            "value of a strut, of the contact (ground.friction, ...), or vehicle.footpad_mass"
+        )
+    q = PARAMETER_QUANTITIES[name]
+    if q.kind == "string":
+        return check_value(q, text)
+    try:
+        return check_value(q, float(text))
+    except ValueError as e:
+        if isinstance(e, LandingError):
+            raise
+        raise LandingError(
+            f"{OVERRIDES}: {name} = {text!r} is not a number; "
+            f"give it in {q.unit or 'plain numbers'}"
+        ) from None
+
+
+# the texts that are no choices, as they are kept: always the same one for the same meaning
+FORMS: dict[str, Callable[[str], str]] = {
+    OVERRIDES: lambda text: written_overrides(overrides_of(text)),
+    POINTS: lambda text: written_points(read_points(text)),
+    TERRAIN: lambda text: written_terrain(read_terrain(text)) if text.strip() else "",
+}

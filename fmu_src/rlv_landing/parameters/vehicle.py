@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from ..quantities import LEAST_LEGS, MOST_LEGS
-from .declaration import real, text
+from .declaration import listed, real, text
 
 
 @dataclass(frozen=True)
@@ -74,6 +74,18 @@ class Vehicle:
     cg_offset_z: Annotated[
         float, "CG off the legs' axis along body z; mode = space", real("m", -10.0, 10.0)
     ] = 0.0
+    leg_overrides: Annotated[
+        str,
+        "values in SI that single legs have for themselves: leg[2].ground.friction = 0.1; ...; "
+        "files have tables for them; mode = space",
+        listed(),
+    ] = ""
+    body_points: Annotated[
+        str,
+        "points of the body that meet the ground, x y z; x y z; ... in m from the CG's height on "
+        "the legs' axis, body axes: a nozzle's rim, a base ring; mode = space",
+        listed(),
+    ] = ""
 
 
 @dataclass(frozen=True)

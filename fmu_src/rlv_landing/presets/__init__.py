@@ -7,15 +7,21 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LandingError, first_of, unknown
-from ..parameters import GROUPS, PARAMETER_QUANTITIES, Parameters
+from ..parameters import GROUPS, PARAMETER_QUANTITIES, Parameters, groups_of_a_leg
 from ..quantities import MODES
 from ..text.files import parse_document, read_text, toml_table, toml_text
-from ..text.values import parse_value
+from ..text.listed import parse_parameter
 
 FOLDER = Path(__file__).parent
 DEFAULT_PRESET = "yue2022-figures"
-# parameters that a complete file may leave out: they say nothing of a vehicle
-NOT_OF_A_VEHICLE = {name for name in PARAMETER_QUANTITIES if name.startswith("solver.")}
+# parameters that a complete file may leave out: they say nothing of a vehicle, or of one that has
+# nothing of the kind
+NOT_OF_A_VEHICLE = {
+    *(name for name in PARAMETER_QUANTITIES if name.startswith("solver.")),
+    *(name for name, q in PARAMETER_QUANTITIES.items() if q.kind == "string" and not q.choices),
+    "ground.step",
+}
+OVERRIDES = "vehicle.leg_overrides"
 
 
 def preset_names() -> list[str]:
@@ -38,11 +44,11 @@ def load_preset(name: str, mode: str | None = None) -> Parameters:
 def read_toml(path: str | Path) -> Parameters:
     """Parameters from a TOML file.
 
-    Its tables are `vehicle`, `main_strut`, `auxiliary_strut`, `ground` and `drop`, and
-    `mode.X.drop` for one mode only. A value is a number in SI units, a text with a unit ("-2 deg"),
-    or `{ value = ..., source = "..." }`. Other values come from `preset = "..."` (default
-    yue2022-figures). With `complete = true` there may be none: every parameter of the vehicle, the
-    ground and the drop must be in the file.
+    Its tables are `vehicle`, `main_strut`, `auxiliary_strut`, `ground` and `drop`, `mode.X.drop`
+    for one mode only, and `leg.N.main_strut`, `leg.N.ground` ... for one leg only. A value is a
+    number in SI units, a text with a unit ("-2 deg"), or `{ value = ..., source = "..." }`. Other
+    values come from `preset = "..."` (default yue2022-figures). With `complete = true` there may be
+    none: every parameter of the vehicle, the ground and the drop must be in the file.
 
     Raises:
         LandingError: The file is missing, its TOML syntax is wrong (with line), or names or values
@@ -50,28 +56,32 @@ def read_toml(path: str | Path) -> Parameters:
     """
     path = Path(path)
     missing = f"there is no parameter file {path}; presets are {', '.join(preset_names())}"
-    return parse_toml(read_text(path, "parameter file", missing), str(path))
+    return parse_toml(read_text(path, "parameter file", missing), str(path), path.parent)
 
 
-def parse_toml(text: str, name: str) -> Parameters:
-    """Parameters from a TOML text, as `read_toml`; errors name it `name`."""
+def parse_toml(text: str, name: str, folder: Path | None = None) -> Parameters:
+    """Parameters from a TOML text, as `read_toml`; errors name it `name`.
+
+    Names of files in it start from the `folder`; None: the present one.
+    """
     document = parse_document(text, name)
     try:
-        return _from_document(document)
+        return _from_document(document, folder)
     except LandingError as e:
         raise LandingError(f"{name}: {e}") from None
 
 
-def _from_document(document: dict[str, Any]) -> Parameters:
-    known = ("preset", "complete", "mode", *GROUPS)
+def _from_document(document: dict[str, Any], folder: Path | None) -> Parameters:
+    known = ("preset", "complete", "mode", "leg", *GROUPS)
     for key in document:
         if key not in known:
             raise unknown("table", key, known)
     base = document.get("preset")
     parameters = load_preset(base) if base is not None else Parameters()
-    values, sources = _flat({k: v for k, v in document.items() if k in GROUPS})
+    values, sources = _flat({k: v for k, v in document.items() if k in GROUPS}, folder=folder)
     _check_complete(document, values)
-    parameters = parameters.with_values(values, sources)
+    own_values, own_sources = _of_legs(document)
+    parameters = parameters.with_values({**values, **own_values}, {**sources, **own_sources})
     for mode, tables in toml_table(document.get("mode", {}), "mode").items():
         if mode not in MODES:
             raise unknown("landing mode", mode, MODES)
@@ -98,14 +108,37 @@ def _check_complete(document: Mapping[str, Any], values: Mapping[str, Any]) -> N
         )
 
 
-def _flat(tables: Mapping[str, Any]) -> tuple[dict[str, float | str], dict[str, str]]:
+def _of_legs(document: Mapping[str, Any]) -> tuple[dict[str, float | str], dict[str, str]]:
+    """What single legs have for themselves, from the tables `leg.N.GROUP`."""
     values: dict[str, float | str] = {}
     sources: dict[str, str] = {}
+    for number, tables in toml_table(document.get("leg", {}), "leg").items():
+        own = toml_table(tables, f"leg.{number}")
+        if not number.isdecimal():
+            raise LandingError(
+                f"table leg.{number} has no leg's number; write for example [leg.2.ground]"
+            )
+        found = _flat(own, f"leg[{int(number)}].")
+        values.update(found[0])
+        sources.update(found[1])
+    return values, sources
+
+
+def _flat(
+    tables: Mapping[str, Any], of: str = "", folder: Path | None = None
+) -> tuple[dict[str, float | str], dict[str, str]]:
+    """Values and sources by name, from tables by group.
+
+    `of` is put before each name; names of files start from the `folder`.
+    """
+    values: dict[str, float | str] = {}
+    sources: dict[str, str] = {}
+    groups = groups_of_a_leg() if of else tuple(GROUPS)
     for group, table in tables.items():
-        if group not in GROUPS:
-            raise unknown("table", group, GROUPS)
+        if group not in groups:
+            raise unknown("table", f"{of}{group}", [f"{of}{g}" for g in groups])
         for what, entry in toml_table(table, group).items():
-            name = f"{group}.{what}"
+            name = f"{of}{group}.{what}"
             if name not in PARAMETER_QUANTITIES:
                 raise unknown("parameter", name, PARAMETER_QUANTITIES)
             if isinstance(entry, dict):
@@ -119,7 +152,7 @@ def _flat(tables: Mapping[str, Any]) -> tuple[dict[str, float | str], dict[str, 
                 if "source" in entry:
                     sources[name] = str(entry["source"])
                 entry = entry["value"]
-            values[name] = parse_value(PARAMETER_QUANTITIES[name], entry)
+            values[name] = parse_parameter(PARAMETER_QUANTITIES[name], entry, folder)
     return values, sources
 
 
@@ -148,9 +181,12 @@ def origins(path: str | Path | None, preset: str | None, mode: str) -> dict[str,
             0, (parse_document(read_text(file, "preset", ""), preset), f"preset {preset}")
         )
     for tables, origin in layers:
-        plain, _ = _flat({k: v for k, v in tables.items() if k in GROUPS})
+        folder = Path(path).parent if path is not None else None
+        plain, _ = _flat({k: v for k, v in tables.items() if k in GROUPS}, folder=folder)
         of_mode, _ = _flat(tables.get("mode", {}).get(mode, {}))
         found.update(dict.fromkeys(plain, origin))
+        if "leg" in tables:
+            found[OVERRIDES] = origin
         found.update(dict.fromkeys(of_mode, f"{origin}, mode {mode}"))
     return found
 
@@ -167,14 +203,19 @@ def to_toml(parameters: Parameters, *, comments: bool = True) -> str:
     """
     lines: list[str] = []
     group = ""
-    for name, value in parameters.items():
+    of_legs = parameters.overrides
+    # they have tables of their own
+    listed = [(name, v) for name, v in parameters.items() if name != OVERRIDES or not of_legs]
+    for name, value in [*listed, *of_legs.items()]:
         q = PARAMETER_QUANTITIES[name]
-        owner, what = name.split(".")
+        owner, what = name.rsplit(".", 1)
         if owner != group:
-            lines += ([""] if lines else []) + [f"[{owner}]"]
+            lines += ([""] if lines else []) + [f"[{owner.replace('[', '.').replace(']', '')}]"]
             group = owner
         written = f'"{value}"' if isinstance(value, str) else repr(value)
-        about = " or ".join(q.choices) if q.choices else f"[{q.lo:g}, {q.hi:g}] {q.unit}".rstrip()
+        about = f"[{q.lo:g}, {q.hi:g}] {q.unit}".rstrip()
+        if q.kind == "string":
+            about = " or ".join(q.choices) or "a text"
         source = toml_text(parameters.source(name))
         comment = f"  # {q.meaning}; {about}; {source[1:-1]}" if comments else ""
         lines.append(f"{what} = {{ value = {written}, source = {source} }}{comment}")

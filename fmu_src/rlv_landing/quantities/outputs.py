@@ -113,6 +113,11 @@ LEG_QUANTITIES: tuple[Quantity, ...] = (
         display_unit="MPa",
     ),
     Quantity("kg", "mass of the liquid in both chambers", 0.0, name="main_strut.liquid_mass"),
+    Quantity(
+        "J",
+        "work done on the strut so far: the energy that it has taken up and not given back",
+        name="main_strut.work",
+    ),
     Quantity("N", "axial force, tension positive", name="auxiliary_strut.force", display_unit="kN"),
     Quantity(
         "m", "stroke, positive in compression", name="auxiliary_strut.stroke", display_unit="mm"

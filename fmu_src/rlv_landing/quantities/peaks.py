@@ -58,6 +58,7 @@ def peaks_of(outputs: Sequence[Quantity], legs: Sequence[int]) -> tuple[Peak, ..
     return (
         _peak(by_name["body.top_axial_acceleration"], "max"),
         _peak(by_name["status.stability_margin"], "min"),
+        *(_peak(q, "min") for q in outputs if q.name == "body.clearance"),
         *(
             _peak(by_name[f"leg[{leg}].{name}"], side)
             for leg in legs

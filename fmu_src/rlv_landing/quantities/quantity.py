@@ -25,7 +25,8 @@ class Quantity:
         source: Source of a default: the paper, derived from it, a closure that the paper leaves
             open, or identified from the paper's printed numbers.
         display_unit: The unit that people read.
-        choices: The texts allowed, for a quantity that is no number.
+        choices: The texts allowed, for a quantity that is no number; a string without choices is
+            a text of a form of its own.
         name: The name.
         default: The default.
         kind: The FMI type.

@@ -107,6 +107,27 @@ SPACE_BODY_QUANTITIES: tuple[Quantity, ...] = (
         for axis in "xyz"
     ),
     _BODY["body.top_axial_acceleration"],
+    Quantity(
+        "m",
+        "least distance of the body's points from the ground, 0 where there are none; below 0 the "
+        "body strikes it",
+        name="body.clearance",
+    ),
+    *(
+        Quantity(
+            "N",
+            f"force of the ground on the body's points along inertial {axis}",
+            name=f"body.strike_force_{axis}",
+            display_unit="kN",
+        )
+        for axis in "xyz"
+    ),
+    *(
+        Quantity(
+            "N.m", f"its moment about the CG, inertial {axis}", name=f"body.strike_moment_{axis}"
+        )
+        for axis in "xyz"
+    ),
 )
 SPACE_STATUS_QUANTITIES: tuple[Quantity, ...] = tuple(
     replace(

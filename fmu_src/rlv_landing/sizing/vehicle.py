@@ -51,6 +51,8 @@ def _vehicle(needs: Needs) -> Rules:
         "vehicle.transverse_load_at": ("footpad", "closure: conserves energy"),
         "vehicle.legs": (4.0, "closure: four legs"),
         "vehicle.leg_azimuth": (pi, "closure: leg 1 behind"),
+        "vehicle.leg_overrides": ("", "closure: legs that are alike"),
+        "vehicle.body_points": ("", "closure: none"),
         "vehicle.inertia_roll": (0.0, "derived: that about z"),
         "vehicle.inertia_yaw": (
             needs.mass * r**2 / 2.0,
@@ -138,6 +140,8 @@ def _ground(needs: Needs) -> Rules:
     return {
         "ground.slope": (0.0, USER),
         "ground.slope_direction": (0.0, "closure: along x"),
+        "ground.step": (0.0, "closure: none"),
+        "ground.terrain": ("", "closure: a plane"),
         "ground.gravity": (needs.gravity, USER),
         "ground.stiffness": (stiffness, "closure: 0.1 % of the span at full load"),
         "ground.exponent": (1.0, plain),

@@ -13,6 +13,7 @@ from ..history import History
 from ..parameters import Parameters
 from ..quantities import SPACE, azimuth, groups_of
 from ..touchdown import AT_REST, GroundMotion, leg_directions
+from ..validation.first_contact import first_contact
 
 Array = NDArray[np.float64]
 # two footpads nearer to each other than this are one corner [m]
@@ -38,13 +39,15 @@ def slip(history: History, leg: int) -> Array:
 
     It is empty for a footpad that never touches.
     """
-    touching = history[f"leg[{leg}].contact.active"]
-    start = int(np.argmax(touching > 0.0))
-    if not touching[start] > 0.0:
+    contact = first_contact(history, leg)
+    if contact is None:
         return np.empty(0)
     place = np.stack([history[f"leg[{leg}].footpad.{axis}"] for axis in "xyz"])
-    x, y, z = (values[start:] for values in _seen_from_ground(history, place))
-    distance: Array = np.sqrt((x - x[0]) ** 2 + (y - y[0]) ** 2 + (z - z[0]) ** 2)
+    ways = (
+        values[contact.sample :] - contact.value(history.time, values)
+        for values in _seen_from_ground(history, place)
+    )
+    distance: Array = np.sqrt(sum(way**2 for way in ways))
     return distance
 
 

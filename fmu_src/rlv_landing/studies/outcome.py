@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import inf
 from typing import Literal, get_args
 
 import numpy as np
@@ -47,8 +48,8 @@ class Outcome:
       toppled. `time` is the start of the last such period;
     - bottomed out: a damper's stroke has passed `main_strut.stroke_max`, where it meets its stop.
       `time` is that of the first damper;
-    - slid: a footpad is further than the threshold from where it first touched. `time` is the first
-      such sample;
+    - slid: a footpad is further than the threshold from where it first touched. `time` is when it
+      passes it, linear between samples;
     - moving: neither at rest nor lost at the end, which is `time`: run it longer;
     - standing: the landing ended before it was at rest, because the vehicle stood since `time`: see
       `standing.stands`. Only landings that were made to end so have it;
@@ -129,14 +130,14 @@ def judged(
         "slid": max((float(s[-1]) for s in slips if len(s)), default=0.0),
         "joint_clearance": joint_clearance(history),
     }
-    first_slide = min(_first_beyond(s, slide, len(history)) for s in slips)
+    first_slide = min(_first_beyond(history.time, s, slide) for s in slips)
     name: Name
     if toppled:
         name, time = "toppled", end
     elif bottomed:
         name, time = "bottomed out", bottomed[0][0]
-    elif first_slide < len(history):
-        name, time = "slid", float(history.time[first_slide])
+    elif first_slide < inf:
+        name, time = "slid", first_slide
     elif phase[-1] == SETTLED:
         name, time = "settled", float(history.time[_first_of_last_period(phase, SETTLED)])
     elif isinstance(history, ReplayedHistory) and history.stands_from is not None:
@@ -173,11 +174,18 @@ def _until_toppled(history: History) -> tuple[float, History]:
     return time, history.until(first + 1, history.extremes_at(time))
 
 
-def _first_beyond(slip: Array, slide: float, samples: int) -> int:
-    """The index of the sample at which a footpad first slid; `samples` where it did not."""
+def _first_beyond(time: Array, slip: Array, slide: float) -> float:
+    """The time [s] at which a footpad has first slid by `slide`; infinite where it has not.
+
+    It is linear between samples. `slip` ends with the last of the times.
+    """
     if not len(slip) or not slip.max() > slide:
-        return samples
-    return samples - len(slip) + int(np.argmax(slip > slide))
+        return inf
+    first = int(np.argmax(slip > slide))
+    times = time[len(time) - len(slip) :]
+    if not first:
+        return float(times[0])
+    return float(np.interp(slide, slip[first - 1 : first + 1], times[first - 1 : first + 1]))
 
 
 def _first_of_last_period(phase: Array, which: float) -> int:

@@ -26,6 +26,7 @@ def whole_landing(
     every: float = 1e-3,
     *,
     decided: bool = True,
+    progress: Callable[[float], object] | None = None,
     standing: bool = False,
 ) -> ReplayedHistory:
     """Land from now until the vehicle is at rest, has toppled, or `until` [s].
@@ -41,6 +42,7 @@ def whole_landing(
         until: The latest end [s]; None: 60 s after the first contact, as long as `audit` waits.
         every: Time between samples [s].
         decided: Whether the landing may end before `until`.
+        progress: Called with the time reached [s] on the way.
         standing: Whether it may end where the vehicle stands, see `standing.stands`: before it is
             at rest, where nothing but the ground at rest acts on it.
 
@@ -51,6 +53,8 @@ def whole_landing(
 
     def keep(_time: float) -> None:
         states.append((landing.time, landing.state()))
+        if progress is not None:
+            progress(landing.time)
 
     contact = landing.parameters.drop.contact_time
     if until is None:

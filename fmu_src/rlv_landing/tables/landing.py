@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import one_line
 from ..history import History
 from ..parameters import PARAMETER_QUANTITIES, Parameters
 from ..quantities import Quantity
@@ -15,6 +16,8 @@ from ..summary import dampers_of, summarise, unfinished
 from ..validation.paper import Comparison, compare, counts, other_vehicle
 from .rendering import new_table, render
 
+# a parameter that is a list, in characters
+LONGEST_VALUE = 60
 FIRST_STROKE = "absorbed, dissipated and efficiency are of a damper's first compression and rebound"
 
 
@@ -184,6 +187,11 @@ def _outcome_lines(summary: Mapping[str, Any], outcome: str) -> list[str]:
         known.append(f"energy balance within {s['energy_balance_worst']:.1e} J")
     if known:
         lines.append("; ".join(known))
+    if s.get("body_strike_time") is not None:
+        lines.append(
+            f"BODY STRIKE: the body met the ground first at {s['body_strike_time']:.3f} s; at most "
+            f"{-1e3 * s['body_clearance_min']:.1f} mm deep"
+        )
     if s.get("bottomed_out"):
         lines.append(
             f"BOTTOMED OUT: {dampers_of(s['bottomed_out'])} met "
@@ -199,10 +207,10 @@ def parameter_table(parameters: Parameters) -> str:
     )
     for name, value in parameters.items():
         q = PARAMETER_QUANTITIES[name]
-        bounds = " | ".join(q.choices) if q.choices else f"[{q.lo:g}, {q.hi:g}]"
+        bounds = " | ".join(q.choices) if q.kind == "string" else f"[{q.lo:g}, {q.hi:g}]"
         table.add_row(
             name,
-            value if isinstance(value, str) else f"{value:.6g}",
+            _told(value),
             q.unit,
             bounds,
             parameters.source(name),
@@ -211,13 +219,20 @@ def parameter_table(parameters: Parameters) -> str:
     return render(table, 200)
 
 
+def _told(value: float | str) -> str:
+    """A parameter's value for people; of a long text its ends."""
+    if isinstance(value, str):
+        return one_line(value, LONGEST_VALUE).replace("[", r"\[")
+    return f"{value:.6g}"
+
+
 def origin_table(parameters: Parameters, origins: Mapping[str, str]) -> str:
     """Every parameter with value, unit, source, and the file or preset that it comes from."""
     table = new_table("parameters", ("name",), ("value",), ("unit", "source", "comes from"))
     for name, value in parameters.items():
         table.add_row(
             name,
-            value if isinstance(value, str) else f"{value:.6g}",
+            _told(value),
             PARAMETER_QUANTITIES[name].unit,
             parameters.source(name),
             origins[name],

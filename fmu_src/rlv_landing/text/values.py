@@ -25,7 +25,7 @@ def parse_value(q: Quantity, value: Any, unit: str = "") -> float | str:
     Raises:
         LandingError: No number, an unknown unit, a unit of another dimension, or out of bounds.
     """
-    if q.choices or not is_number(value):
+    if q.kind == "string" or not is_number(value):
         return check_value(q, value)
     return check_value(q, to_si(q, value, unit))
 
@@ -49,7 +49,7 @@ def check_together(q: Quantity, values: Sequence[Any]) -> None:
     Raises:
         LandingError: One has a unit and another has none, or as `to_si`.
     """
-    if q.choices:
+    if q.kind == "string":
         return
     in_si = [to_si(q, v) for v in values]
     with_unit = [v for v in values if _has_unit(v)]

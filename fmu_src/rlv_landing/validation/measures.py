@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 from ..core import Phase
 from ..errors import LandingError
 from ..history import History
+from .first_contact import first_contact
 from .first_stroke import State, first_stroke
+from .strut_work import StrutCurves, smooth_work, work_of
 
 Array = NDArray[np.float64]
 ONSET = 0.02
@@ -35,7 +37,7 @@ class DamperWork:
         largest: Largest stroke from the contact to the end of the curves [m].
         largest_time: Its time [s].
         top: Time of the largest stroke of the first compression [s].
-        end: Time of the smallest stroke of the rebound [s].
+        end: Time at which the rebound ends [s]: of a stroke of 0, or else of the smallest.
         force_max: Largest compressive force during the compression, positive [N].
         stroke_max: Largest stroke of the first compression [m].
         absorbed: Energy taken up until `top` (the paper's energy 1 and its Ed) [J].
@@ -68,19 +70,6 @@ class DamperWork:
             "in rebound": "ends in the first rebound: dissipated is not known; run it longer",
             "complete": "",
         }[self.state]
-
-
-def work_of(force: Array, stroke: Array) -> float:
-    """Energy [J] that a damper takes up along a curve, positive in compression.
-
-    E = int -F s' dt = -int F ds, Eq. (44) [paper]. It is summed by trapezoids over the stroke:
-    exact for a force that is linear in stroke between samples.
-
-    Args:
-        force: Axial force, negative in compression [N], (n,).
-        stroke: Stroke, positive in compression [m], (n,).
-    """
-    return float(-np.trapezoid(force, stroke))
 
 
 def buffering_efficiency(absorbed: float, force_max: float, stroke_max: float) -> float:
@@ -126,7 +115,14 @@ def energy_discrepancy(energy: float, measured: float) -> float:
     return float(100.0 * abs(energy - measured) / abs(measured))
 
 
-def damper_work(time: Array, force: Array, stroke: Array, start: float) -> DamperWork:
+def damper_work(
+    time: Array,
+    force: Array,
+    stroke: Array,
+    start: float,
+    rate: Array | None = None,
+    work: Array | None = None,
+) -> DamperWork:
     """The first compression and rebound after the contact at `start`, found in the curve.
 
     Args:
@@ -134,6 +130,9 @@ def damper_work(time: Array, force: Array, stroke: Array, start: float) -> Dampe
         force: Axial force, negative in compression [N], (n,).
         stroke: Stroke, positive in compression [m], (n,).
         start: Time of contact [s].
+        rate: Rate of the stroke [m/s], (n,), where the curves are a model's: smooth, so that the
+            stroke is largest and smallest between samples. None: they are measured.
+        work: Energy taken up until each sample [J], (n,); None: it is summed up.
 
     Raises:
         LandingError: There is no sample from `start` on.
@@ -144,29 +143,46 @@ def damper_work(time: Array, force: Array, stroke: Array, start: float) -> Dampe
             f"the contact at {start:g} s is after the last sample at {time[-1]:g} s; "
             "give a time that the curves cover"
         )
-    time, force, stroke = time[first:], force[first:], stroke[first:]
+    if work is not None:
+        done = work
+    else:
+        done = work_of(force, stroke) if rate is None else smooth_work(time, force, stroke, rate)
+    curves = StrutCurves(
+        time[first:],
+        force[first:],
+        stroke[first:],
+        None if rate is None else rate[first:],
+        done[first:],
+    )
+    return _work_along(curves)
+
+
+def _work_along(curves: StrutCurves) -> DamperWork:
+    """The first compression and rebound after the first sample."""
+    stroke, start = curves.stroke, float(curves.work[0])
     found, peak = first_stroke(stroke), int(np.argmax(stroke))
-    work = DamperWork(found.state, float(time[0]), float(stroke[peak]), float(time[peak]))
+    result = DamperWork(
+        found.state, float(curves.time[0]), float(stroke[peak]), float(curves.time[peak])
+    )
     if found.top is None:
-        return work
-    compression = slice(0, found.top + 1)
-    absorbed = work_of(force[compression], stroke[compression])
-    force_max, stroke_max = float(-force[compression].min()), float(stroke[found.top])
+        return result
+    force_max = float(-curves.force[: found.top + 1].min())
     if not force_max > 0.0:
-        return replace(work, state="not compressed")
-    work = replace(
-        work,
-        top=float(time[found.top]),
+        return replace(result, state="not compressed")
+    top = curves.turn(found.top)
+    absorbed = top.work - start
+    result = replace(
+        result,
+        top=top.time,
         force_max=force_max,
-        stroke_max=stroke_max,
+        stroke_max=top.stroke,
         absorbed=absorbed,
-        efficiency=buffering_efficiency(absorbed, force_max, stroke_max),
+        efficiency=buffering_efficiency(absorbed, force_max, top.stroke),
     )
     if found.end is None:
-        return work
-    period = slice(0, found.end + 1)
-    dissipated = work_of(force[period], stroke[period])
-    return replace(work, end=float(time[found.end]), dissipated=dissipated)
+        return result
+    end = curves.extended(found.top, found.end) or curves.turn(found.end)
+    return replace(result, end=end.time, dissipated=end.work - start)
 
 
 def onset(time: Array, stroke: Array) -> float:
@@ -185,33 +201,43 @@ def onset(time: Array, stroke: Array) -> float:
 def leg_work(history: History, legs: Iterable[int] | None = None) -> dict[int, DamperWork]:
     """The work of the dampers of those of `legs` that touch the ground, by leg; None: of all.
 
-    Contact is the first sample at which the ground pushes on the footpad. The motion after toppling
-    does not count. `largest` is the landing's, between its samples too, where it is known.
+    The motion after toppling does not count. Where the extremes of the landing are known, `largest`
+    is the landing's, between its samples too, and so is `force_max` unless a later compression has
+    a larger force.
     """
     history = before_toppling(history)
     found: dict[int, DamperWork] = {}
     for leg in history.legs if legs is None else legs:
-        first = first_push(history, leg)
-        if first is not None:
-            stroke = f"leg[{leg}].main_strut.stroke"
-            work = damper_work(
-                history.time,
-                history[f"leg[{leg}].main_strut.force"],
-                history[stroke],
-                float(history.time[max(first - 1, 0)]),
-            )
-            if history.extremes is not None:
-                peak = history.extreme(stroke)
-                work = replace(work, largest=peak.maximum, largest_time=peak.maximum_time)
-            found[leg] = work
+        contact = first_contact(history, leg)
+        if contact is not None:
+            last = float(history.time[max(contact.sample - 1, 0)])
+            name = f"leg[{leg}].main_strut"
+            rate, done = (_column(history, f"{name}.{what}") for what in ("stroke_rate", "work"))
+            force, stroke = history[f"{name}.force"], history[f"{name}.stroke"]
+            work = damper_work(history.time, force, stroke, last, rate, done)
+            work = replace(work, start=contact.time)
+            found[leg] = work if history.extremes is None else _with_peaks(work, history, leg)
     return found
 
 
-def first_push(history: History, leg: int) -> int | None:
-    """The first sample with the ground pushing on the leg's footpad; None without any."""
-    pushed = history[f"leg[{leg}].contact.force_y"] > 0.0
-    first = int(np.argmax(pushed))
-    return first if pushed[first] else None
+def _column(history: History, name: str) -> Array | None:
+    return history[name] if name in history.names else None
+
+
+def _with_peaks(work: DamperWork, history: History, leg: int) -> DamperWork:
+    """The work with the landing's largest stroke and force in the place of the samples'."""
+    name = f"leg[{leg}].main_strut"
+    stroke = history.extreme(f"{name}.stroke")
+    work = replace(work, largest=stroke.maximum, largest_time=stroke.maximum_time)
+    if work.top is None or work.stroke_max is None or work.absorbed is None:
+        return work
+    after = int(np.searchsorted(history.time, work.top)) + 1
+    force = history.extreme(f"{name}.force")
+    if after < len(history) and force.minimum_time > history.time[after - 1]:
+        force = history.until(after).extreme(f"{name}.force")
+    size = -force.minimum
+    efficiency = buffering_efficiency(work.absorbed, size, work.stroke_max)
+    return replace(work, force_max=size, efficiency=efficiency)
 
 
 def before_toppling(history: History) -> History:

@@ -208,7 +208,7 @@ def start_values(description: Any) -> dict[str, float | str]:
     """The parameters' start values of our FMU by our names [SI]."""
     starts = {v.name: v.start for v in description.modelVariables}
     return {
-        name: text if q.choices else float(text)
+        name: text if q.kind == "string" else float(text)
         for name, q in PARAMETER_QUANTITIES.items()
         if (text := starts.get(name, starts.get(flat_name(name)))) is not None
     }

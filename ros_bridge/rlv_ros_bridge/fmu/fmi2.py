@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any, ClassVar
 
 # called with the status of each of the FMU's messages, and its text
@@ -79,7 +80,7 @@ class Fmi2:
         get = function(self.slave, self.GETTERS[kind][0], GET)
         component, count = self.slave.component, len(references)
         where, to = ctypes.addressof(references), ctypes.addressof(values)
-        return lambda: int(get(component, where, count, to))
+        return partial(get, component, where, count, to)
 
     def set_rates(self, rates: Mapping[int, float]) -> int:
         """Status of setting the rates of inputs by value reference."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, ClassVar
 
 from rlv_landing.errors import LandingError
@@ -70,7 +71,7 @@ class Fmi3:
         get = function(self.slave, self.GETTERS[kind][0], GET)
         component, count, size = self.slave.component, len(references), len(values)
         where, to = ctypes.addressof(references), ctypes.addressof(values)
-        return lambda: int(get(component, where, count, to, size))
+        return partial(get, component, where, count, to, size)
 
 
 def with_ground_rates(values: Mapping[str, float], rates: Mapping[str, float]) -> dict[str, float]:

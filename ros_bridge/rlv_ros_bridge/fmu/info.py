@@ -166,7 +166,7 @@ def _short(kind: str, start: Any) -> str:
 def _vehicle(p: Parameters) -> dict[str, float | str]:
     radius, height = footpad_at_rest(p)
     return {
-        "mass with footpads [kg]": p.vehicle.mass + p.vehicle.legs * p.vehicle.footpad_mass,
+        "mass with footpads [kg]": p.whole_mass,
         "pitch inertia of the body [kg.m2]": p.vehicle.inertia,
         "footpads' radius, legs extended [m]": radius,
         "CG above the footpads [m]": -height,

@@ -202,7 +202,11 @@ class FmuRunner:
             LandingError: the FMU refuses.
         """
         self._own()
-        samples = [self._read(reader) for reader in self._readers]
+        samples = []
+        for reader in self._readers:
+            if (status := reader.read()) > WARNING:
+                self._fail(reader.name, status)
+            samples.append(reader.values())
         values: list[float] = samples[0]
         # The indices ascend, so each insertion leaves the later indices right.
         for i, k, j in self._not_real:

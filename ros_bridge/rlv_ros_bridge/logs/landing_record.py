@@ -33,7 +33,11 @@ MOST_SAMPLES = 60_000
 PHASE = "status.phase"
 # names of the phases, as in `/diagnostics`, in the order of `rlv_landing.summary.OUTCOMES`
 PHASES = tuple(phase.name.lower() for phase in Phase)
-OF_A_LEG = ("main_strut.force", "main_strut.stroke", "contact.force_y")
+# what the messages have, too, so that both give the same
+OF_A_LEG = (
+    *("main_strut.force", "main_strut.stroke", "main_strut.stroke_rate"),
+    "contact.force_y",
+)
 ENDED = ("complete", "not compressed")
 # A text longer than this is none of it [characters].
 LONGEST = 64 * 1024
@@ -90,13 +94,12 @@ class LandingRows:
         self._phase_at = places(PHASE)
         self._rows = array("d")
         self._times = array("d")
-        self._phase = 0
-        self._last = 0.0
+        # time and outputs of the last sample
+        self._last: tuple[float, Sequence[float]] = 0.0, ()
 
     def add(self, time: float, values: Sequence[float]) -> None:
         """Adds the sample at `time` [s]: all outputs, in the order of the interface."""
-        self._last = time
-        self._phase = int(values[self._phase_at])
+        self._last = time, values
         if len(self._times) < MOST_SAMPLES:
             self._times.append(time)
             self._rows.extend(self._columns_of(values))
@@ -113,10 +116,11 @@ class LandingRows:
         data = np.array(self._rows).reshape(len(time), len(self._columns))
         history = History(time, self._columns, data, self._parameters)
         history.extremes = known_extremes(peaks, history)
+        end, values = self._last
         try:
-            landing = landing_summary(history, OUTCOMES[self._phase])
-            landing["end_time"] = self._last
-            if self._last > time[-1] and not _is_over(landing):
+            landing = landing_summary(history, OUTCOMES[int(values[self._phase_at])])
+            landing["end_time"] = end
+            if end > time[-1] and not _is_over(landing):
                 return {}
             return {LANDING: json.dumps(landing, allow_nan=False)}
         except (LandingError, KeyError, ValueError):

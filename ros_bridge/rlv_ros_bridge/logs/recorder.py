@@ -192,15 +192,18 @@ class Recorder:
         """
         self._queue.add(self._channels[topic], log_time_ns, data)
 
-    def flush(self, *, now: bool = False) -> None:
+    def flush(self, *, now: bool = False) -> bool:
         """Hands what was recorded to the thread that writes, at most every quarter of a second.
 
         To be called after all messages of an instant.
 
         Args:
             now: at once.
+
+        Returns:
+            Whether it was time to.
         """
-        self._queue.flush(now=now)
+        return self._queue.flush(now=now)
 
     def sync(self) -> None:
         """Waits until the operating system has what was recorded, or recording has failed."""

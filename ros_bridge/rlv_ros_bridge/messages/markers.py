@@ -19,7 +19,7 @@ from rlv_landing.quantities import interface_of
 
 from .axes import from_ros, to_ros
 from .fields import PLACE, QUATERNION
-from .robot_description import axis_point, leg_points
+from .robot_description import auxiliary_joint, axis_point, leg_points, main_joint
 from .samples import set_stamp, set_vector
 from .tables import table_of
 from .topics import WORLD_FRAME
@@ -48,8 +48,8 @@ class Wireframe:
         own: list[tuple[float, float, float]] = [
             axis_point(parameters, -depth),
             axis_point(parameters, vehicle.top_height),
-            *leg_points(parameters, main.joint_radius, -main.joint_depth).values(),
-            *leg_points(parameters, auxiliary.joint_radius, -auxiliary.joint_depth).values(),
+            *leg_points(parameters, main_joint).values(),
+            *leg_points(parameters, auxiliary_joint).values(),
         ]
         self._own = [from_ros(*point) for point in own]
         interface = interface_of(parameters.drop.mode, int(vehicle.legs))

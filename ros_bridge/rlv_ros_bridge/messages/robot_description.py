@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from math import acos, atan2, dist
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
@@ -40,22 +41,35 @@ def variables(parameters: Parameters) -> str:
     )
 
 
-def leg_points(parameters: Parameters, radius: float, height: float) -> dict[int, Point]:
+def main_joint(leg: Parameters) -> tuple[float, float]:
+    """Radius and height [m] of a main strut's joint on the body, of a leg's parameters."""
+    return leg.main_strut.joint_radius, -leg.main_strut.joint_depth
+
+
+def auxiliary_joint(leg: Parameters) -> tuple[float, float]:
+    """Radius and height [m] of an auxiliary strut's joint on the body, of a leg's parameters."""
+    return leg.auxiliary_strut.joint_radius, -leg.auxiliary_strut.joint_depth
+
+
+def leg_points(
+    parameters: Parameters, point: Callable[[Parameters], tuple[float, float]]
+) -> dict[int, Point]:
     """A point of each leg in the body's frame, whose origin is the CG, by the leg's number.
 
     Args:
         parameters: the vehicle.
-        radius: of the points from the legs' axis [m].
-        height: of the points above the CG [m].
+        point: gives radius and height [m] of the point of a leg's parameters.
 
     Returns:
         x forward, y left, z up [m] for each leg.
     """
     own = parameters.vehicle
-    return {
-        leg: to_ros(radius * cosine - own.cg_offset_x, height, radius * sine - own.cg_offset_z)
-        for leg, (sine, cosine) in leg_directions(parameters).items()
-    }
+    found = {}
+    for leg, (sine, cosine) in leg_directions(parameters).items():
+        radius, height = point(parameters.of_leg(leg))
+        x, z = radius * cosine - own.cg_offset_x, radius * sine - own.cg_offset_z
+        found[leg] = to_ros(x, height, z)
+    return found
 
 
 def axis_point(parameters: Parameters, height: float) -> Point:
@@ -81,20 +95,14 @@ def robot_description(parameters: Parameters) -> str:
     SubElement(robot, "link", name=TOP_FRAME)
     mount = _joint(robot, f"{TOP_FRAME}_mount", "fixed", BODY_FRAME, TOP_FRAME)
     _origin(mount, (0.0, 0.0, top))
-    radius, height = footpad_at_rest(p)
-    feet = leg_points(p, radius, height)
-    for strut, own, width, travel in (
-        ("main_strut", p.main_strut, MAIN_RADIUS, (0.0, p.main_strut.stroke_max)),
-        (
-            "auxiliary_strut",
-            p.auxiliary_strut,
-            AUXILIARY_RADIUS,
-            (-0.5 * p.auxiliary_strut.length, 0.5 * p.auxiliary_strut.length),
-        ),
-    ):
-        joints = leg_points(p, own.joint_radius, -own.joint_depth)
-        for leg, joint in joints.items():
-            _strut(robot, f"leg_{leg}_{strut}", joint, feet[leg], width, travel)
+    feet = leg_points(p, footpad_at_rest)
+    for leg, joint in leg_points(p, main_joint).items():
+        travel = (0.0, p.of_leg(leg).main_strut.stroke_max)
+        _strut(robot, f"leg_{leg}_main_strut", joint, feet[leg], MAIN_RADIUS, travel)
+    for leg, joint in leg_points(p, auxiliary_joint).items():
+        half = 0.5 * p.of_leg(leg).auxiliary_strut.length
+        name = f"leg_{leg}_auxiliary_strut"
+        _strut(robot, name, joint, feet[leg], AUXILIARY_RADIUS, (-half, half))
     indent(robot)
     return '<?xml version="1.0"?>\n' + tostring(robot, encoding="unicode") + "\n"
 

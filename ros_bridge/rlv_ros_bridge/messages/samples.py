@@ -13,6 +13,7 @@ from typing import Any
 from builtin_interfaces.msg import Time
 from rclpy.serialization import serialize_message
 
+from .axes import to_ros
 from .fields import Conversion, Vehicle, copied
 from .message_types import message_class
 from .tables import split, table_of, texts
@@ -127,16 +128,25 @@ class SampleBytes:
     def _assign_positions(self) -> tuple[list[int], int]:
         """Which of the packed numbers each path of the table holds, and how many are packed.
 
-        Fields that copy outputs hold numbers of the sample; what fields compute alike is packed
-        once.
+        Fields that copy outputs hold numbers of the sample, vectors in ROS axes two of them and
+        one with the sign turned; what fields compute alike is packed once.
         """
         positions: list[int] = []
         table = table_of(self.vehicle.interface)
         count = len(self.vehicle.interface.outputs)
+        self._turned = sorted(
+            {table.index[field.outputs[2]] for field in table.fields if field.write is to_ros}
+        )
+        turned = {z: count + i for i, z in enumerate(self._turned)}
+        count += len(turned)
         computed: dict[tuple[Conversion, tuple[str, ...]], range] = {}
         for field in table.fields:
             if field.write is copied:
                 positions += table.indices(*field.outputs)
+                continue
+            if field.write is to_ros:
+                x, y, z = table.indices(*field.outputs)
+                positions += (x, turned[z], y)
                 continue
             key = field.write, field.outputs
             if key not in computed:
@@ -155,7 +165,7 @@ class SampleBytes:
             values: all outputs in the order of the vehicle's interface, SI, the paper's axes.
             sequence: the number that follows each prefix.
         """
-        computed: list[float] = []
+        computed = [-values[z] for z in self._turned]
         for compute, pick in self._computations:
             computed += compute(*pick(values))
         return self._layout.pack(nanoseconds, values, sequence, computed)

@@ -27,15 +27,25 @@ def phase_name(phase: float) -> str:
 
 @dataclass(frozen=True)
 class LandingCount:
-    """What has been counted in a landing: samples, messages, inputs, and what the FMU counts."""
+    """What has been counted in a landing: samples, steps that were late, messages, inputs."""
 
     samples: int
+    late: int
     unpublished: int
     recorded: int
     unrecorded: int
     received: int
     refused: int
-    of_fmu: Mapping[str, int]
+
+    @property
+    def problems(self) -> dict[str, int]:
+        """The counts of what should not be, by name."""
+        return {
+            "steps late": self.late,
+            "messages not published": self.unpublished,
+            "messages not recorded": self.unrecorded,
+            "inputs refused": self.refused,
+        }
 
 
 class DiagnosticsMessage:
@@ -61,6 +71,7 @@ class DiagnosticsMessage:
         values: Sequence[float],
         count: LandingCount,
         pacer: Pacer,
+        of_fmu: Mapping[str, int],
         failure: str,
     ) -> DiagnosticArray:
         """Fills the message with the state of a landing, and returns it.
@@ -70,19 +81,14 @@ class DiagnosticsMessage:
             values: the landing's outputs.
             count: what has been counted.
             pacer: the landing's pacer.
+            of_fmu: what the FMU counts.
             failure: makes the level ERROR unless it is empty.
         """
-        problems = {
-            "steps late": pacer.late_steps,
-            "messages not published": count.unpublished,
-            "messages not recorded": count.unrecorded,
-            "inputs refused": count.refused,
-        }
         status = {
             "phase": phase_name(values[self._phase]),
             "energy balance [J]": f"{values[self._balance]:.6g}",
             "samples": str(count.samples),
-            **{name: str(number) for name, number in count.of_fmu.items()},
+            **{name: str(number) for name, number in of_fmu.items()},
             **pacing_values(pacer, nanoseconds / NANOSECONDS),
             "messages not published": str(count.unpublished),
             "messages recorded": str(count.recorded),
@@ -90,7 +96,18 @@ class DiagnosticsMessage:
             "inputs received": str(count.received),
             "inputs refused": str(count.refused),
         }
-        return self.update(nanoseconds, status, problems, failure)
+        return self.update(nanoseconds, status, count.problems, failure)
+
+    def note(self, nanoseconds: int, problems: Mapping[str, int]) -> None:
+        """Notes which problems have risen, whether or not a message is made.
+
+        Args:
+            nanoseconds: simulation time [ns].
+            problems: counts by name.
+        """
+        for name, count in problems.items():
+            if count > self._risen.get(name, (0, 0))[0]:
+                self._risen[name] = count, nanoseconds
 
     def update(
         self,
@@ -108,9 +125,7 @@ class DiagnosticsMessage:
             failure: makes the level ERROR unless it is empty.
         """
         set_stamp(self.message.header.stamp, nanoseconds)
-        for name, count in problems.items():
-            if count > self._risen.get(name, (0, 0))[0]:
-                self._risen[name] = count, nanoseconds
+        self.note(nanoseconds, problems)
         counts = ", ".join(
             f"{count} {name}"
             for name, (count, since) in self._risen.items()
@@ -123,7 +138,10 @@ class DiagnosticsMessage:
         elif counts:
             status.level = DiagnosticStatus.WARN
         status.message = failure or counts or values.get("phase", "")
-        status.values = [KeyValue(key=key, value=value) for key, value in values.items()]
+        if [pair.key for pair in status.values] != list(values):
+            status.values = [KeyValue(key=key) for key in values]
+        for pair, value in zip(status.values, values.values()):
+            pair.value = value
         return self.message
 
 

@@ -125,9 +125,10 @@ class InputQueue:
 
         Of several messages of a topic the last counts, for the ground joint by joint.
         """
-        changed: dict[Topic, None] = {}
-        if self._ground.stop_at_goals(nanoseconds):
-            changed[APPLIED_GROUND] = None
+        stopped = self._ground.stop_at_goals(nanoseconds)
+        if not (stopped or self._arrived or self._last_arrival):
+            return []
+        changed: dict[Topic, None] = {APPLIED_GROUND: None} if stopped else {}
         now = time.monotonic()
         ground: dict[str, float] = {}
         while self._arrived:

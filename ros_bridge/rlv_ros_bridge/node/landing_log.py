@@ -102,6 +102,9 @@ class LandingLog:
             return
         recorder.write_sample(k * self._settings.step_ns, messages)
         self._rows.add(k * self._settings.step_size, values)
+
+    def _report(self, recorder: Recorder) -> None:
+        """Reports, once each, that recording has failed, and that messages were left out."""
         if recorder.error and not self._error_reported:
             self._error_reported = True
             self._on_error(f"{recorder.error}; the landing continues without recording")
@@ -119,9 +122,11 @@ class LandingLog:
             now: at once.
             wait: wait where the disk takes too long, whatever the settings say.
         """
-        if self.recorder is not None:
-            self.recorder.must_wait = wait or self._settings.log_must_be_complete
-            self.recorder.flush(now=now)
+        recorder = self.recorder
+        if recorder is not None:
+            recorder.must_wait = wait or self._settings.log_must_be_complete
+            if recorder.flush(now=now):
+                self._report(recorder)
 
     def write(self, topic: Topic, stamp: int, data: bytes) -> None:
         """Writes a message with the time `stamp` [ns]."""

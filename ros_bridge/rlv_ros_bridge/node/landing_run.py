@@ -8,7 +8,6 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from rclpy.serialization import serialize_message
 
@@ -224,16 +223,24 @@ class LandingRun:
             self._record_and_enqueue(change.topic, now, message)
 
     def _enqueue_occasional(self, k: int, values: Sequence[float]) -> bool:
-        """Makes markers, transforms and diagnostics where they are due; whether any was."""
+        """Makes markers, transforms and diagnostics where they are due; whether any was.
+
+        Those that nobody takes are not made.
+        """
         stamp = k * self.settings.step_ns
         due: list[tuple[Topic, bytes]] = []
-        if k % self._markers_every == 0 or self.end:
+        if (k % self._markers_every == 0 or self.end) and self._is_wanted(topics.MARKERS):
             due.append((topics.MARKERS, self._wireframe.pack(stamp, values)))
-        if k % self._tf_every == 0 or self.end:
+        if (k % self._tf_every == 0 or self.end) and self._is_wanted(topics.TF):
             due.append((topics.TF, self._transforms.pack(stamp, values)))
         if k % self._diagnostics_every == 0 or self.end:
-            message = serialize_message(self._diagnostics_message(k, values))
-            due.append((topics.DIAGNOSTICS, padded(message)))
+            count = self._count(k)
+            self._diagnostics.note(stamp, count.problems)
+            if self._is_wanted(topics.DIAGNOSTICS):
+                message = self._diagnostics.of_landing(
+                    stamp, values, count, self._pacer, self.fmu.statistics(), self.log.error
+                )
+                due.append((topics.DIAGNOSTICS, padded(serialize_message(message))))
         for topic, data in due:
             self._record_and_enqueue(topic, stamp, data)
         return bool(due)
@@ -248,18 +255,23 @@ class LandingRun:
         if self._pacer.period:
             self._pacer.note_published(due)
 
-    def _diagnostics_message(self, k: int, values: Sequence[float]) -> Any:
-        count = LandingCount(
+    def _is_wanted(self, topic: Topic) -> bool:
+        """Whether messages of `topic` are recorded, or have subscribers."""
+        publisher = self._publishing.publishers.get(topic)
+        return self.log.recorder is not None or (
+            publisher is not None and publisher.has_subscribers
+        )
+
+    def _count(self, k: int) -> LandingCount:
+        return LandingCount(
             samples=k + 1,
+            late=self._pacer.late_steps,
             unpublished=self.dropped,
             recorded=self.log.count,
             unrecorded=self.log.lost,
             received=self._inputs.received,
             refused=self._inputs.refused,
-            of_fmu=self.fmu.statistics(),
         )
-        stamp = k * self.settings.step_ns
-        return self._diagnostics.of_landing(stamp, values, count, self._pacer, self.log.error)
 
     @property
     def dropped(self) -> int:

@@ -22,7 +22,7 @@ from rlv_landing import Parameters
 from rlv_landing.choices import choose_parameters
 from rlv_landing.errors import LandingError, unknown
 from rlv_landing.parameters import PARAMETER_QUANTITIES, parameters_of
-from rlv_landing.text.values import parse_value
+from rlv_landing.text.listed import parse_parameter
 
 from ..fmu.description import own_vehicle
 from ..fmu.installed import fmu_path
@@ -63,7 +63,8 @@ class NodeParameters:
         given = parameter_overrides(node)
         for name in given:
             if (
-                name not in (*SETTINGS, *PARAMETER_QUANTITIES, *BUILT_IN)
+                name not in (*SETTINGS, *BUILT_IN)
+                and name not in PARAMETER_QUANTITIES
                 and not name.startswith(QOS_OVERRIDES)
                 and name not in shared
             ):
@@ -74,7 +75,7 @@ class NodeParameters:
             name: check_setting(name, given.get(name, s.default)) for name, s in SETTINGS.items()
         }
         changes = {
-            n: parse_value(PARAMETER_QUANTITIES[n], v)
+            n: parse_parameter(PARAMETER_QUANTITIES[n], v)
             for n, v in given.items()
             if n in PARAMETER_QUANTITIES
         }
@@ -124,7 +125,7 @@ class NodeParameters:
             descriptor.additional_constraints = _constraints(
                 q.choices, "start" if start else "paused"
             )
-            if not q.choices:
+            if q.kind != "string":
                 descriptor.floating_point_range = [
                     FloatingPointRange(from_value=q.lo, to_value=q.hi, step=0.0)
                 ]
@@ -170,7 +171,7 @@ class NodeParameters:
         return (
             check_setting(p.name, p.value)
             if p.name in SETTINGS
-            else parse_value(PARAMETER_QUANTITIES[p.name], p.value)
+            else parse_parameter(PARAMETER_QUANTITIES[p.name], p.value)
         )
 
     def _current(self, name: str) -> Any:

@@ -1,11 +1,19 @@
-"""The ground as the spatial body meets it: a plane on a deck that moves in all six directions."""
+"""The ground as the spatial body meets it: a plane or a height field on a deck that moves."""
 
 from __future__ import annotations
 
-from math import cos, sin
+from math import cos, sin, sqrt
 
-from ..records import DeckTurn, FootMotion, Rotation, SpatialInputs, SpatialModel, Vector
-from ..vectors import added, cross, less, to_body
+from ..records import (
+    DeckTurn,
+    FootMotion,
+    Rotation,
+    SpatialInputs,
+    SpatialModel,
+    TerrainPlace,
+    Vector,
+)
+from ..vectors import added, cross, less, to_body, to_inertial
 
 
 def deck_turn(u: SpatialInputs) -> DeckTurn:
@@ -78,8 +86,51 @@ def deck_velocity(u: SpatialInputs, spin: Vector, place: Vector) -> Vector:
     return added(Vector(u.surge_rate, u.heave_rate, u.sway_rate), cross(spin, place))
 
 
-def motion_on_ground(axes: Rotation, place: Vector, velocity: Vector) -> FootMotion:
-    """A place from the deck's origin against the ground, by its velocity relative to it."""
+def motion_on_ground(axes: Rotation, place: Vector, velocity: Vector, step: float) -> FootMotion:
+    """A place from the deck's origin against the ground, by its velocity relative to it.
+
+    The ground there is a `step` [m] above its plane.
+    """
     slip = to_body(axes, velocity)
-    depth = -(axes.y_x * place.x + axes.y_y * place.y + axes.y_z * place.z)
+    depth = step - (axes.y_x * place.x + axes.y_y * place.y + axes.y_z * place.z)
     return FootMotion(depth, -slip.y, slip.x, slip.z)
+
+
+def steepness(place: TerrainPlace) -> float:
+    """The area of a height field at a place, in parts of that of the ground's plane below it."""
+    return sqrt(1.0 + place.slope_1 * place.slope_1 + place.slope_2 * place.slope_2)
+
+
+def local_axes(axes: Rotation, place: TerrainPlace) -> Rotation:
+    """The axes of a height field at a place, by the `axes` of the ground's plane.
+
+    Its normal, and 1 and 2 along it: 1 has no part along the plane's axis 2.
+    """
+    steep = steepness(place)
+    along = sqrt(1.0 + place.slope_1 * place.slope_1)
+    first = to_inertial(axes, Vector(1.0 / along, place.slope_1 / along, 0.0))
+    normal = to_inertial(axes, Vector(-place.slope_1 / steep, 1.0 / steep, -place.slope_2 / steep))
+    second = cross(first, normal)
+    return Rotation(
+        x_x=first.x,
+        x_y=first.y,
+        x_z=first.z,
+        y_x=normal.x,
+        y_y=normal.y,
+        y_z=normal.z,
+        z_x=second.x,
+        z_y=second.y,
+        z_z=second.z,
+    )
+
+
+def motion_on_terrain(
+    axes: Rotation, place: TerrainPlace, velocity: Vector, step: float
+) -> FootMotion:
+    """A place against a height field, by the field's `axes` there and its relative velocity.
+
+    The depth is measured along the normal of the ground's plane, so that the elastic force is the
+    gradient of its energy; the force along the field's normal is larger by its steepness.
+    """
+    slip = to_body(axes, velocity)
+    return FootMotion(step + place.depth, -steepness(place) * slip.y, slip.x, slip.z)

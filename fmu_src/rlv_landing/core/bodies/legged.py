@@ -69,10 +69,10 @@ ROUNDING = 4e-15
 class Legged(System):
     """A body on legs, or on groups of legs that are mirror images, and its ground.
 
-    The state is the body's, a `LegState` for each group, and the `Accounts`, which no other state
-    depends on. What is dissipated never falls, unless a friction law may give. A subclass moves the
-    body, adds its mass, says where the outputs have the energies, and keeps each group's forces and
-    footpad.
+    The state is the body's, a `LegState` for each group, the `Accounts`, and the work of each
+    group's main strut; no other state depends on accounts and works. What is dissipated never
+    falls, unless a friction law may give. A subclass moves the body, adds its mass, says where the
+    outputs have the energies, and keeps each group's forces and footpad.
 
     Attributes:
         groups: How many leg groups there are.
@@ -81,6 +81,7 @@ class Legged(System):
         most_balance: The largest energy balance since then at a step's end [J].
         rounding: How far rounding may put the balance off [J].
         mass: The whole vehicle's [kg].
+        more_contact, more_friction: What contacts of the body itself hold as the legs' do [J].
     """
 
     groups: int
@@ -88,7 +89,10 @@ class Legged(System):
     most_balance: float
     rounding: float
     mass: float
+    more_contact: float
+    more_friction: float
     _first_leg: int  # its place in the state
+    _works: int  # their place in the state
     _energies: int  # their place in the outputs, behind the body's
     _places: Records[LegPlace]
     _legs: Records[LegModel]
@@ -101,19 +105,24 @@ class Legged(System):
         self,
         legs: Sequence[LegModel],
         places: Sequence[LegPlace],
-        scale: Buffer,
-        relative: Buffer,
+        sizes: tuple[Buffer, Buffer],
         inputs: int,
         row: int,
+        behind: int,
     ) -> None:
         groups = len(legs)
-        super().__init__(scale, relative, ACCOUNTS, inputs, row, groups)
+        scale, relative = sizes
+        super().__init__(scale, relative, ACCOUNTS + groups, inputs, row, groups)
         self.groups = groups
         self.energy_start = 0.0
         self.most_balance = 0.0
         self.rounding = 0.0
         self.mass = 0.0
-        self._first_leg = self.controlled - LEG * groups
+        self.more_contact = 0.0
+        self.more_friction = 0.0
+        # so many states of others stand behind the legs'
+        self._first_leg = self.controlled - LEG * groups - behind
+        self._works = self.controlled + ACCOUNTS
         self._energies = 0
         self._places = stored(places)
         self._legs = stored(legs)
@@ -239,7 +248,7 @@ class Legged(System):
             )
 
     def _put_powers(self, external: float, transverse: float, dy: Doubles) -> None:
-        """Write the powers that the accounts gather to `dy` [W].
+        """Write the powers that the accounts and works gather to `dy` [W].
 
         Args:
             external: Power of the external loads [W].
@@ -257,6 +266,7 @@ class Legged(System):
             contact += n * forces.contact
             friction += n * forces.friction
             ground += n * foot_loads_of(self._feet, i).ground
+            dy[self._works + i] = forces.main * forces.stroke_rate
         put(
             Accounts(
                 orifice, seal, stop, auxiliary, contact, friction, external, ground, transverse
@@ -269,7 +279,9 @@ class Legged(System):
         self, y: Doubles, kinetic: float, potential: float, out: Doubles, at: int
     ) -> None:
         """Write the energies to `out[at:]`, those of motion given [J], from what is kept."""
-        liquid = auxiliary = contact = friction = stop = 0.0
+        liquid = auxiliary = stop = 0.0
+        contact = self.more_contact
+        friction = self.more_friction
         for i in range(self.groups):
             n = leg_place(self._places, i).legs
             s = leg_status_of(self._status, i)
@@ -309,8 +321,8 @@ class Legged(System):
             at,
         )
 
-    def _put_leg(self, i: int, out: Doubles, at: int) -> None:
-        """Write the outputs of leg group `i` to `out[at:]`.
+    def _put_leg(self, i: int, y: Doubles, out: Doubles, at: int) -> None:
+        """Write the outputs of leg group `i` at the state `y` to `out[at:]`.
 
         Strut forces change sign here: the user's are negative in compression. Mirror images are
         made where the names are made.
@@ -326,6 +338,7 @@ class Legged(System):
                 main_strut_pressure_upper=s.pressure_upper,
                 main_strut_pressure_lower=s.pressure_lower,
                 main_strut_liquid_mass=f.liquid_mass,
+                main_strut_work=y[self._works + i],
                 auxiliary_strut_force=-f.auxiliary,
                 auxiliary_strut_stroke=f.auxiliary_stroke,
                 auxiliary_strut_stroke_rate=f.auxiliary_rate,

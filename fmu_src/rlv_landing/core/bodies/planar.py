@@ -48,7 +48,7 @@ class Planar(PlanarMotion):
         self._put_status(y, dy, kinetic, out, at)
         at += STATUS_OUTPUTS
         for i in range(self.groups):
-            self._put_leg(i, out, at + LEG_OUTPUTS * i)
+            self._put_leg(i, y, out, at + LEG_OUTPUTS * i)
 
     def _ground_is_still(self, u: Doubles) -> bool:
         now = inputs(u, 0)

@@ -75,7 +75,7 @@ class PlanarMotion(Legged):
         relative: Buffer,
     ) -> None:
         row = BODY_OUTPUTS + ENERGY_OUTPUTS + STATUS_OUTPUTS + LEG_OUTPUTS * len(legs)
-        super().__init__(legs, places, scale, relative, INPUTS, row)
+        super().__init__(legs, places, (scale, relative), INPUTS, row, 0)
         self.mass += body.m_u
         self._energies = BODY_OUTPUTS
         self._body = stored([body])

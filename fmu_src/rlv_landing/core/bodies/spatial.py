@@ -53,7 +53,9 @@ class Spatial(SpatialMotion):
     def read(self, y: Doubles, u: Doubles, dy: Doubles, out: Doubles, at: int) -> None:
         """Write all outputs to `out[at:]`, from what `rhs` has kept of the legs."""
         turn = rotation_of(self._turn, 0)
+        self._off_ground = self._outside > 0
         self._keep_status(y)
+        self._keep_point_energies(y)
         kinetic = self._kinetic_energy(y, turn)
         self._put_body(y, dy, turn, out, at)
         at += SPATIAL_OUTPUTS
@@ -62,7 +64,7 @@ class Spatial(SpatialMotion):
         self._put_status(y, dy, kinetic, turn, out, at)
         at += STATUS_OUTPUTS
         for i in range(self.groups):
-            self._put_leg(i, out, at)
+            self._put_leg(i, y, out, at)
             put(LegLoadOutputs(self._transverse[i]), out, at + LEG_OUTPUTS)
             at += LEG_OUTPUTS + LEG_LOAD_OUTPUTS
 
@@ -95,6 +97,8 @@ class Spatial(SpatialMotion):
         spin = Vector(s.spin_x, s.spin_y, s.spin_z)
         sensor = less(Vector(0.0, p.H, 0.0), cg_of(p))
         turning = cross(Vector(a.spin_x, a.spin_y, a.spin_z), sensor)
+        force = self._strike_force()
+        moment = self._strike_moment()
         put(
             SpatialOutputs(
                 x=s.x,
@@ -120,6 +124,13 @@ class Spatial(SpatialMotion):
                 spin_acceleration_y=r.spin_y,
                 spin_acceleration_z=r.spin_z,
                 top_axial_acceleration=a.a_y + turning.y + cross(spin, cross(spin, sensor)).y,
+                clearance=self._clearance(),
+                strike_force_x=force.x,
+                strike_force_y=force.y,
+                strike_force_z=force.z,
+                strike_moment_x=moment.x,
+                strike_moment_y=moment.y,
+                strike_moment_z=moment.z,
             ),
             out,
             at,
@@ -172,6 +183,8 @@ class Spatial(SpatialMotion):
             x += m_d * foot.x
             z += m_d * foot.z
             depth = max(depth, foot.depth)
+        for i in range(self.points):
+            depth = max(depth, foot_loads_of(self._point_loads, i).depth)
         margin = self._margin(x / mass, z / mass)
         r = spatial_state(rates, 0)
         acceleration = fabs(r.vx) + fabs(r.vy) + fabs(r.vz)

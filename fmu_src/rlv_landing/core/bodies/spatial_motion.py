@@ -4,20 +4,11 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Sequence
-from math import inf
 
 from ..access import (
-    DECK_TURN,
-    ENERGY_OUTPUTS,
     LEG,
-    LEG_LOAD_OUTPUTS,
-    LEG_OUTPUTS,
-    ROTATION,
     SPATIAL_ATTITUDE,
-    SPATIAL_INPUTS,
     SPATIAL_LOADS,
-    SPATIAL_OUTPUTS,
-    STATUS_OUTPUTS,
     deck_turn_of,
     foot_motion_of,
     keep,
@@ -33,14 +24,14 @@ from ..access import (
     spatial_model,
     spatial_state,
 )
-from ..leg import leg_forces
-from ..memory import Buffer, Doubles, Records, room, stored
+from ..leg import leg_forces, leg_forces_on
+from ..memory import Buffer, Doubles, Records, room
 from ..records import (
-    DeckTurn,
+    BodyPoint,
     FootLoads,
+    HeightField,
     LegModel,
     LegPlace,
-    Rotation,
     SpatialAttitude,
     SpatialInputs,
     SpatialLoads,
@@ -60,16 +51,8 @@ from ..vectors import (
     to_body,
     to_inertial,
 )
-from .deck import (
-    deck_spin,
-    deck_turn,
-    deck_velocity,
-    from_origin,
-    ground_axes,
-    is_turn_at,
-    motion_on_ground,
-)
-from .legged import Legged
+from .deck import deck_spin, deck_velocity, from_origin, motion_on_ground
+from .spatial_ground import SpatialGround
 from .spatial_legs import (
     about_across,
     cg_of,
@@ -88,19 +71,15 @@ def gone_on(place: float, speed: float, acceleration: float, dt: float) -> float
     return place + (speed + 0.5 * acceleration * dt) * dt
 
 
-class SpatialMotion(Legged):
+class SpatialMotion(SpatialGround):
     """One body in space on legs, and its ground: its state is a `SpatialState`.
 
     Each leg is a group of its own. The body's and the footpads' accelerations are found together,
     since the force that keeps each footpad in its leg's plane contains both.
     """
 
-    _body: Records[SpatialModel]
     _loads: Records[SpatialLoads]
     _attitude: Records[SpatialAttitude]
-    _turn: Records[Rotation]
-    _deck: Records[DeckTurn]
-    _ground: Records[Rotation]
     _transverse: Buffer
     # inverse of the mass that an acceleration along the body's x, z moves [1/kg]
     _xx: float
@@ -114,20 +93,11 @@ class SpatialMotion(Legged):
         places: Sequence[LegPlace],
         scale: Buffer,
         relative: Buffer,
+        met: tuple[Sequence[BodyPoint], LegModel, HeightField, Buffer],
     ) -> None:
-        leg_row = LEG_OUTPUTS + LEG_LOAD_OUTPUTS
-        row = SPATIAL_OUTPUTS + ENERGY_OUTPUTS + STATUS_OUTPUTS + leg_row * len(legs)
-        super().__init__(legs, places, scale, relative, SPATIAL_INPUTS, row)
-        self.mass += body.m_u
-        self._energies = SPATIAL_OUTPUTS
-        self._body = stored([body])
+        super().__init__(body, legs, places, scale, relative, met)
         self._loads = room(len(legs), SPATIAL_LOADS)
         self._attitude = room(1, SPATIAL_ATTITUDE)
-        self._turn = room(1, ROTATION)
-        self._deck = room(1, DECK_TURN)
-        # of no angles yet
-        keep(DeckTurn(inf, inf, inf, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0), self._deck, 0)
-        self._ground = room(1, ROTATION)
         # the force that keeps each footpad in its leg's plane, along t [N]
         self._transverse = array("d", bytes(8 * len(legs)))
         along_x = body.m_u
@@ -188,11 +158,18 @@ class SpatialMotion(Legged):
         turn = rotation_of(self._turn, 0)
         spin = Vector(s.spin_x, s.spin_y, s.spin_z)
         rolling = deck_spin(now, deck_turn_of(self._deck, 0))
+        self._outside = 0
         for i in range(self.groups):
             self._load(i, y, now, rolling)
         force = to_body(turn, Vector(now.force_x, now.force_y - p.m_u * p.g, now.force_z))
         moment = to_body(turn, Vector(now.moment_x, now.moment_y, now.moment_z))
-        keep(self._acceleration(spin, force, moment), self._attitude, 0)
+        if self.points > 0:
+            self._load_points(y, now, rolling)
+            struck = added(force, to_body(turn, self._strike_force()))
+            turned = added(moment, to_body(turn, self._strike_moment()))
+            keep(self._acceleration(spin, struck, turned), self._attitude, 0)
+        else:
+            keep(self._acceleration(spin, force, moment), self._attitude, 0)
         attitude = spatial_attitude_of(self._attitude, 0)
         a = Vector(attitude.a_x, attitude.a_y, attitude.a_z)
         spin_rate = Vector(attitude.spin_x, attitude.spin_y, attitude.spin_z)
@@ -221,20 +198,13 @@ class SpatialMotion(Legged):
             transverse += self._move(i, y, a, spin, spin_rate, dy)
         external = now.force_x * s.vx + now.force_y * s.vy + now.force_z * s.vz + dot(moment, spin)
         self._put_powers(external, transverse, dy)
-
-    def _turn_ground(self, now: SpatialInputs) -> None:
-        """Keep the deck's angles and the ground's axes, which most decks seldom change."""
-        if not is_turn_at(deck_turn_of(self._deck, 0), now):
-            keep(deck_turn(now), self._deck, 0)
-            turn = deck_turn_of(self._deck, 0)
-            keep(ground_axes(turn, spatial_model(self._body, 0)), self._ground, 0)
+        self._put_point_rates(dy)
 
     def _load(self, i: int, y: Doubles, now: SpatialInputs, rolling: Vector) -> None:
         """Keep the forces and loads of leg `i`, on a deck whose spin is `rolling` [rad/s]."""
         p = spatial_model(self._body, 0)
         s = spatial_state(y, 0)
         turn = rotation_of(self._turn, 0)
-        axes = rotation_of(self._ground, 0)
         leg = leg_state(y, self._first_leg + LEG * i)
         place = leg_place(self._places, i)
         model = leg_model(self._legs, i)
@@ -245,9 +215,16 @@ class SpatialMotion(Legged):
         above = from_origin(now, point)
         ground = deck_velocity(now, rolling, above)
         velocity = less(added(Vector(s.vx, s.vy, s.vz), to_inertial(turn, moved)), ground)
-        keep(motion_on_ground(axes, above, velocity), self._motions, i)
-        motion = foot_motion_of(self._motions, i)
-        keep(leg_forces(leg, motion, model), self._forces, i)
+        axes = rotation_of(self._ground, 0)
+        if self._has_field:
+            steep = self._meet_field(above, velocity, model.step, self._motions, i)
+            axes = rotation_of(self._local, 0)
+            motion = foot_motion_of(self._motions, i)
+            keep(leg_forces_on(leg, motion, steep, model), self._forces, i)
+        else:
+            keep(motion_on_ground(axes, above, velocity, model.step), self._motions, i)
+            motion = foot_motion_of(self._motions, i)
+            keep(leg_forces(leg, motion, model), self._forces, i)
         forces = leg_forces_of(self._forces, i)
         contact = to_inertial(axes, Vector(forces.f1, forces.normal, forces.f2))
         keep(
@@ -367,6 +344,7 @@ class SpatialMotion(Legged):
     def project(self, y: Doubles) -> None:
         """Bring what the friction laws keep to where they let it be, the quaternion to length 1."""
         self._project_friction(y)
+        self._project_points(y)
         s = spatial_state(y, 0)
         size = length_of(s.q_w, s.q_x, s.q_y, s.q_z)
         for i in range(3, 7):

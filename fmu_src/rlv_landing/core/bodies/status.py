@@ -15,13 +15,13 @@ def phase_of(
 ) -> int:
     """The `Phase` of a landing.
 
-    Settled: a footpad touches, the kinetic energy is that of 2 mm/s at most, and the body's
-    acceleration is below 0.05 m/s2.
+    Settled: a footpad or a point of the body touches, the kinetic energy is that of 2 mm/s at most,
+    and the body's acceleration is below 0.05 m/s2.
 
     Args:
         margin: Stability margin [m].
         upright: Below 0 where the body has turned over.
-        depth: Penetration of the footpad that is deepest in the ground [m].
+        depth: Penetration of the footpad or point that is deepest in the ground [m].
         kinetic: Kinetic energy of the vehicle [J].
         mass: Its mass [kg].
         acceleration: Sum of the body's accelerations [m/s2, rad/s2].

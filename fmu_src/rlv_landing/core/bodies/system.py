@@ -18,6 +18,8 @@ class System:
         n: Length of the state.
         controlled: How many states count in a step's error; they come first, the others are carried
             along.
+        counted: Of how many of these a step's error is the mean; those beyond add to it, so that
+            states that do not move do not loosen it.
         scale, relative: [n] A step's error in state i is measured by rtol times scale_i, or by rtol
             times (scale_i + |y_i|) where relative_i is 1.
         inputs: How many inputs there are.
@@ -28,6 +30,7 @@ class System:
 
     n: int
     controlled: int
+    counted: int
     inputs: int
     row: int
     stiff_pairs: int
@@ -41,6 +44,7 @@ class System:
     ) -> None:
         self.n = len(scale)
         self.controlled = self.n - carried
+        self.counted = self.controlled
         self.inputs = inputs
         self.row = row
         self.stiff_pairs = stiff_pairs
@@ -77,6 +81,10 @@ class System:
         Returns how far it was away, in units of what a step may be; 0 where it was left as it is.
         """
         return 0.0
+
+    def is_off_ground(self, outputs: Doubles) -> bool:
+        """Whether the system has left what is known of its ground, where it read `outputs` last."""
+        return False
 
     def note(self, outputs: Doubles) -> None:
         """Take notice of the `outputs` at the end of a step."""

@@ -35,6 +35,14 @@ def friction_only_takes(p: LegModel) -> bool:
 
 def ground_force(foot: FootMotion, q1: float, q2: float, p: LegModel) -> GroundForce:
     """The ground on a footpad, in the ground's axes."""
+    return ground_force_on(foot, 1.0, q1, q2, p)
+
+
+def ground_force_on(
+    foot: FootMotion, steep: float, q1: float, q2: float, p: LegModel
+) -> GroundForce:
+    """As `ground_force`, on ground whose normal force is `steep` times that of the normal law."""
     n = normal_force(foot.depth, foot.depth_rate, p)
-    f = friction(foot, n.force, q1, q2, p)
-    return GroundForce(n.force, f.f1, f.f2, f.dq1, f.dq2, n.dissipated, f.dissipated)
+    normal = n.force * steep
+    f = friction(foot, normal, q1, q2, p)
+    return GroundForce(normal, f.f1, f.f2, f.dq1, f.dq2, n.dissipated, f.dissipated)

@@ -83,6 +83,7 @@ class LegModel(NamedTuple):
     tau_sr: float
     K_t: float
     zone: float  # [m]
+    step: float  # height of the ground below the footpad above its plane [m]
     # part of mu^2 along 1 at rest: 1/2; 1 for a leg that lies in the symmetric plane
     share_1: float
 

@@ -47,6 +47,13 @@ class SpatialOutputs(NamedTuple):
     spin_acceleration_y: float
     spin_acceleration_z: float
     top_axial_acceleration: float
+    clearance: float
+    strike_force_x: float
+    strike_force_y: float
+    strike_force_z: float
+    strike_moment_x: float
+    strike_moment_y: float
+    strike_moment_z: float
 
 
 class EnergyOutputs(NamedTuple):
@@ -88,6 +95,7 @@ class LegOutputs(NamedTuple):
     main_strut_pressure_upper: float
     main_strut_pressure_lower: float
     main_strut_liquid_mass: float
+    main_strut_work: float
     auxiliary_strut_force: float
     auxiliary_strut_stroke: float
     auxiliary_strut_stroke_rate: float

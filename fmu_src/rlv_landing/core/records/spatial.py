@@ -1,4 +1,4 @@
-"""Records of the spatial body (6 DOF): state, inputs, deck, footpads, loads, vectors."""
+"""Records of the spatial body (6 DOF): state, inputs, ground, footpads, loads, vectors."""
 
 from typing import NamedTuple
 
@@ -150,3 +150,58 @@ class SpatialAttitude(NamedTuple):
     spin_x: float  # [rad/s2]
     spin_y: float
     spin_z: float
+
+
+class BodyPoint(NamedTuple):
+    """A point of the body that meets the ground, from the legs' axis at the CG's height [m]."""
+
+    x: float  # body axes
+    y: float
+    z: float
+
+
+class PointState(NamedTuple):
+    """The friction law's displacement at a point of the body. For derivatives, each per second."""
+
+    q1: float  # along 1 [m]
+    q2: float  # along 2 [m]
+
+
+class HeightField(NamedTuple):
+    """A regular grid of heights above the ground's plane.
+
+    Its coordinates u, v are those of the deck's x, z, turned with the slope; rows go along u.
+    """
+
+    columns: float  # nodes of a row; 0: there is none
+    rows: float
+    u0: float  # the first node [m]
+    v0: float
+    du: float  # spacings [m]
+    dv: float
+    sin_d: float  # sine of the slope's direction, which turns the ground's axes 1, 2 to u, v
+    cos_d: float
+
+
+class Cubic(NamedTuple):
+    """A cubic at a place."""
+
+    value: float
+    slope: float  # its derivative, a spacing
+
+
+class TerrainHeight(NamedTuple):
+    """A height field at a place."""
+
+    height: float  # [m]
+    slope_u: float  # [m] a spacing
+    slope_v: float
+
+
+class TerrainPlace(NamedTuple):
+    """A place in a height field, in the axes of the ground's plane."""
+
+    depth: float  # below the field, along the plane's normal [m]
+    slope_1: float  # of the field along 1
+    slope_2: float  # along 2
+    outside: float  # 1 beyond the field

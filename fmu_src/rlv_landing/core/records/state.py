@@ -22,6 +22,7 @@ class Fault(IntEnum):
     NONE = 0
     COLLAPSED = 1
     TOO_MANY_STEPS = 2
+    OFF_GROUND = 3
 
 
 class BodyState(NamedTuple):

@@ -126,6 +126,8 @@ class Solver(Trial):
         y, end, k1, k_end = data(self.y), data(self.y_new), data(self.k1), data(self.k_end)
         self._next_row()
         self.system.note(data(self.last))
+        if self.system.is_off_ground(data(self.last)):
+            self.fault = Fault.OFF_GROUND
         self.dense_at = self._other_dense()
         copy(end, y, n)
         copy(k_end, k1, n)

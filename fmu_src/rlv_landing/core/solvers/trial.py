@@ -87,7 +87,7 @@ class Trial(Rest):
     def _error(self) -> float:
         """Error of the step just computed, in units of the tolerance.
 
-        It is the root mean square over the controlled states.
+        It is the root mean square over the controlled states, as a mean of those that count.
         """
         y, end, deviation = data(self.y), data(self.y_new), data(self.deviation)
         scale, relative = data(self.system.scale), data(self.system.relative)
@@ -101,7 +101,7 @@ class Trial(Rest):
                 limit = min(self.rtol * (scale[i] + max(fabs(y[i]), fabs(end[i]))), ceiling[i])
             e = deviation[i] / limit
             total += e * e
-        return sqrt(total / m)
+        return sqrt(total / self.system.counted)
 
     def _loses(self, h: float) -> bool:
         """Whether a step of `h` [s] loses more than it may of what the system conserves.

@@ -21,7 +21,8 @@ from ...quantities import (
     groups_of,
     interface_of,
 )
-from ...validation.measures import first_push, leg_work
+from ...validation.first_contact import first_contact
+from ...validation.measures import leg_work
 from ..outcome import TOPPLED, Outcome, judged
 
 Reduction = Callable[[Extreme], float]
@@ -302,8 +303,8 @@ def _outcome_values(found: Outcome) -> dict[str, Any]:
 
 def _contact_time(history: History, name: str) -> float | None:
     leg = int(name.removeprefix("leg[").partition("]")[0])
-    first = first_push(history, leg) if leg in history.legs else None
-    return None if first is None else float(history.time[first])
+    contact = first_contact(history, leg) if leg in history.legs else None
+    return None if contact is None else contact.time
 
 
 def _work_values(history: History) -> dict[str, Any]:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import struct
+from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 
 from mcap.opcode import Opcode
 
@@ -15,6 +17,8 @@ from .records import MESSAGE_HEAD_BYTES, RECORD_HEAD
 # and publish time (TIMES).
 MESSAGE_PREFIX = struct.Struct("<BQH")
 RECORD_SIZE = MESSAGE_PREFIX.size + TIMES.size
+# The largest time that a message can have [ns].
+LATEST = 2**64 - 1
 
 
 def message_prefix(channel: int, size: int) -> bytes:
@@ -27,28 +31,29 @@ class Gathered:
     """Messages that make a chunk.
 
     `parts` are the bytes of their records, `size` in all. `samples` are time [ns] and offset
-    [bytes] of each sample's records, in which that of each channel is at `sample_offsets`.
-    `singles` are time and offset of other messages by channel. `last` is the largest time.
+    [bytes] of each sample's records, one after the other; the record of each channel is at
+    `sample_offsets` from there. `singles` are time and offset of other messages by channel. `first`
+    and `last` are the smallest and the largest time.
     """
 
     sample_offsets: Mapping[int, int]
     parts: list[bytes] = field(default_factory=list)
     size: int = 0
-    samples: list[tuple[int, int]] = field(default_factory=list)
+    samples: array[int] = field(default_factory=partial(array, "Q"))
     singles: dict[int, list[tuple[int, int]]] = field(default_factory=dict)
+    first: int = LATEST
     last: int = -1
 
     @property
-    def first(self) -> int:
-        """The smallest time [ns]."""
-        groups = (self.samples, *self.singles.values())
-        return min(time for messages in groups for time, _ in messages)
+    def sample_count(self) -> int:
+        """The number of samples."""
+        return len(self.samples) // 2
 
     @property
     def count(self) -> int:
         """The number of messages."""
         singles = sum(map(len, self.singles.values()))
-        return len(self.samples) * len(self.sample_offsets) + singles
+        return self.sample_count * len(self.sample_offsets) + singles
 
     def records(self, channel: int) -> list[tuple[int, bytes]]:
         """Time [ns] and record of each single message of `channel`."""
@@ -96,7 +101,7 @@ class ChunkBuffer:
         There is one record for each channel of `sample_offsets`.
         """
         offset = self._append(time, records)
-        self._open.samples.append((time, offset))
+        self._open.samples.extend((time, offset))
 
     def _append(self, time: int, records: bytes) -> int:
         gathered = self._open
@@ -108,6 +113,8 @@ class ChunkBuffer:
         gathered.size += len(records)
         if time > gathered.last:
             gathered.last = time
+        if time < gathered.first:
+            gathered.first = time
         return offset
 
     def hand_over(self) -> None:

@@ -55,6 +55,19 @@ class PackedRecord:
         stream.write(self._data)
 
 
+class JoinedRecords(RecordBuilder):
+    """The records of a chunk, which are copied once, when it is written."""
+
+    def __init__(self, parts: list[bytes]) -> None:
+        super().__init__()
+        self._parts = parts
+
+    def end(self) -> bytes:
+        """The bytes of all records; from then on it is empty."""
+        parts, self._parts = self._parts, []
+        return b"".join(parts)
+
+
 class ChunkWriter:
     """Writes chunks through `mcap`, MCAP's writer. `count` is the number of messages written.
 
@@ -74,11 +87,10 @@ class ChunkWriter:
 
     def write(self, gathered: Gathered) -> None:
         """Writes messages as a chunk, and hands it to the operating system."""
-        data = b"".join(gathered.parts)
         if self._builder is not None and self._statistics is not None:
-            self._add_messages(gathered, data)
+            self._add_messages(gathered)
         else:
-            for record in split_records(data):
+            for record in split_records(b"".join(gathered.parts)):
                 m = decode_record(record[0], record[RECORD_HEAD.size :])
                 self._mcap.add_message(m.channel_id, m.log_time, m.data, m.publish_time, m.sequence)
         self._mcap.flush()
@@ -86,12 +98,12 @@ class ChunkWriter:
         if self._indexes:
             self._indexes[-1] = PackedRecord(self._indexes[-1])
 
-    def _add_messages(self, gathered: Gathered, data: bytes) -> None:
+    def _add_messages(self, gathered: Gathered) -> None:
         """Does for all messages at once what `add_message` does for each."""
         builder, statistics = self._builder, self._statistics
         indexes = _message_indexes(gathered, builder.count)
         first, last, count = gathered.first, gathered.last, gathered.count
-        builder.record_writer.write(data)
+        builder.record_writer = JoinedRecords([builder.end(), *gathered.parts])
         builder.message_indices = {
             channel: PackedIndex(channel, entries) for channel, entries in indexes.items()
         }
@@ -119,7 +131,7 @@ def _message_indexes(gathered: Gathered, begun: int) -> dict[int, NDArray[np.uin
         # All channels at once: the samples' times and offsets, plus the offset in a sample.
         offsets = gathered.sample_offsets
         within = np.array([[(0, offset)] for offset in offsets.values()], "<u8")
-        samples = np.array(gathered.samples, "<u8") + shift
+        samples = np.array(gathered.samples, "<u8").reshape(-1, 2) + shift
         indexes = dict(zip(offsets, samples + within))
     for channel, entries in gathered.singles.items():
         indexes[channel] = np.array(entries, "<u8") + shift

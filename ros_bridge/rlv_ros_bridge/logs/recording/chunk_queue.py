@@ -88,18 +88,23 @@ class ChunkQueue:
             self._buffer.add_sample(time_ns, records)
             self.samples += 1
 
-    def flush(self, *, now: bool = False) -> None:
+    def flush(self, *, now: bool = False) -> bool:
         """Hands what was gathered to the thread, at most every `FLUSH_SECONDS`.
 
         To be called after all messages of an instant.
 
         Args:
             now: at once.
+
+        Returns:
+            Whether it was time to.
         """
         clock = time.monotonic()
-        if now or clock - self._flushed >= FLUSH_SECONDS:
-            self._flushed = clock
-            self._buffer.hand_over()
+        if not now and clock - self._flushed < FLUSH_SECONDS:
+            return False
+        self._flushed = clock
+        self._buffer.hand_over()
+        return True
 
     def sync(self) -> None:
         """Waits until the operating system has what was added, or writing has failed."""
@@ -128,13 +133,13 @@ class ChunkQueue:
         kept = [(c, *found) for c in self._kept for found in gathered.records(c)]
         if sum(len(record) for *_, record in kept) > KEPT_BYTES:
             kept = []
-        self.samples -= len(gathered.samples)
+        self.samples -= gathered.sample_count
         for channel, entries in gathered.singles.items():
             self.singles[channel] -= len(entries)
         count = gathered.count - len(kept)
         self.lost += count
         if count:
-            gap = Gap(count, len(gathered.samples), gathered.first, gathered.last)
+            gap = Gap(count, gathered.sample_count, gathered.first, gathered.last)
             self.gap = gap if self.gap is None else self.gap.and_then(gap)
         for channel, at, record in kept:
             self._buffer.add_record(channel, at, record)
