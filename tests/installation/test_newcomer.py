@@ -15,6 +15,7 @@ COMMANDS = """\
 new "my hopper" --like hopper
 draw "my hopper/vehicle.toml" "my hopper/vehicle.svg"
 simulate --parameters "my hopper/vehicle.toml" --output landing.csv
+report "my hopper/vehicle.toml" --no-audit -o report.html
 examples copy copied
 fmu info "{fmu}"
 fmu simulate "{fmu}" --until 0.2
