@@ -35,7 +35,7 @@ FIRST = access.SPATIAL_STATE
 
 
 def random_vehicle(rng: np.random.Generator, legs: int, at: str) -> Parameters:
-    """A vehicle without any symmetry, on a slope in any direction, with steps below its feet."""
+    """A vehicle without any symmetry, its legs uneven, on a slope and on steps."""
     own = {
         f"leg[{i}].ground.{what}": value
         for i in range(1, legs + 1)
@@ -45,7 +45,9 @@ def random_vehicle(rng: np.random.Generator, legs: int, at: str) -> Parameters:
         {
             "drop.mode": "space",
             "vehicle.legs": float(legs),
-            "vehicle.leg_azimuth": rng.uniform(-3.0, 3.0),
+            "vehicle.leg_azimuths": " ".join(
+                repr(2.0 * np.pi * i / legs + rng.uniform(-0.3, 0.3)) for i in range(legs)
+            ),
             "vehicle.transverse_load_at": at,
             "vehicle.inertia": 120.0,
             "vehicle.inertia_roll": rng.uniform(100.0, 150.0),

@@ -103,12 +103,14 @@ class Vehicle3D:
         )
         self.ground = parameters.ground
         v, g = parameters.vehicle, parameters.ground
-        in_space = parameters.drop.mode == "space"
+        in_space = self.in_space = parameters.drop.mode == "space"
         self.n, self.whole_mass = 4, parameters.whole_mass
         self.cg, self.mu, self.step = np.zeros((3, 1)), g.friction, 0.0
         if in_space:
             self.n = int(v.legs)
             azimuth = v.leg_azimuth + 2.0 * np.pi * np.arange(self.n) / self.n
+            if v.leg_azimuths:
+                azimuth = np.array([float(word) for word in v.leg_azimuths.split()])
             self.cg = np.array([[v.cg_offset_x], [0.0], [v.cg_offset_z]])
             self.mu, self.step = (
                 np.array([float(parameters[f"leg[{i + 1}].ground.{what}"]) for i in range(self.n)])
@@ -381,7 +383,9 @@ class Vehicle3D:
         spin, R = y[SPIN], rotation(y[QUATERNION])
         omega = spin[:, None]
         rho_rate = r_rate * self.e_r + h_rate * self.e_y
-        rho = r * self.e_r + h * self.e_y - self.cg
+        rho = r * self.e_r + h * self.e_y
+        if self.in_space:
+            rho = rho - self.cg
         swept = cross(omega, rho)
         place, speed = y[POSITION][:, None] + R @ rho, y[VELOCITY][:, None] + R @ (swept + rho_rate)
 
@@ -399,7 +403,8 @@ class Vehicle3D:
         )
         torque = R.T @ np.array([0.0, 0.0, -self.inputs.moment])  # clockwise positive
         torque = torque - (cross(self.main_joint, main) + cross(self.aux_joint, aux)).sum(axis=1)
-        gyroscopic = cross(spin, self.tensor @ spin)
+        turning = self.tensor @ spin if self.in_space else self.inertia * spin
+        gyroscopic = cross(spin, turning)
         carried = cross(omega, swept) + 2.0 * cross(
             omega, rho_rate
         )  # centripetal and Coriolis acceleration of the footpads
