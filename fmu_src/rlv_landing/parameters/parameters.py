@@ -128,7 +128,10 @@ class Parameters:
         Raises:
             LandingError: An unknown name or a bad value.
         """
-        changed = self._replaced(values, {name: _source(name, source) for name in values})
+        given = {name: _source(name, source) for name in values}
+        if any(LEG_NAME.fullmatch(name) for name in values):
+            given[OVERRIDES] = "user"
+        changed = self._replaced(values, given)
         by_mode = {
             mode: {n: v for n, v in own.items() if n not in values}
             for mode, own in self.by_mode.items()
