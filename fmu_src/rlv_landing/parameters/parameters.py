@@ -128,7 +128,7 @@ class Parameters:
         Raises:
             LandingError: An unknown name or a bad value.
         """
-        given = {name: _source(name, source) for name in values}
+        given: dict[str | tuple[str, str], str] = {n: _source(n, source) for n in values}
         if any(LEG_NAME.fullmatch(name) for name in values):
             given[OVERRIDES] = "user"
         changed = self._replaced(values, given)
