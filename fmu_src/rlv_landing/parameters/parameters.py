@@ -138,6 +138,8 @@ class Parameters:
             if isinstance(key, str) or key[1] not in values
         }
         new: Sources = {name: _source(name, source) for name in values}
+        if any(LEG_NAME.fullmatch(name) for name in values):
+            new[OVERRIDES] = "user"
         return self._replaced(values, {**sources, **new}, by_mode)
 
     def with_mode_values(
