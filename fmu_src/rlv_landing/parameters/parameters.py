@@ -137,7 +137,7 @@ class Parameters:
             for key, s in self.sources.items()
             if isinstance(key, str) or key[1] not in values
         }
-        new: Sources = {name: _source(name, source) for name in values}
+        new: dict[str | tuple[str, str], str] = {n: _source(n, source) for n in values}
         if any(LEG_NAME.fullmatch(name) for name in values):
             new[OVERRIDES] = "user"
         return self._replaced(values, {**sources, **new}, by_mode)
