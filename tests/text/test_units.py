@@ -348,5 +348,5 @@ def test_zero_and_the_smallest_numbers_are_taken(text):
 
 
 def test_a_text_has_no_number():
-    with pytest.raises(LandingError, match="vehicle.body_points is a text and has no number"):
+    with pytest.raises(LandingError, match=r"vehicle\.body_points is a text and has no number"):
         to_si(PARAMETER_QUANTITIES["vehicle.body_points"], "0 1 2")
