@@ -120,6 +120,21 @@ class History:
             float(values[low]), float(self.time[low]), float(values[high]), float(self.time[high])
         )
 
+    def turned_true(
+        self, _name: str, _after: float, _before: float
+    ) -> tuple[float, Mapping[str, float]] | None:
+        """When a boolean column turns true, and all outputs then.
+
+        Args:
+            _name: The column.
+            _after: A time at which it is false [s].
+            _before: A later time at which it is true [s].
+
+        Returns:
+            The time [s] and the outputs by name; None where no more than the samples is known.
+        """
+        return None
+
     def until(self, samples: int, extremes: Mapping[str, Extreme] | None = None) -> History:
         """The landing until the last of so many `samples`.
 

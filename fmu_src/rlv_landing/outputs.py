@@ -43,12 +43,18 @@ class Extreme(NamedTuple):
 
     Within 0.1 % of the value, or 0.01 % of what the output has gone through where that is more,
     whatever the samples and communication steps.
+
+    Attributes:
+        minimum: The least value, in the output's unit.
+        minimum_time: When it was first reached [s].
+        maximum: The greatest value, in the output's unit.
+        maximum_time: When it was first reached [s].
     """
 
-    minimum: float  # in the output's unit
-    minimum_time: float  # [s]
-    maximum: float  # in the output's unit
-    maximum_time: float  # [s]
+    minimum: float
+    minimum_time: float
+    maximum: float
+    maximum_time: float
 
 
 def by_name(

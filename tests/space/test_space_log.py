@@ -67,6 +67,9 @@ def test_it_is_shown_and_exported(recorded: Path, command, tmp_path: Path) -> No
     assert shown.code == 0
     assert "/landing/leg_5/contact" in shown.out
     assert "  5   " in shown.out
+    film = str(tmp_path / "landing.gif")
+    drawn = command("animate", str(recorded), film, "--fps", "10", "--view", "3d", "--end", "0.1")
+    assert (drawn.code, drawn.err) == (0, "")
     file, picture = tmp_path / "landing.csv", tmp_path / "landing.png"
     exported = command("log", "export", str(recorded), str(file), "--plot", str(picture))
     assert exported.code == 0, exported.err

@@ -21,8 +21,7 @@ STIFFNESS, DAMPING, STROKE = 2e5, 1500.0, 0.02
 def test_a_stroke_that_turns_between_samples_has_the_work_of_its_turn(rate, offset):
     """Force k s + c s' over stroke a sin(w t): k a^2/2 + pi c w a^2/4 up to the top.
 
-    Back to stroke 0 the spring has given all back, and pi c w a^2/2 is lost. The stroke then goes on
-    to a stop that holds it.
+    Back at stroke 0 the spring has given all back, and pi c w a^2/2 is lost.
     """
     time = (np.arange(round(3000 * pi / rate) // 2) + offset) * MS
     time = np.concatenate([[0.0], time[time > 0.0]])

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..history import History
-from ..quantities import LEGS, groups_of
-from .plots import MAIN_FORCE, MAIN_STROKE
+from ..touchdown import leg_directions
+from .plots import MAIN_FORCE, MAIN_STROKE, legs_of_a_curve
 from .style import COLOURS, FAINT, FILM_GROUND, GROUND, INK
 from .wireframe import ground_height, wireframe
 
@@ -45,8 +45,9 @@ class MovingFigure:
         self._history, self._rows = history, rows
         self._lines = wireframe(history, parameters, rows)
         self._solid = view == "3d"
-        groups = groups_of(parameters.drop.mode)
-        self._colours = {leg: colour for g, colour in zip(groups, COLOURS) for leg, _ in g.legs}
+        self._legs = sorted(leg_directions(parameters))
+        groups = legs_of_a_curve(parameters.drop.mode, self._legs)
+        self._colours = {leg: colour for legs, colour in zip(groups, COLOURS) for leg in legs}
         grid = self.figure.add_gridspec(len(CURVES), 2, width_ratios=(1.0, 1.15))
         # Any: matplotlib's types do not distinguish axes in space
         self._vehicle: Any = self.figure.add_subplot(
@@ -57,12 +58,16 @@ class MovingFigure:
             for part in self._lines
         }
         self._set_up_vehicle(parameters, title)
-        first = [min(leg for leg, _ in g.legs) for g in groups]
+        first = [min(legs) for legs in groups]
         axes = [self.figure.add_subplot(grid[i, 1]) for i in range(len(CURVES))]
         self._curves = [self._curve(ax, first, *curve) for ax, curve in zip(axes, CURVES)]
         # above the curves, so that it covers none
         axes[0].legend(
-            loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, frameon=False, fontsize=8
+            loc="lower right",
+            bbox_to_anchor=(1.0, 1.0),
+            ncols=len(groups),
+            frameon=False,
+            fontsize=8,
         )
         axes[-1].set_xlabel("time [s]")
         self.show(0)
@@ -92,7 +97,7 @@ class MovingFigure:
         if part == "feet":
             style = {"marker": "o", "markersize": 5, "linestyle": "", "color": INK}
         else:
-            colour = self._colours[LEGS[i]] if part in ("main", "auxiliary") else INK
+            colour = self._colours[self._legs[i]] if part in ("main", "auxiliary") else INK
             visible = self._solid or part != "hull"
             style = {
                 "linewidth": WIDTHS[part],
@@ -117,7 +122,7 @@ class MovingFigure:
             ax.plot_surface(
                 x,
                 y,
-                ground_height(parameters, x),
+                ground_height(parameters, x, -y),
                 color=FILM_GROUND,
                 alpha=0.6,
                 shade=False,
@@ -177,5 +182,5 @@ class MovingFigure:
 
     def _legs_like(self, leg: int) -> str:
         return "leg " + "/".join(
-            str(other) for other in LEGS if self._colours[other] == self._colours[leg]
+            str(other) for other in self._legs if self._colours[other] == self._colours[leg]
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -153,7 +154,10 @@ def inline_svg(
 
 def drawn_legs(history: History) -> list[tuple[int, ...]]:
     """The legs that share a curve: mirror images, by touchdown; in space each alone."""
-    mode = history.parameters.drop.mode if history.parameters is not None else None
-    if mode is None or mode == SPACE:
-        return [(leg,) for leg in history.legs]
-    return touchdown_groups(mode)
+    mode = history.parameters.drop.mode if history.parameters is not None else SPACE
+    return legs_of_a_curve(mode, history.legs)
+
+
+def legs_of_a_curve(mode: str, legs: Sequence[int]) -> list[tuple[int, ...]]:
+    """The legs that share a curve in a landing of the `mode`, of all `legs`."""
+    return [(leg,) for leg in legs] if mode == SPACE else touchdown_groups(mode)

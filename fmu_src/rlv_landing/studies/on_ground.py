@@ -42,12 +42,12 @@ def slip(history: History, leg: int) -> Array:
     contact = first_contact(history, leg)
     if contact is None:
         return np.empty(0)
-    place = np.stack([history[f"leg[{leg}].footpad.{axis}"] for axis in "xyz"])
-    ways = (
-        values[contact.sample :] - contact.value(history.time, values)
-        for values in _seen_from_ground(history, place)
-    )
-    distance: Array = np.sqrt(sum(way**2 for way in ways))
+    names = [f"leg[{leg}].footpad.{axis}" for axis in "xyz"]
+    place = np.stack([history[name][contact.sample :] for name in names])
+    first = np.array([[contact.value(history, name)] for name in names])
+    way = _seen_from_ground(history, place, history.time[contact.sample :])
+    way = way - _seen_from_ground(history, first, np.array([contact.time]))
+    distance: Array = np.sqrt((way**2).sum(axis=0))
     return distance
 
 
@@ -57,8 +57,8 @@ def joint_clearance(history: History) -> float:
     radius, depth = p.auxiliary_strut.joint_radius, p.auxiliary_strut.joint_depth
     body = np.stack([history["body.x"], history["body.y"], np.zeros(len(history))])
     if p.drop.mode != SPACE:
-        height = _seen_from_ground(history, body)[1]
-        turned = history["body.pitch"] - _slope(history)
+        height = _seen_from_ground(history, body, history.time)[1]
+        turned = history["body.pitch"] - _slope(history, history.time)
         height, sine = height - depth * np.cos(turned), np.sin(turned)
         heights = [height - radius * c * sine for _, c in _firsts(p.drop.mode)]
         return min(_least(history.time, h) for h in heights)
@@ -75,7 +75,7 @@ def joint_clearance(history: History) -> float:
             radius * s - p.vehicle.cg_offset_z,
         ])  # fmt: skip
         place = body + np.tensordot(joint, turn, axes=(0, 1))
-        found.append(_least(history.time, normal @ _seen_from_ground(history, place)))
+        found.append(_least(history.time, normal @ _seen_from_ground(history, place, history.time)))
     return min(found)
 
 
@@ -127,7 +127,7 @@ def towards(history: History) -> str:
     if p.drop.mode == SPACE:
         edge = crossed_edge(history)
         return edge[0] if edge is not None else f"{lean(history) * 180.0 / pi:.0f} deg"
-    slope = _slope(history)
+    slope = _slope(history, history.time)
     last = slope if isinstance(slope, float) else float(slope[-1])
     return "+x" if history["body.pitch"][-1] > last else "-x"
 
@@ -149,12 +149,12 @@ def _parameters(history: History) -> Parameters:
     return history.parameters
 
 
-def _slope(history: History) -> Array | float:
-    """Slope of the ground of a symmetric landing, with its tilt [rad], (n,)."""
+def _slope(history: History, time: Array) -> Array | float:
+    """Slope of the ground of a symmetric landing, with its tilt [rad], (n,), at times [s]."""
     slope = _parameters(history).ground.slope
     if history.ground == AT_REST or not isinstance(history.ground, GroundMotion):
         return slope
-    return slope + history.ground.at(history.time - history.time[0])[1]
+    return slope + history.ground.at(time - history.time[0])[1]
 
 
 def _normal(p: Parameters) -> tuple[float, float, float]:
@@ -164,13 +164,13 @@ def _normal(p: Parameters) -> tuple[float, float, float]:
     return sine * np.cos(g.slope_direction), cosine, sine * np.sin(g.slope_direction)
 
 
-def _seen_from_ground(history: History, place: Array) -> Array:
-    """Inertial places [m], (3, n), in the axes of the ground as it moves.
+def _seen_from_ground(history: History, place: Array, time: Array) -> Array:
+    """Inertial places [m], (3, n), at times [s], (n,), in the axes of the ground as it moves.
 
     In a symmetric landing the second axis is the ground's normal. In space they are the deck's, to
     which the ground may be inclined.
     """
-    ground, t = history.ground, history.time - history.time[0]
+    ground, t = history.ground, time - history.time[0]
     if isinstance(ground, DeckMotion):
         deck = ground.at(t)
         moved = place - np.stack(np.broadcast_arrays(deck.surge, deck.heave, deck.sway, t)[:3])
@@ -180,7 +180,7 @@ def _seen_from_ground(history: History, place: Array) -> Array:
     x, y, z = place
     if _parameters(history).drop.mode == SPACE:
         return place
-    slope = _slope(history)
+    slope = _slope(history, time)
     if ground != AT_REST:
         y = y - ground.at(t)[0]
     return np.stack([
@@ -213,7 +213,10 @@ def _turns(w: Array, x: Array, y: Array, z: Array) -> Array:
 def _least(time: Array, values: Array) -> float:
     """The least of a smooth quantity, by the parabola through the three lowest at even times."""
     i = int(values.argmin())
-    if not 0 < i < len(values) - 1 or time[i + 1] - time[i] > 1.5 * (time[i] - time[i - 1]):
+    if not 0 < i < len(values) - 1:
+        return float(values[i])
+    steps = sorted((float(time[i + 1] - time[i]), float(time[i] - time[i - 1])))
+    if steps[1] > 1.001 * steps[0]:
         return float(values[i])
     before, least, after = values[i - 1 : i + 2].tolist()
     bend = before - 2.0 * least + after

@@ -60,7 +60,7 @@ class Outcome:
     `leg` is the first that bottomed out, whatever the name, else None. Of legs that are mirror
     images the lower number stands for both. The motion after toppling is meaningless and counts in
     the stability margins only. Times are those of samples; for a `ReplayedHistory` those of
-    toppling and bottoming out are exact.
+    toppling, bottoming out and settling are exact.
 
     `margins` [m]: `stability_min` and `stability_end`, the smallest and the last
     `status.stability_margin`; `stroke_left` to the stop; `slid`, the farthest that a footpad lies
@@ -143,7 +143,7 @@ def judged(
     elif first_slide < inf:
         name, time = "slid", first_slide
     elif phase[-1] == SETTLED:
-        name, time = "settled", float(history.time[_first_of_last_period(phase, SETTLED)])
+        name, time = "settled", _start_of_last_period(history, SETTLED)
     elif isinstance(history, ReplayedHistory) and history.stands_from is not None:
         name, time = "standing", float(history.time[history.stands_from])
     else:
@@ -177,15 +177,23 @@ def _stroke(leg: int) -> str:
 def _until_toppled(history: History) -> tuple[float, History]:
     """Time at which a landing toppled [s], and the landing until the sample at that time."""
     first = _first_of_last_period(history["status.phase"], TOPPLED)
+    if not isinstance(history, ReplayedHistory) or first == 0:
+        return float(history.time[first]), history.until(first + 1)
+    time = _start_of_last_period(history, TOPPLED)
+    return time, history.ending_at(time)
+
+
+def _start_of_last_period(history: History, which: float) -> float:
+    """The time [s] from which on the phase is `which` until the end; exact where it can be."""
+    first = _first_of_last_period(history["status.phase"], which)
     time = float(history.time[first])
     if not isinstance(history, ReplayedHistory) or first == 0:
-        return time, history.until(first + 1)
+        return time
 
-    def over(landing: Landing) -> bool:
-        return landing.get("status.phase") == TOPPLED
+    def there(landing: Landing) -> bool:
+        return landing.get("status.phase") == which
 
-    time = history.first_time(over, float(history.time[first - 1]), time)
-    return time, history.until(first + 1, history.extremes_at(time))
+    return history.first_time(there, float(history.time[first - 1]), time)
 
 
 def _first_beyond(time: Array, slip: Array, slide: float) -> float:

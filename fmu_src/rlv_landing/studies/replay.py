@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from array import array
 from bisect import bisect_right
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+
+import numpy as np
 
 from ..history import History
 from ..landing import Landing
@@ -48,15 +51,44 @@ class ReplayedHistory(History):
             extremes = self.extremes_at(float(self.time[samples - 1]))
         return ReplayedHistory(super().until(samples, extremes), self._landing, self._states)
 
+    def ending_at(self, t: float) -> ReplayedHistory:
+        """The landing until time `t` [s], which replaces the first sample from then on."""
+        last = int(np.searchsorted(self.time, t))
+        with self._landing_at(t) as landing:
+            values, extremes = landing.outputs(), landing.extremes()
+        part = History(
+            np.append(self.time[:last], t),
+            self.names,
+            np.vstack([self.data[:last], [values[name] for name in self.names]]),
+            self.parameters,
+            self.ground,
+            extremes,
+        )
+        return ReplayedHistory(part, self._landing, self._states)
+
     def extremes_at(self, t: float) -> Mapping[str, Extreme]:
         """The extremes from the start to time `t` [s]."""
+        with self._landing_at(t) as landing:
+            return landing.extremes()
+
+    @contextmanager
+    def _landing_at(self, t: float) -> Iterator[Landing]:
+        """The landing at time `t` [s]; it is at the end again afterwards."""
         landing, end = self._landing, self._landing.state()
         try:
             landing.restore(self._states[self._before(t)][1], checked=False)
             landing.advance_to(max(t, landing.time))
-            return landing.extremes()
+            yield landing
         finally:
             landing.restore(end, checked=False)
+
+    def turned_true(
+        self, name: str, after: float, before: float
+    ) -> tuple[float, Mapping[str, float]]:
+        """As `History.turned_true`; it is always known."""
+        time = self.first_time(lambda landing: landing.get(name) > 0.0, after, before)
+        with self._landing_at(time) as landing:
+            return time, landing.outputs()
 
     def first_time(self, holds: Holds, after: float, before: float) -> float:
         """The first time [s] at which something `holds` that does not end again.

@@ -5,6 +5,7 @@ Derived: the paper's curves do not show it.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,11 @@ from ..history import History
 Array = NDArray[np.float64]
 # samples of the flight before the contact by which what is smooth goes on to it
 BEFORE = 3
+# a contact before so many samples is looked for in the landing itself, where that can be repeated:
+# some microseconds are much of its time then
+EARLY = 10
+# a footpad that is no further above the ground at the start touches it [m]
+TOUCHING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -22,22 +28,24 @@ class FirstContact:
     """The first contact of a leg's footpad.
 
     Attributes:
-        sample: The first sample at which the ground pushes on the footpad.
+        sample: The first sample from the contact on. The ground pushes on the footpad there, unless
+            it left the ground again between two samples.
         time: Time of the contact [s]: the penetration of the samples before, which is that of a
-            free flight, goes on to 0. It is that of `sample` where there are none before it or no
-            penetration is known.
+            free flight, goes on to 0. Of a contact within the first samples it is exact where the
+            landing can be repeated. It is that of `sample`, or of the integrator's first step in
+            contact, where neither is known.
+        outputs: All outputs at that time, where it is exact; else None.
     """
 
     sample: int
     time: float
+    outputs: Mapping[str, float] | None = None
 
-    def value(self, time: Array, values: Array) -> float:
-        """What is smooth until the contact, at the contact.
-
-        Args:
-            time: Times of all samples [s], (n,).
-            values: Its values at these, (n,).
-        """
+    def value(self, history: History, name: str) -> float:
+        """An output that is smooth until the contact, at the contact."""
+        if self.outputs is not None:
+            return self.outputs[name]
+        time, values = history.time, history[name]
         if not self.sample or self.time == time[self.sample]:
             return float(values[self.sample])
         start, curve = _curve(time, values, self.sample)
@@ -46,19 +54,39 @@ class FirstContact:
 
 def first_contact(history: History, leg: int) -> FirstContact | None:
     """The first contact of the footpad of `leg`; None where the ground never pushes on it."""
-    pushed = history[f"leg[{leg}].contact.force_y"] > 0.0
-    sample = int(np.argmax(pushed))
-    if not pushed[sample]:
+    found = _first_known(history, leg)
+    if found is None:
         return None
-    time = float(history.time[sample])
+    sample, last = found
     name = f"leg[{leg}].contact.penetration"
     if not sample or name not in history:
-        return FirstContact(sample, time)
-    start, curve = _curve(history.time, history[name], sample)
-    before = float(history.time[sample - 1])
+        return FirstContact(sample, last)
+    depth, before = history[name], float(history.time[sample - 1])
+    if sample == 1 and depth[0] > -TOUCHING:
+        return FirstContact(sample, before)
+    if sample < EARLY:
+        exact = history.turned_true(f"leg[{leg}].contact.active", before, last)
+        if exact is not None:
+            return FirstContact(sample, *exact)
+    start, curve = _curve(history.time, depth, sample)
     roots = start + np.roots(curve)
-    inside = [t for t in roots[np.isreal(roots)].real if before <= t <= time]
-    return FirstContact(sample, float(min(inside, default=time)))
+    inside = [t for t in roots[np.isreal(roots)].real if before <= t <= last]
+    return FirstContact(sample, float(min(inside, default=last)))
+
+
+def _first_known(history: History, leg: int) -> tuple[int, float] | None:
+    """The first sample from the contact on, and a time [s] until then at which it is known."""
+    pushed = history[f"leg[{leg}].contact.force_y"] > 0.0
+    sample = int(np.argmax(pushed))
+    touches, name = bool(pushed[sample]), f"leg[{leg}].contact.active"
+    time = float(history.time[sample])
+    if history.extremes is not None and name in history.extremes:
+        active = history.extremes[name]
+        until = active.maximum_time
+        known = active.maximum > 0.0 and history.time[0] <= until <= history.time[-1]
+        if known and not (touches and time <= until):
+            return int(np.searchsorted(history.time, until)), until
+    return (sample, time) if touches else None
 
 
 def _curve(time: Array, values: Array, sample: int) -> tuple[float, Array]:

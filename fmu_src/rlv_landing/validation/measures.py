@@ -137,6 +137,13 @@ def damper_work(
     Raises:
         LandingError: There is no sample from `start` on.
     """
+    return _work_along(*_curves_from(start, time, force, stroke, rate, work))
+
+
+def _curves_from(
+    start: float, time: Array, force: Array, stroke: Array, rate: Array | None, work: Array | None
+) -> tuple[StrutCurves, float]:
+    """The curves from the first sample from `start` [s] on, and the work until that sample [J]."""
     first = int(np.searchsorted(time, start))
     if first == len(time):
         raise LandingError(
@@ -154,12 +161,12 @@ def damper_work(
         None if rate is None else rate[first:],
         done[first:],
     )
-    return _work_along(curves)
+    return curves, float(done[first])
 
 
-def _work_along(curves: StrutCurves) -> DamperWork:
-    """The first compression and rebound after the first sample."""
-    stroke, start = curves.stroke, float(curves.work[0])
+def _work_along(curves: StrutCurves, start: float) -> DamperWork:
+    """The first compression and rebound after the first sample; `start` is the work [J] before."""
+    stroke = curves.stroke
     found, peak = first_stroke(stroke), int(np.argmax(stroke))
     result = DamperWork(
         found.state, float(curves.time[0]), float(stroke[peak]), float(curves.time[peak])
@@ -214,8 +221,10 @@ def leg_work(history: History, legs: Iterable[int] | None = None) -> dict[int, D
             name = f"leg[{leg}].main_strut"
             rate, done = (_column(history, f"{name}.{what}") for what in ("stroke_rate", "work"))
             force, stroke = history[f"{name}.force"], history[f"{name}.stroke"]
-            work = damper_work(history.time, force, stroke, last, rate, done)
-            work = replace(work, start=contact.time)
+            curves, begun = _curves_from(last, history.time, force, stroke, rate, done)
+            if done is not None:
+                begun = contact.value(history, f"{name}.work")
+            work = replace(_work_along(curves, begun), start=contact.time)
             found[leg] = work if history.extremes is None else _with_peaks(work, history, leg)
     return found
 

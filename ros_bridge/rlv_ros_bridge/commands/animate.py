@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from pathlib import Path
 from typing import Any
@@ -94,7 +95,9 @@ def animate(files: tuple[Path, ...], *, force: bool, **options: Any) -> None:
     film = Film(**options)
     cut = False
     if len(files) == 2:
-        shown = (film.start or 0.0, film.end) if film.end is not None else None
+        shown = None
+        if film.start is not None or film.end is not None:
+            shown = film.start or 0.0, math.inf if film.end is None else film.end
         history, parameters, cut = read_landing(files[0], vehicle, shown)
         title = shown_name(files[0])
     else:

@@ -79,7 +79,8 @@ def read_landing(
     Args:
         path: the log.
         vehicle: for a log that does not carry its parameters.
-        shown: the first and the last time that is shown [s]; None: those of the log.
+        shown: the first and the last time that is shown [s], infinite for the log's last; None:
+            those of the log.
 
     Raises:
         LandingError: no such log, no landing in it, or the vehicle is given by both or by neither.
