@@ -301,12 +301,11 @@ def test_a_dry_run_prints_number_first_rows_and_time_and_makes_nothing(tmp_path,
 
 @pytest.mark.parametrize("study", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
 def test_the_examples_are_studies_whose_first_landing_works(command, study):
-    name = "sensitivity" if study.stem == "sensitivity" else "sweep"
+    name = study.stem if study.stem in ("sensitivity", "montecarlo") else "sweep"
     printed = json.loads(command(name, str(study), "--dry-run", "--json").out)
     assert printed["error"] is None
-    assert (
-        printed["landings"] == {"dispersion": 1000, "states": 24, "sensitivity": 1024}[study.stem]
-    )
+    landings = {"dispersion": 1000, "states": 24, "sensitivity": 1024, "montecarlo": 2000}
+    assert printed["landings"] == landings[study.stem]
 
 
 def test_the_study_that_the_documentation_shows_is_one(tmp_path):
