@@ -15,6 +15,9 @@ autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
 napoleon_google_docstring = True
 napoleon_use_ivar = True
+# names of code in docstrings stand between single backticks
+default_role = "literal"
+smartquotes_action = "D"
 highlight_language = "text"
 html_theme = "furo"
 html_title = f"rlv-landing {__version__}"

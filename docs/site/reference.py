@@ -76,7 +76,7 @@ def _topics() -> str:
     text = (
         "# Topics\n\nBelow the node's namespace, `landing` by default; a name with a slash stands "
     )
-    text += "by itself. [ros.md](../ros.md) says what they are for.\n\n"
+    text += "by itself. [The ROS 2 node](../ros.md) says what they are for.\n\n"
     rows = [
         (f"`{t.name}`", t.type_name, f"every {t.period:g} s" if t.period else "each step")
         for t in (*table.topics.sampled, CLOCK)
@@ -141,13 +141,15 @@ def _command_line() -> str:
 
 def _python() -> str:
     text = (
-        "# Python\n\nThe public names of `rlv_landing`, all typed. [python.md](../python.md) shows "
+        "# Python\n\nThe public names of `rlv_landing`, all typed. [In Python](../python.md) shows "
     )
     text += "how they are used.\n\n```{eval-rst}\n"
     for name in sorted(rlv_landing.__all__):
         value = getattr(rlv_landing, name)
         if inspect.isclass(value):
-            text += f".. autoclass:: rlv_landing.{name}\n   :members:\n   :show-inheritance:\n\n"
+            # what a tuple has is said by its own text
+            members = "" if issubclass(value, tuple) else "   :members:\n"
+            text += f".. autoclass:: rlv_landing.{name}\n{members}\n"
         elif inspect.isfunction(value):
             text += f".. autofunction:: rlv_landing.{name}\n\n"
     return text + "```\n"

@@ -190,6 +190,10 @@ class Landing:
         self._solver.inputs_at(self._time)
         return dict(zip(self.interface.input_names, view(self._solver.u_now)))
 
+    def ground_places(self) -> dict[str, float]:
+        """The ground's positions by name as they are now, on their ways to those that were set."""
+        return self._inputs.places(self._time)
+
     def step(self, dt: float) -> None:
         """Go on by `dt` [s].
 
@@ -280,13 +284,16 @@ class Landing:
             raise unknown("output", name, names)
         return self.values()[names.index(name)]
 
-    def extremes(self) -> dict[str, Extreme]:
-        """The extremes of all outputs from the start to the present time, by name.
+    def extremes(self, names: Sequence[str] | None = None) -> dict[str, Extreme]:
+        """The extremes of outputs from the start to the present time, by name.
 
         They are kept at the integrator's steps, and looked for between these where an output turns:
         they depend neither on samples nor on communication steps.
+
+        Args:
+            names: The outputs [all].
         """
-        return self._reader.extremes(self._time)
+        return self._reader.extremes(self._time, names)
 
     def state(self) -> array[float]:
         """The whole state, the integrator's included.
@@ -296,14 +303,18 @@ class Landing:
         ways = self._inputs.state()
         return state_of(self._solver, self._time, ways)
 
-    def restore(self, state: array[float]) -> None:
+    def restore(self, state: array[float], *, checked: bool = True) -> None:
         """Restore a state that `state()` of a landing with the same parameters gave.
+
+        Args:
+            state: The state.
+            checked: Whether its numbers are checked; those that this landing itself gave need not.
 
         Raises:
             LandingError: Its length is not that of this landing's state, a number in it is not
                 finite, or no landing has such numbers; nothing is changed then.
         """
-        header, ways = load_state(self._solver, self.interface.positions, state)
+        header, ways = load_state(self._solver, self.interface.positions, state, checked=checked)
         self._time = header.time
         self._inputs.restore(ways)
         self._reader.forget()

@@ -43,12 +43,18 @@ class Extreme(NamedTuple):
 
     Within 0.1 % of the value, or 0.01 % of what the output has gone through where that is more,
     whatever the samples and communication steps.
+
+    Attributes:
+        minimum: The least value, in the output's unit.
+        minimum_time: When it was first reached [s].
+        maximum: The greatest value, in the output's unit.
+        maximum_time: When it was first reached [s].
     """
 
-    minimum: float  # in the output's unit
-    minimum_time: float  # [s]
-    maximum: float  # in the output's unit
-    maximum_time: float  # [s]
+    minimum: float
+    minimum_time: float
+    maximum: float
+    maximum_time: float
 
 
 def by_name(
@@ -110,11 +116,19 @@ class OutputReader:
             values[i] = -values[i]
         return values
 
-    def extremes(self, time: float) -> dict[str, Extreme]:
-        """The extremes from the start to `time` [s], inside the last internal step, by name."""
+    def extremes(self, time: float, names: Sequence[str] | None = None) -> dict[str, Extreme]:
+        """The extremes from the start to `time` [s], inside the last internal step, by name.
+
+        Args:
+            time: The time [s].
+            names: The outputs [all].
+        """
         found = self._blocks()
         self._solver.extremes(time, found)
-        return by_name(found, self._names, self._order)
+        if names is None:
+            return by_name(found, self._names, self._order)
+        places = [self._names.index(name) for name in names]
+        return by_name(found, names, [self._order[i] for i in places])
 
     def extremes_of_span(self, time: float) -> dict[str, Extreme]:
         """The extremes from the time of `Solver.open_span` to `time` [s], by name."""

@@ -88,3 +88,12 @@ def test_fenced_commands_are_in_tutorials_which_run_them():
     """Elsewhere commands are indented, and their words are checked."""
     assert [name_of(p) for p in PAGES if any(b.language == "sh" for b in blocks(p))] == []
     assert all(any(b.language == "sh" for b in blocks(p)) for p in TUTORIALS)
+
+
+@pytest.mark.parametrize("page", [*PAGES, *TUTORIALS], ids=name_of)
+def test_no_page_claims_that_an_index_has_the_package(page):
+    """`pip install "rlv-landing[fmu]"` adds an extra to what is there: docs/install.md."""
+    text = page.read_text(encoding="utf-8")
+    named = re.findall(r"(?:pip|uv|pipx) install [^\n`]*?\"?\brlv-landing\b(\[?)", text)
+    assert set(named) <= {"["}
+    assert "pypi.org/project/rlv" not in text.lower()

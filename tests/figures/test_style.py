@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from five_legs import five_legs
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -43,9 +44,10 @@ def test_pages_define_every_variable_that_they_use():
 
 
 @pytest.mark.parametrize("view", ["side", "3d"])
-@pytest.mark.parametrize("mode", ["2-2", "1-2-1"])
+@pytest.mark.parametrize("mode", ["2-2", "1-2-1", "space"])
 def test_no_label_of_a_film_covers_another(view, mode):
-    history = Landing(load_preset("yue2022-figures"), mode).run(0.3, 5e-3)
+    parameters = five_legs() if mode == "space" else load_preset("yue2022-figures").for_mode(mode)
+    history = Landing(parameters).run(0.3, 5e-3)
     rows = np.arange(0, len(history), 20)
     film = MovingFigure(history, history.parameters, rows, f"{mode} landing", view)
     canvas = FigureCanvasAgg(film.figure)

@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -15,9 +16,15 @@ COMMANDS = """\
 new "my hopper" --like hopper
 draw "my hopper/vehicle.toml" "my hopper/vehicle.svg"
 simulate --parameters "my hopper/vehicle.toml" --output landing.csv
+report "my hopper/vehicle.toml" --no-audit -o report.html
 examples copy copied
 fmu info "{fmu}"
 fmu simulate "{fmu}" --until 0.2
+"""
+# where ROS 2 is
+NODE_COMMANDS = """\
+node --fmu "{fmu}" --record "my log" --stop-time 0.2 --realtime-factor 0 --ros-args --log-level warn
+log info "my log"
 """
 
 
@@ -53,13 +60,17 @@ def run(site: Path, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[s
 
 
 def test_the_commands_run_from_an_empty_folder(site, tmp_path, fmu):
-    (tmp_path / "lines").write_text(COMMANDS.format(fmu=fmu))
+    with_ros = find_spec("rclpy") is not None
+    commands = COMMANDS + NODE_COMMANDS if with_ros else COMMANDS
+    (tmp_path / "lines").write_text(commands.format(fmu=fmu))
     folder = tmp_path / "leerer Ordner ü"
     folder.mkdir()
     script = Path(__file__).with_name("newcomer.py")
     done = run(site, str(script), str(tmp_path / "lines"), cwd=folder)
     assert done.returncode == 0, done.stdout + done.stderr
     assert (done.stderr, (folder / "landing.csv").is_file()) == ("", True)
+    assert not with_ros or "finished: 201 samples" in done.stdout
+    assert (folder / "my log" / "metadata.yaml").is_file() == with_ros
     copied = folder / "copied"
     assert {p.name for p in copied.iterdir()} >= {"envelope.toml", "ship_deck", "ros2"}
     assert (copied / "ros2" / "launch" / "landing.launch.py").is_file()

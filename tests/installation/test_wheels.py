@@ -26,6 +26,8 @@ new mine --like hopper
 draw mine/vehicle.toml mine/vehicle.svg
 simulate --parameters mine/vehicle.toml --plot landing.png --output landing.csv
 sweep mine/study.toml
+report mine/vehicle.toml -o report.html
+report mine/vehicle.toml --no-audit -o report.pdf
 envelope mine/envelope.toml --plot envelope.png
 fmu build --parameters mine/vehicle.toml --name MyHopper
 fmu info MyHopper.fmu

@@ -22,11 +22,12 @@ from rlv_landing.history import History
 from rlv_landing.summary import summarise
 from rlv_landing.tables.landing import comparison_table
 from rlv_landing.validation.measures import leg_work
-from rlv_ros_bridge.logs import history as history_module
-from rlv_ros_bridge.logs.history import HistoryParts, log_history, with_parts
-from rlv_ros_bridge.logs.instants import RowChoice
+from rlv_ros_bridge.logs.history import log_history
 from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.logs.rows import parts as parts_module
+from rlv_ros_bridge.logs.rows.instants import RowChoice
+from rlv_ros_bridge.logs.rows.parts import HistoryParts, with_parts
 from rlv_ros_bridge.messages.qos import TELEMETRY
 
 START = 1_790_000_000_000_000_000
@@ -275,7 +276,7 @@ def test_a_log_read_in_parts_of_any_size_is_the_same(
     one_log: Path, monkeypatch, tmp_path: Path, size: int
 ) -> None:
     whole = log_history(one_log)
-    monkeypatch.setattr(history_module, "ROWS_AT_ONCE", size)
+    monkeypatch.setattr(parts_module, "ROWS_AT_ONCE", size)
     found = log_history(one_log)
     same(found, whole)
     assert found.extremes == whole.extremes
@@ -304,5 +305,5 @@ def test_a_recording_whose_topics_follow_each_other_is_read_all_the_same(
     for message in sorted(messages, key=lambda m: m.topic):
         recorder.write(message.topic, message.log_time, message.data)
     recorder.close()
-    monkeypatch.setattr(history_module, "ROWS_AT_ONCE", 100)
+    monkeypatch.setattr(parts_module, "ROWS_AT_ONCE", 100)
     same(log_history(tmp_path / "sorted"), log_history(one_log))

@@ -13,17 +13,12 @@ from log_tools import messages_of, small_log
 from rlv_landing.errors import LandingError
 from rlv_landing.summary import summarise
 from rlv_landing.tables.landing import sampling_note
-from rlv_ros_bridge.logs.history import (
-    HistoryParts,
-    drawn_history,
-    log_history,
-    measured_history,
-    with_parts,
-)
+from rlv_ros_bridge.logs.history import drawn_history, log_history, measured_history
 from rlv_ros_bridge.logs.indexed import holds, last_time, messages_between
-from rlv_ros_bridge.logs.instants import RowChoice
 from rlv_ros_bridge.logs.mcap_files.summary import read_summary
 from rlv_ros_bridge.logs.reader import LogReader
+from rlv_ros_bridge.logs.rows.instants import RowChoice
+from rlv_ros_bridge.logs.rows.parts import HistoryParts, with_parts
 from rlv_ros_bridge.replay.selection import ReplayOptions, Selection
 
 CHUNKS, PER_CHUNK = 6, 12
@@ -152,6 +147,9 @@ def test_what_a_film_shows_is_read_and_little_more(long_log: Path) -> None:
     rows = (whole.time >= 99.0) & (whole.time <= 103.0)
     assert np.array_equal(few.time, whole.time[rows])
     assert np.array_equal(few.data, whole.data[rows])
+    # Up to the log's end.
+    few, _ = drawn_history(LogReader(long_log), shown=(198.0, math.inf))
+    assert np.array_equal(few.time, whole.time[whole.time >= 197.0])
     # A span that the log does not have is refused with all that it has.
     all_rows, _ = drawn_history(LogReader(long_log), shown=(199.0, 201.0))
     assert np.array_equal(all_rows.time, whole.time)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from geometry_msgs.msg import PoseStamped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from rclpy.serialization import deserialize_message, serialize_message
@@ -23,7 +24,7 @@ from rlv_ros_bridge.messages.fields import FIELDS, Vehicle
 from rlv_ros_bridge.messages.markers import Wireframe
 from rlv_ros_bridge.messages.samples import SampleMessages
 from rlv_ros_bridge.messages.tables import expected_numbers
-from rlv_ros_bridge.messages.topics import CLOCK, JOINTS, ODOM, SAMPLED, STRUTS
+from rlv_ros_bridge.messages.topics import CLOCK, JOINTS, ODOM, POSE, SAMPLED, STRUTS
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 # The paper's x forward, y up, z right, each in ROS's x forward, y left, z up.
@@ -150,6 +151,16 @@ def test_struts_of_another_vehicle_are_not_read(
     message = JointState(name=list(name), position=[0.0] * strokes)
     with pytest.raises(LandingError, match=reason):
         sample_columns({STRUTS.name: message})
+
+
+@pytest.mark.parametrize("where", ["position.y", "orientation.x", "orientation.z"])
+def test_a_landing_in_space_is_not_read_as_a_symmetric_one(where: str) -> None:
+    message = PoseStamped()
+    owner, axis = where.split(".")
+    assert sample_columns({POSE.name: message}) == {"body.x": 0.0, "body.y": 0.0}
+    setattr(getattr(message.pose, owner), axis, 1e-9)
+    with pytest.raises(LandingError, match=r"leaves its plane.*with its parameters only"):
+        sample_columns({POSE.name: message})
 
 
 def test_message_objects_are_filled_again_without_leftovers() -> None:

@@ -16,10 +16,16 @@ from std_msgs.msg import String
 
 from rlv_landing import Landing, load_preset
 from rlv_landing.parameters import PARAMETER_QUANTITIES, parameters_of
-from rlv_landing.quantities import INPUT_NAMES, OUTPUT_NAMES, PEAK_QUANTITIES, STATISTIC_QUANTITIES
+from rlv_landing.quantities import (
+    INPUT_NAMES,
+    LEGS,
+    OUTPUT_NAMES,
+    PEAK_QUANTITIES,
+    STATISTIC_QUANTITIES,
+)
 from rlv_ros_bridge.logs.history import history_of
 from rlv_ros_bridge.logs.reader import LogReader
-from rlv_ros_bridge.node.settings import SETTINGS
+from rlv_ros_bridge.node.settings import settings_of
 
 Processes = list[subprocess.Popen[str]]
 
@@ -147,7 +153,7 @@ def test_parameters_are_described_checked_and_kept_while_landing(
     managed: tuple[subprocess.Popen[str], Remote],
 ) -> None:
     node, remote = managed
-    assert remote.names() >= {*parameters_of("2-2"), *SETTINGS}
+    assert remote.names() >= {*parameters_of("2-2"), *settings_of(LEGS)}
     (mass,) = remote.describe("vehicle.mass")
     q = PARAMETER_QUANTITIES["vehicle.mass"]
     assert mass.description == f"{q.meaning} [kg]"

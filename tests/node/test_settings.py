@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rlv_landing import LandingError
-from rlv_ros_bridge.node.settings import SETTINGS, check_setting
+from rlv_ros_bridge.node.settings import SETTINGS, check_setting, settings_of
 
 
 @pytest.mark.parametrize(
@@ -43,3 +43,11 @@ def test_numbers_are_taken_from_texts_with_units(name, text, value):
 def test_texts_that_are_no_such_number_are_refused(name, text, message):
     with pytest.raises(LandingError, match=message):
         check_setting(name, text)
+
+
+@pytest.mark.parametrize("legs", [3, 4, 8])
+def test_contacts_of_the_legs_that_a_vehicle_has_can_be_thinned_out(legs):
+    names = settings_of(tuple(range(1, legs + 1)))
+    thinned = [name for name in names if name.endswith("_contact")]
+    assert thinned == [f"publish_every.leg_{leg}_contact" for leg in range(1, legs + 1)]
+    assert {"publish_every.struts", "publish_every.clock", "record"} <= set(names)

@@ -29,11 +29,12 @@ UPRIGHT = {"drop.tilt": 0.0, "drop.pitch_rate": 0.0, "drop.horizontal_velocity":
 
 
 def landed(
-    until: float, mode: str = "2-2", moment: float = 0.0, every: float = 1e-3, **values: float
+    until: float, mode: str = "2-2", moment: float = 0.0, every: float = 1e-3, **values: float | str
 ) -> History:
     named = {name.replace("__", "."): value for name, value in values.items()}
     landing = Landing(load_preset(FIGURES, mode).with_values({"drop.contact_time": 0.0, **named}))
-    landing.set_inputs({"external.moment": moment})
+    if moment:
+        landing.set_inputs({"external.moment": moment})
     return landing.run(until, every)
 
 
@@ -48,6 +49,9 @@ def landings() -> dict[str, History]:
         "moving": landed(0.3),
         "slid": landed(1.5, **ICE),
         "bottomed out": landed(0.4, **HARD),
+        "body strike": landed(
+            0.4, "space", vehicle__body_points="0 -2.12 0", drop__vertical_velocity=-2.0
+        ),
         "toppled": landed(1.5, moment=5000.0),
     }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from collections.abc import Iterable
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -153,7 +154,10 @@ def inline_svg(
 
 def drawn_legs(history: History) -> list[tuple[int, ...]]:
     """The legs that share a curve: mirror images, by touchdown; in space each alone."""
-    mode = history.parameters.drop.mode if history.parameters is not None else None
-    if mode is None or mode == SPACE:
-        return [(leg,) for leg in history.legs]
-    return touchdown_groups(mode)
+    mode = history.parameters.drop.mode if history.parameters is not None else SPACE
+    return legs_together(mode, history.legs)
+
+
+def legs_together(mode: str, legs: Iterable[int]) -> list[tuple[int, ...]]:
+    """As `drawn_legs`, of a landing in `mode` on `legs`."""
+    return [(leg,) for leg in legs] if mode == SPACE else touchdown_groups(mode)

@@ -91,7 +91,7 @@ class Parameters:
             for number, whole in [split_leg(name) or (0, "")]
             if number == leg
         }
-        return self._replaced({**own, OVERRIDES: ""}, {})
+        return self._replaced({**own, OVERRIDES: ""}, self.sources, self.by_mode)
 
     def _repr_html_(self) -> str:
         """The table that notebooks show: every value with its unit, source and meaning."""
@@ -128,17 +128,19 @@ class Parameters:
         Raises:
             LandingError: An unknown name or a bad value.
         """
-        changed = self._replaced(values, {name: _source(name, source) for name in values})
         by_mode = {
             mode: {n: v for n, v in own.items() if n not in values}
             for mode, own in self.by_mode.items()
         }
         sources = {
             key: s
-            for key, s in changed.sources.items()
+            for key, s in self.sources.items()
             if isinstance(key, str) or key[1] not in values
         }
-        return replace(changed, by_mode=by_mode, sources=sources)
+        new: dict[str | tuple[str, str], str] = {n: _source(n, source) for n in values}
+        if any(LEG_NAME.fullmatch(name) for name in values):
+            new[OVERRIDES] = "user"
+        return self._replaced(values, {**sources, **new}, by_mode)
 
     def with_mode_values(
         self, values: Mapping[str, Mapping[str, Any]], source: str | Mapping[str, str] = "user"
@@ -157,7 +159,7 @@ class Parameters:
         for mode, own in values.items():
             # a vehicle of landings in space may have what no symmetric landing has
             whole = self if mode in MODES and self.drop.mode == SPACE else self.for_mode(mode)
-            whole._replaced(own, {})
+            whole._replaced(own, whole.sources, whole.by_mode)
             by_mode.setdefault(mode, {}).update(own)
             sources.update({(mode, name): _source(name, source) for name in own})
         return replace(self, by_mode=by_mode, sources=sources)
@@ -171,10 +173,18 @@ class Parameters:
         if mode not in (*MODES, SPACE):
             raise unknown("landing mode", mode, (*MODES, SPACE))
         own = self.by_mode.get(mode, {})
+        if mode == self.drop.mode and not own:
+            return self
         sources: Sources = {name: self.source(name, mode) for name in own}
-        return self._replaced({**own, "drop.mode": mode}, sources)
+        return self._replaced({**own, "drop.mode": mode}, {**self.sources, **sources}, self.by_mode)
 
-    def _replaced(self, values: Mapping[str, Any], sources: Sources) -> Parameters:
+    def _replaced(
+        self,
+        values: Mapping[str, Any],
+        sources: Sources,
+        by_mode: Mapping[str, Mapping[str, float | str]],
+    ) -> Parameters:
+        """A copy with `values` by name, each checked, and with these sources and modes' values."""
         grouped: dict[str, dict[str, float | str]] = {}
         own = {name: value for name, value in values.items() if LEG_NAME.fullmatch(name)}
         for name, value in self._with_overrides(values, own).items():
@@ -185,7 +195,7 @@ class Parameters:
         parts: dict[str, Any] = {
             group: replace(getattr(self, group), **changed) for group, changed in grouped.items()
         }
-        return replace(self, **parts, sources={**self.sources, **sources})
+        return replace(self, **parts, by_mode=by_mode, sources=sources)
 
     def _with_overrides(
         self, values: Mapping[str, Any], own: Mapping[str, Any]

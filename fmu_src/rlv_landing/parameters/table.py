@@ -14,8 +14,10 @@ from .ground import Ground
 from .one_leg import OVERRIDES, read_overrides, split_leg, written_overrides
 from .space import NO_EFFECT_IN_A_PLANE, ONLY_IN_SPACE
 from .surroundings import (
+    AZIMUTHS,
     POINTS,
     TERRAIN,
+    read_azimuths,
     read_points,
     read_terrain,
     written_points,
@@ -175,5 +177,6 @@ def _override(name: str, text: str) -> float | str:
 FORMS: dict[str, Callable[[str], str]] = {
     OVERRIDES: lambda text: written_overrides(overrides_of(text)),
     POINTS: lambda text: written_points(read_points(text)),
+    AZIMUTHS: lambda text: " ".join(map(repr, read_azimuths(text))),
     TERRAIN: lambda text: written_terrain(read_terrain(text)) if text.strip() else "",
 }

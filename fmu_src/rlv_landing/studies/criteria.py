@@ -5,8 +5,10 @@ from __future__ import annotations
 # the landings that are lost by each criterion, which includes the severer outcomes
 CRITERIA = {
     "toppled": "the vehicle topples",
-    "bottomed out": "a damper meets its stop, or the vehicle topples",
-    "slid": "a footpad slides too far, a damper meets its stop, or the vehicle topples",
+    "body strike": "the body meets the ground, or the vehicle topples",
+    "bottomed out": "a damper meets its stop, the body the ground, or the vehicle topples",
+    "slid": "a footpad slides too far, a damper meets its stop, the body the ground, "
+    "or the vehicle topples",
     "limit": "one of the limits is passed, or the vehicle topples",
 }
 # a landing that could not be made
@@ -14,8 +16,9 @@ FAILED = "failed"
 # outcomes that are lost by each criterion; a landing that could not be made is always lost
 LOST = {
     "toppled": {"toppled", FAILED},
-    "bottomed out": {"toppled", "bottomed out", FAILED},
-    "slid": {"toppled", "bottomed out", "slid", FAILED},
+    "body strike": {"toppled", "body strike", FAILED},
+    "bottomed out": {"toppled", "body strike", "bottomed out", FAILED},
+    "slid": {"toppled", "body strike", "bottomed out", "slid", FAILED},
     "limit": {"toppled", FAILED},
 }
 

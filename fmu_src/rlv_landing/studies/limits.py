@@ -127,12 +127,17 @@ def first_limit_passed(
     if not passed:
         return None
     if isinstance(history, ReplayedHistory):
+        names = [
+            _output(name, leg)
+            for name in limits
+            for leg in ((None,) if name in OF_THE_BODY else legs)
+        ]
         time = history.first_time(
-            lambda landing: bool(_beyond(landing.extremes().__getitem__, legs, limits)),
+            lambda landing: bool(_beyond(landing.extremes(names).__getitem__, legs, limits)),
             float(history.time[0]),
             float(history.time[-1]),
         )
-        passed = _beyond(history.extremes_at(time).__getitem__, legs, limits)
+        passed = _beyond(history.extremes_at(time).__getitem__, legs, limits) or passed
         _, name, leg = max(passed, key=lambda p: p[0])
         return PassedLimit(name, leg, time, limits[name])
     timed = [
@@ -164,7 +169,9 @@ def _time_beyond(history: History, name: str, leg: int | None, limit: float) -> 
     return time_passed(history, _output(name, leg), limit, magnitude=name in EITHER_SIGN)
 
 
-def time_passed(history: History, output: str, limit: float, *, magnitude: bool = False) -> float:
+def time_passed(
+    history: History, output: str, limit: float, *, magnitude: bool = False, below: bool = False
+) -> float:
     """Time at which an output first passed a `limit` that it has passed [s].
 
     Exact for a `ReplayedHistory`, else the time of the first sample beyond, or of the extreme where
@@ -175,19 +182,21 @@ def time_passed(history: History, output: str, limit: float, *, magnitude: bool 
         output: The output's name.
         limit: The limit [SI].
         magnitude: Whether its magnitude is compared.
+        below: Whether its negative is compared.
     """
     found, values = history.extreme(output), history[output]
-    sides = [(found.maximum, found.maximum_time)]
-    if magnitude:
+    sides = [] if below else [(found.maximum, found.maximum_time)]
+    if magnitude or below:
         sides.append((-found.minimum, found.minimum_time))
-        values = np.abs(values)
+        values = -values if below else np.abs(values)
     beyond = np.flatnonzero(values > limit)[:1]
     latest: float = min([*(t for v, t in sides if v > limit), *history.time[beyond].tolist()])
     if not isinstance(history, ReplayedHistory) or latest <= history.time[0]:
         return latest
 
     def passed(landing: Landing) -> bool:
-        return _largest(landing.extremes()[output], magnitude=magnitude) > limit
+        now = landing.extremes([output])[output]
+        return (-now.minimum if below else _largest(now, magnitude=magnitude)) > limit
 
     return history.first_time(passed, float(history.time[0]), latest)
 

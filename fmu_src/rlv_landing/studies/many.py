@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 from ..errors import LandingError, unknown
 from ..parameters import Parameters, check_value
-from ..quantities import Quantity, interface_of
+from ..quantities import Quantity
 from ..text.values import number_in_si, split_heading, unit_of
 from ..workers import default_workers
+from .landed import interface_for
 from .limits import check_limits
 from .outcome import SLIDE
 from .study_effort import check_landings
@@ -138,7 +139,7 @@ def land_many(  # noqa: PLR0913  the options of a study, by name
     """
     mode = parameters.drop.mode
     design = _design(states, mode)
-    interface = interface_of(mode, _most_legs(parameters, design))
+    interface = interface_for([mode], parameters, design.columns)
     names = expand(PEAKS if responses is None else responses, interface)
     _check_numbers(until, every, rtol, slide, workers)
     count = workers or default_workers()
@@ -222,12 +223,6 @@ def _transposed(states: Sequence[Mapping[str, Any]]) -> dict[str, list[Any]]:
 
 def _is_real(value: Any) -> bool:
     return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
-
-
-def _most_legs(parameters: Parameters, design: Design) -> int:
-    given = design.columns.get("vehicle.legs", ())
-    bounds = range(1, 9)
-    return int(max([parameters.vehicle.legs, *(v for v in given if v in bounds)]))
 
 
 def _check_numbers(

@@ -66,7 +66,9 @@ def joint_clearance(history: History) -> float:
     turn = _turns(*(history[f"body.q_{k}"] for k in "wxyz"))
     normal = np.array(_normal(p))
     found = []
-    for s, c in leg_directions(p).values():
+    for leg, (s, c) in leg_directions(p).items():
+        strut = p.of_leg(leg).auxiliary_strut
+        radius, depth = strut.joint_radius, strut.joint_depth
         joint = np.array([
             radius * c - p.vehicle.cg_offset_x,
             -depth,
@@ -85,14 +87,17 @@ def crossed_edge(history: History) -> tuple[str, float] | None:
         inertial x towards z; None where the CG is inside, or there is no polygon.
     """
     p = _parameters(history)
-    mass, foot = p.vehicle.mass, p.vehicle.footpad_mass
+    feet = [p.of_leg(leg).vehicle.footpad_mass for leg in history.legs]
     places = [
         (float(history[f"leg[{leg}].footpad.x"][-1]), float(history[f"leg[{leg}].footpad.z"][-1]))
         for leg in history.legs
     ]
-    whole = mass + foot * len(places)
     x, z = (
-        (mass * float(history[f"body.{axis}"][-1]) + foot * sum(q[k] for q in places)) / whole
+        (
+            p.vehicle.mass * float(history[f"body.{axis}"][-1])
+            + sum(m * q[k] for m, q in zip(feet, places))
+        )
+        / p.whole_mass
         for k, axis in enumerate("xz")
     )
     nearest = (0.0, "", 0.0)

@@ -20,9 +20,10 @@ from .on_ground import counted_legs, crossed_edge, joint_clearance, lean, slip
 from .replay import ReplayedHistory
 
 Array = NDArray[np.float64]
-Name = Literal["toppled", "bottomed out", "slid", "moving", "standing", "settled"]
+Name = Literal["toppled", "body strike", "bottomed out", "slid", "moving", "standing", "settled"]
 # the outcomes, the severest first
 SEVERITY: tuple[Name, ...] = get_args(Name)
+CLEARANCE = "body.clearance"
 SETTLED, TOPPLED = float(Phase.SETTLED), float(Phase.TOPPLED)
 # the paper does not print its footpads' diameter; a leg's spreading alone moves a footpad by some
 # centimetres
@@ -46,6 +47,7 @@ class Outcome:
     - toppled: at the end the vehicle's CG is beyond the outermost footpad or the body has turned
       over (`status.phase` 3). A vehicle that was beyond its feet for a moment and came back has not
       toppled. `time` is the start of the last such period;
+    - body strike: a point of the body (`vehicle.body_points`) has met the ground, first at `time`;
     - bottomed out: a damper's stroke has passed `main_strut.stroke_max`, where it meets its stop.
       `time` is that of the first damper;
     - slid: a footpad is further than the threshold from where it first touched. `time` is when it
@@ -117,16 +119,16 @@ def judged(
     end = float(history.time[-1])
     if toppled:
         end, history = _until_toppled(history)
-    stop = p.main_strut.stroke_max
-    strokes = {leg: history.extreme(_stroke(leg)).maximum for leg in legs}
+    stops = {leg: p.of_leg(leg).main_strut.stroke_max for leg in legs}
+    left = {leg: stops[leg] - history.extreme(_stroke(leg)).maximum for leg in legs}
     slips = [slip(history, leg) for leg in legs]
     bottomed = sorted(
-        (time_passed(history, _stroke(leg), stop), leg) for leg, s in strokes.items() if s > stop
+        (time_passed(history, _stroke(leg), stops[leg]), leg) for leg, s in left.items() if s < 0.0
     )
     margins = {
         "stability_min": least_margin,
         "stability_end": float(margin[-1]),
-        "stroke_left": stop - max(strokes.values()),
+        "stroke_left": min(left.values()),
         "slid": max((float(s[-1]) for s in slips if len(s)), default=0.0),
         "joint_clearance": joint_clearance(history),
     }
@@ -134,6 +136,8 @@ def judged(
     name: Name
     if toppled:
         name, time = "toppled", end
+    elif (struck := _strike(history)) is not None:
+        name, time = "body strike", struck
     elif bottomed:
         name, time = "bottomed out", bottomed[0][0]
     elif first_slide < inf:
@@ -153,6 +157,16 @@ def judged(
 def _over(history: History) -> tuple[str | None, float]:
     """The edge over which a vehicle toppled in space, if any, and the direction [rad]."""
     return crossed_edge(history) or (None, lean(history))
+
+
+def _strike(history: History) -> float | None:
+    """When a point of the body first met the ground [s]; None where none did."""
+    assert history.parameters is not None
+    if not history.parameters.vehicle.body_points or CLEARANCE not in history:
+        return None
+    if history.extreme(CLEARANCE).minimum >= 0.0:
+        return None
+    return time_passed(history, CLEARANCE, 0.0, below=True)
 
 
 def _stroke(leg: int) -> str:

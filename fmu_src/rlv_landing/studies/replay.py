@@ -76,11 +76,11 @@ class ReplayedHistory(History):
         """The landing at time `t` [s]; it is at the end again afterwards."""
         landing, end = self._landing, self._landing.state()
         try:
-            landing.restore(self._states[self._before(t)][1])
+            landing.restore(self._states[self._before(t)][1], checked=False)
             landing.advance_to(max(t, landing.time))
             yield landing
         finally:
-            landing.restore(end)
+            landing.restore(end, checked=False)
 
     def outputs_at(self, times: Sequence[float]) -> list[Mapping[str, float]]:
         """All outputs at these times [s], ascending."""
@@ -104,17 +104,17 @@ class ReplayedHistory(History):
             first, last = self._before(after), self._before(before)
             while first < last:
                 middle = (first + last + 1) // 2
-                landing.restore(self._states[middle][1])
+                landing.restore(self._states[middle][1], checked=False)
                 if holds(landing):
                     last = middle - 1
                     before = min(before, landing.time)
                 else:
                     first = middle
-            landing.restore(self._states[first][1])
+            landing.restore(self._states[first][1], checked=False)
             landing.advance_to(max(after, landing.time))
             return _bisected(landing, holds, before)
         finally:
-            landing.restore(end)
+            landing.restore(end, checked=False)
 
     def _before(self, t: float) -> int:
         """The number of the last state that is not after time `t` [s]."""
@@ -129,7 +129,7 @@ def _bisected(landing: Landing, holds: Holds, before: float) -> float:
         landing.advance_to(middle)
         if holds(landing):
             before = middle
-            landing.restore(state)
+            landing.restore(state, checked=False)
         else:
             not_yet, state = middle, landing.state()
     return before

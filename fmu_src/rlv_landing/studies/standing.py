@@ -31,17 +31,18 @@ def stands(part: History) -> bool:
     grow: a vehicle that slides faster and faster does not stand. [closure]
     """
     assert part.parameters is not None
-    vehicle, legs = part.parameters.vehicle, part.legs
+    p, legs = part.parameters, part.legs
     if not all((part[f"leg[{leg}].contact.active"] > 0.0).all() for leg in legs):
         return False
     feet = np.array([part[f"leg[{leg}].footpad.y"] for leg in legs])
-    mass = vehicle.mass + vehicle.footpad_mass * len(legs)
-    height = (vehicle.mass * part["body.y"] + vehicle.footpad_mass * feet.sum(axis=0)) / mass
+    pads = np.array([p.of_leg(leg).vehicle.footpad_mass for leg in legs])
+    mass = p.vehicle.mass + float(pads.sum())
+    height = (p.vehicle.mass * part["body.y"] + pads @ feet) / mass
     height = height - feet.min(axis=0)
     margin, kinetic = part["status.stability_margin"], part["energy.kinetic"]
     # how far the CG rises on its way over the edge
     lift: Array = np.hypot(height, margin) - height
-    tipping = mass * part.parameters.ground.gravity * lift
+    tipping = mass * p.ground.gravity * lift
     if not ((margin > 0.0) & (kinetic < ENERGY_PART * tipping)).all():
         return False
     half = len(part) // 2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from pathlib import Path
 from typing import Any
@@ -47,9 +48,7 @@ from .log import EXIT_CUT
 @click.option(
     "--view",
     type=click.Choice(["side", "3d"]),
-    default="side",
-    show_default=True,
-    help="The symmetric plane, or space.",
+    help="Along z, or in perspective.  [default: 3d in space, else side]",
 )
 @click.option(
     "--width",
@@ -94,7 +93,9 @@ def animate(files: tuple[Path, ...], *, force: bool, **options: Any) -> None:
     film = Film(**options)
     cut = False
     if len(files) == 2:
-        shown = (film.start or 0.0, film.end) if film.end is not None else None
+        shown = None
+        if film.start is not None or film.end is not None:
+            shown = film.start or 0.0, math.inf if film.end is None else film.end
         history, parameters, cut = read_landing(files[0], vehicle, shown)
         title = shown_name(files[0])
     else:

@@ -28,8 +28,8 @@ from rlv_landing.text.files import shown_name
 from ..logs.libraries import require_log_readers
 
 if TYPE_CHECKING:
-    from ..logs.instants import RowChoice
     from ..logs.reader import LogReader
+    from ..logs.rows.instants import RowChoice
 
 EXIT_DIFFERS = 1
 EXIT_CUT = 3
@@ -186,7 +186,7 @@ def export(
     """
     require_log_readers()
     from ..logs.bag_reader import open_log
-    from ..logs.instants import RowChoice
+    from ..logs.rows.instants import RowChoice
 
     _check_outputs(output, plot, topics, force=force)
     reader = open_log(log)
@@ -231,7 +231,7 @@ def _export_rows(
     from rlv_landing.tables.history_file import Written, write_parts
 
     from ..fmu.peaks import known_extremes
-    from ..logs.history import HistoryParts, with_parts
+    from ..logs.rows.parts import HistoryParts, with_parts
 
     def write(parts: HistoryParts) -> tuple[Written, list[str]]:
         peaks = parts.peaks()

@@ -57,6 +57,8 @@ class FmuRunner:
         self._messages: list[tuple[int, str]] = []
         self._instance: Fmi2 | Fmi3 | None = None
         self._readers: list[Reader] = []
+        # that of the integrator's counters, once they have been read
+        self._counters: Reader | None = None
         # Integer and Boolean outputs: index in a sample, reader, index in what it reads.
         self._not_real: list[tuple[int, int, int]] = []
         self._folder: ProcessFolder | None = None
@@ -157,7 +159,7 @@ class FmuRunner:
 
     def _forget_instance(self) -> Any:
         instance, self._instance = self._instance, None
-        self._readers, self._not_real = [], []
+        self._readers, self._not_real, self._counters = [], [], None
         return instance and instance.slave
 
     def _own(self) -> Fmi2 | Fmi3:
@@ -216,7 +218,9 @@ class FmuRunner:
     def statistics(self) -> dict[str, int]:
         """The integrator's counters since time 0, by the FMU's variable names."""
         names = [q.name for q in STATISTIC_QUANTITIES if q.kind == "integer"]
-        return dict(zip(names, self._read(self._reader("integer", names))))
+        if self._counters is None:
+            self._counters = self._reader("integer", names)
+        return dict(zip(names, self._read(self._counters)))
 
     def peaks(self) -> dict[str, tuple[float, float]]:
         """Value [SI] and time [s] of each peak since time 0, by the FMU's variable names.

@@ -16,11 +16,12 @@ from rlv_landing.tables.landing import decimals
 from rlv_landing.text.terminal import legible_lines
 
 from ..messages.topics import DIAGNOSTICS
-from .history import choose_topics, measured_history
+from .history import measured_history
 from .landing_record import PHASES, landing_summary, read_landing
 from .log_files import WALL_TIME, shown_time
 from .lost import lost_text
 from .reader import Decoder, LogReader
+from .rows.parts import choose_topics
 
 # Characters of a name of a topic or a type that are shown.
 LONGEST_NAME = 100

@@ -16,7 +16,7 @@ from rlv_landing.quantities import Interface
 
 from .fields import IN_A_PLANE, Conversion, Field
 from .tables import split, table_of
-from .topics import STRUTS
+from .topics import POSE, STRUTS
 
 Reading = Callable[[Any], Sequence[float]]
 
@@ -47,8 +47,18 @@ def _check_joints(message: Any, joints: tuple[str, ...]) -> None:
         )
 
 
+def _check_in_plane(message: Any) -> None:
+    """Checks that a pose is one of a symmetric landing."""
+    place, turn = message.pose.position, message.pose.orientation
+    if place.y or turn.x or turn.z:
+        raise LandingError(
+            "the vehicle leaves its plane: this is a landing in space, which is read with its "
+            "parameters only; a log of rlv-landing's node carries them"
+        )
+
+
 def _reading(
-    topic: str, fields: Sequence[Field], joints: tuple[str, ...]
+    topic: str, fields: Sequence[Field], joints: tuple[str, ...], *, in_space: bool
 ) -> tuple[tuple[str, ...], Reading]:
     """The outputs that are read back from the messages of `topic`, and how."""
     reads: list[tuple[Conversion, list[Callable[[Any], float]]]] = [
@@ -59,6 +69,8 @@ def _reading(
     def read(message: Any) -> list[float]:
         if topic == STRUTS.name:
             _check_joints(message, joints)
+        elif topic == POSE.name and not in_space:
+            _check_in_plane(message)
         return [
             number
             for convert, getters in reads
@@ -78,7 +90,7 @@ def readings_of(interface: Interface) -> Readings:
     """How the outputs of a landing with this interface are read back."""
     table = table_of(interface)
     return {
-        topic: _reading(topic, fields, table.topics.joints)
+        topic: _reading(topic, fields, table.topics.joints, in_space=interface.in_space)
         for topic, fields in table.fields_of.items()
         if any(f.read is not None for f in fields)
     }

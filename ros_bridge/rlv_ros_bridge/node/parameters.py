@@ -22,12 +22,20 @@ from rlv_landing import Parameters
 from rlv_landing.choices import choose_parameters
 from rlv_landing.errors import LandingError, unknown
 from rlv_landing.parameters import PARAMETER_QUANTITIES, parameters_of
+from rlv_landing.quantities import interface_of
 from rlv_landing.text.listed import parse_parameter
 
 from ..fmu.description import own_vehicle
 from ..fmu.installed import fmu_path
 from ..ros.rclpy_internals import parameter_overrides
-from .settings import SETTINGS, Settings, check_setting, make_settings
+from .settings import (
+    SETTINGS,
+    Setting,
+    Settings,
+    check_setting,
+    make_settings,
+    settings_of,
+)
 
 # The parameters that rclpy declares for every node.
 BUILT_IN = ("use_sim_time", "start_type_description_service")
@@ -81,11 +89,16 @@ class NodeParameters:
         }
         self.parameters, self._origin = _vehicle(self._values, changes)
         self._values["mode"] = self.parameters.drop.mode
+        legs = interface_of(self.parameters.drop.mode, int(self.parameters.vehicle.legs)).legs
+        own = settings_of(legs)
+        for name in given:
+            if name in SETTINGS and name not in own and name not in shared:
+                raise unknown("ROS parameter", name, own)
         self.settings()
         self._is_running = is_running
         self._on_change = on_change
         self._refusal = ""
-        self._declare(node)
+        self._declare(node, own)
         node.add_pre_set_parameters_callback(self._pre_set)
         node.add_on_set_parameters_callback(self._on_set)
         node.add_post_set_parameters_callback(self._post_set)
@@ -101,8 +114,8 @@ class NodeParameters:
         """
         return make_settings(self._values, self.parameters, self._origin)
 
-    def _declare(self, node: Node) -> None:
-        for name, s in SETTINGS.items():
+    def _declare(self, node: Node, own: Mapping[str, Setting]) -> None:
+        for name, s in own.items():
             descriptor = ParameterDescriptor(description=s.meaning, read_only=s.when == "start")
             if isinstance(s.default, float):
                 descriptor.floating_point_range = [

@@ -17,12 +17,12 @@ from rlv_landing import Parameters
 from rlv_landing.effort import check_duration
 from rlv_landing.errors import LandingError
 from rlv_landing.presets import DEFAULT_PRESET
-from rlv_landing.quantities import Quantity
+from rlv_landing.quantities import MOST_LEGS, Quantity
 from rlv_landing.text.values import to_si
 
 from ..fmu.installed import fmu_path
 from ..messages.qos import PROFILES
-from ..messages.topics import CLOCK, OCCASIONAL, SAMPLED, Topic, check_frame_prefix
+from ..messages.topics import CLOCK, OCCASIONAL, Topic, check_frame_prefix, topics_of
 
 # When a setting may be changed: at the start only, while the node is not active, or at any time.
 When = Literal["start", "paused", "always"]
@@ -50,7 +50,12 @@ def downsampling_setting(topic: Topic) -> str:
     return f"publish_every.{topic.name.strip('/').replace('/', '_')}"
 
 
-PUBLISHED: tuple[Topic, ...] = (*SAMPLED, *OCCASIONAL, CLOCK)
+# with the contacts of as many legs as a vehicle can have
+PUBLISHED: tuple[Topic, ...] = (
+    *topics_of(tuple(range(1, MOST_LEGS + 1))).sampled,
+    *OCCASIONAL,
+    CLOCK,
+)
 SETTINGS: dict[str, Setting] = {
     "fmu": Setting("", "the FMU to step; empty: that of this installation"),
     "preset": Setting(
@@ -140,6 +145,13 @@ SETTINGS: dict[str, Setting] = {
         for t in PUBLISHED
     },
 }
+
+
+def settings_of(legs: tuple[int, ...]) -> dict[str, Setting]:
+    """The settings of a node whose vehicle has the legs of these numbers."""
+    other = set(PUBLISHED).difference(topics_of(legs).sampled, OCCASIONAL, (CLOCK,))
+    left_out = {downsampling_setting(topic) for topic in other}
+    return {name: setting for name, setting in SETTINGS.items() if name not in left_out}
 
 
 @dataclass(frozen=True)

@@ -79,7 +79,12 @@ class LiveScenes:
         names, reading = READINGS[topic.name]
 
         def receive(message: Any) -> None:
-            self._rows.setdefault(stamp_of(message.header), {}).update(zip(names, reading(message)))
+            try:
+                row = zip(names, reading(message))
+            except LandingError as e:
+                self.failure = e
+                return
+            self._rows.setdefault(stamp_of(message.header), {}).update(row)
 
         return receive
 

@@ -150,7 +150,8 @@ def test_landings_of_another_study_are_refused(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("criterion", "lost"), [("toppled", 1), ("bottomed out", 2), ("slid", 3), ("limit", 1)]
+    ("criterion", "lost"),
+    [("toppled", 1), ("body strike", 2), ("bottomed out", 3), ("slid", 4), ("limit", 1)],
 )
 def test_a_criterion_counts_what_is_severer_too(criterion, lost):
     assert [JudgedLanding(name, 1.0).lost(criterion) for name in SEVERITY] == [True] * lost + [

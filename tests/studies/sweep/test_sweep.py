@@ -304,8 +304,10 @@ def test_the_examples_are_studies_whose_first_landing_works(command, study):
     name = study.stem if study.stem in ("sensitivity", "montecarlo") else "sweep"
     printed = json.loads(command(name, str(study), "--dry-run", "--json").out)
     assert printed["error"] is None
-    landings = {"dispersion": 1000, "states": 24, "sensitivity": 1024, "montecarlo": 2000}
-    assert printed["landings"] == landings[study.stem]
+    assert (
+        printed["landings"]
+        == {"dispersion": 1000, "states": 24, "sensitivity": 1024, "montecarlo": 2000}[study.stem]
+    )
 
 
 def test_the_study_that_the_documentation_shows_is_one(tmp_path):

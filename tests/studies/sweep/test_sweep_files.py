@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import resource
 import signal
 from collections.abc import Iterator
@@ -189,3 +190,26 @@ def test_a_folder_in_use_and_a_damaged_part_and_foreign_files_are_refused(tmp_pa
     foreign = command("sweep", str(study), "--results", str(tmp_path / "mine"))
     assert foreign.code == 2
     assert "holds other files and no study" in foreign.err
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet"])
+def test_rows_go_to_a_file_of_ones_own(tmp_path, monkeypatch, command, ending):
+    monkeypatch.chdir(tmp_path)
+    write_study(tmp_path, samples=3)
+    done = command("sweep", "study.toml", "--results", "r", "--output", f"rows.{ending}")
+    assert (done.code, done.err) == (0, "")
+    stored = parquet.read_table("r/results.parquet")
+    if ending == "csv":
+        with Path("rows.csv").open(newline="", encoding="utf-8") as file:
+            written = list(csv.DictReader(file))
+        for name in ("outcome", "legs.main_strut.force.min", "margin.stability_min"):
+            expected = ["" if v is None else v for v in stored[name].to_pylist()]
+            assert [type(v)(row[name]) for v, row in zip(expected, written)] == expected
+        assert len(written) == stored.num_rows
+    else:
+        assert parquet.read_table("rows.parquet").equals(stored)
+    for output, said in ((f"rows.{ending}", "--force"), ("rows.xlsx", "must end in .csv")):
+        again = command("sweep", "study.toml", "--results", "r2", "--output", output)
+        assert (again.code, again.err.count("\n")) == (2, 1)
+        assert said in again.err
+        assert not Path("r2").exists()

@@ -71,7 +71,7 @@ STUDY = click.Path(path_type=Path)
 @click.option(
     "--criterion",
     metavar="NAME",
-    help="What is lost: toppled (default), bottomed out, slid, or limit (any limit passed).",
+    help="What is lost: toppled (default), body strike, bottomed out, slid, or limit (any passed).",
 )
 @click.option(
     "--cells", type=WholeNumber(), metavar="N", help="Coarse cells along each axis [default: 8]."

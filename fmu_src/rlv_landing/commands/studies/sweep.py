@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..options import HELP_NAMES
+from ..options import HELP_NAMES, check_writable, force_option
 from ..printing import print_json
 from .study_run import RunOptions, run_options, run_task, warn_of_joint
 
@@ -19,8 +19,16 @@ if TYPE_CHECKING:
 
 @click.command(context_settings=HELP_NAMES)
 @click.argument("study", metavar="STUDY.toml", type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "--output",
+    metavar="FILE.csv|parquet",
+    type=click.Path(path_type=Path),
+    help="Write the rows to this file, too (SI units).",
+)
+@force_option("Overwrite --output if it exists.")
 @run_options
-def sweep(study: Path, **options: Any) -> None:
+def sweep(study: Path, *, output: Path | None, force: bool, **options: Any) -> None:
     """Land once for every point of a study and keep a row of responses for each, as Parquet.
 
     The study names what varies (any parameter, drop quantity or constant input), how points are
@@ -41,7 +49,7 @@ def sweep(study: Path, **options: Any) -> None:
 
     \b
     rlv-landing sweep study.toml --dry-run
-    rlv-landing sweep study.toml --results folder
+    rlv-landing sweep study.toml --results folder --output rows.csv
     rlv-landing sweep study.toml --results folder --resume
     rlv-landing sweep study.toml --scheduler tcp://host:8786
 
@@ -56,8 +64,10 @@ def sweep(study: Path, **options: Any) -> None:
     from ...studies.sweep.study import read_study
     from ...studies.sweep.summary import summarise_results
     from ...studies.sweep.sweep_row import Task
+    from ...tables.rows_file import ENDINGS, write_rows
     from ...tables.sweep_tables import summary_table
 
+    check_writable(output, ENDINGS, force=force)
     run = RunOptions(**options)
     read = read_study(study)
     task = Task(read, read.design)
@@ -66,12 +76,14 @@ def sweep(study: Path, **options: Any) -> None:
         show_plan(task, run)
         return
     path = run_task(task, run.results or Path(read.name), run)
+    if output is not None:
+        write_rows(path, output)
     summary = summarise_results(path)
     if run.as_json:
         print_json({"study": read.name, "results": str(path), **summary.record()})
     else:
         click.echo(summary_table(read.name, summary), nl=False)
-        click.echo(f"results: {path}")
+        click.echo(f"results: {path}{f', {output}' if output is not None else ''}")
 
 
 def show_plan(task: Task, options: RunOptions) -> None:

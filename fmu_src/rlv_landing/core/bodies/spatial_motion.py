@@ -341,11 +341,14 @@ class SpatialMotion(SpatialGround):
             return force * transverse_part(place, cross(spin, arm))
         return 0.0
 
-    def project(self, y: Doubles) -> None:
-        """Bring what the friction laws keep to where they let it be, the quaternion to length 1."""
-        self._project_friction(y)
-        self._project_points(y)
+    def normalise(self, y: Doubles) -> None:
+        """Bring the quaternion to length 1."""
         s = spatial_state(y, 0)
         size = length_of(s.q_w, s.q_x, s.q_y, s.q_z)
         for i in range(3, 7):
             y[i] /= size
+
+    def project(self, y: Doubles) -> None:
+        """Bring what the friction laws keep to where they let it be."""
+        self._project_friction(y)
+        self._project_points(y)

@@ -66,6 +66,12 @@ class System:
         """
         return StiffPair(0, 0, 0.0, 0.0)
 
+    def normalise(self, y: Doubles) -> None:
+        """Bring the state at the end of a step to its normal form, which changes no motion.
+
+        It is called before the rates there are: a state that is saved and restored gives the same.
+        """
+
     def project(self, y: Doubles) -> None:
         """Bring the state at the end of a step back to where it may be."""
 

@@ -82,6 +82,7 @@ class DormandPrince(Solver):
             end[i] = y[i] + h * (
                 A71 * k1[i] + A73 * k3[i] + A74 * k4[i] + A75 * k5[i] + A76 * k6[i]
             )
+        self.system.normalise(end)
         self._derivatives(t + h, end, k7)
         for i in range(m):
             e[i] = h * (E1 * k1[i] + E3 * k3[i] + E4 * k4[i] + E5 * k5[i] + E6 * k6[i] + E7 * k7[i])

@@ -145,6 +145,7 @@ class Exponential(Solver):
             self._replace_linear_growth(
                 pair, s, growth, (s[pair.j] - s[pair.i]) - (y[pair.j] - y[pair.i])
             )
+        self.system.normalise(s)
         self._derivatives(self.t + h, s, k5)
         self._nonlinear_rate(4, s, k5)
 

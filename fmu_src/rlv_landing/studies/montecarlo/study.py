@@ -18,12 +18,13 @@ from ...text.files import LARGEST_INTEGER
 from ...text.values import parse_value
 from .. import toml_keys
 from ..criteria import CRITERIA
+from ..landed import interface_for
 from ..limits import LIMITS
 from ..outcome import SLIDE
 from ..sweep.factors import LARGEST, read_factor
 from ..sweep.responses import expand, known_responses
 from ..sweep.states_table import read_states
-from ..sweep.study import UNTIL, Study, interface_for, read_end
+from ..sweep.study import UNTIL, Study, read_end
 from ..variables import VARIABLES, check_variables
 from .covariance import read_correlated
 from .dispersions import Dispersions, Table
@@ -140,7 +141,10 @@ def _montecarlo(document: Mapping[str, Any], path: Path, text: str) -> MonteCarl
     dispersions = _dispersions(document, keys, path, mode, fixed)
     check_variables([*fixed, *dispersions.names], [mode])
     samples = _samples(keys, dispersions)
-    interface = interface_for([mode], parameters, dispersions.factors)
+    varied: dict[str, Any] = {f.name: f.values or (f.low, f.high) for f in dispersions.factors}
+    if dispersions.table is not None:
+        varied.update(dispersions.table.design.columns)
+    interface = interface_for([mode], parameters, varied)
     loads = expand(toml_keys.texts(keys, "loads") or LOADS, interface)
     grades = read_grades(toml_keys.tables(document, "grade"), known_responses(interface))
     limits = toml_keys.values(toml_keys.table(document, "limits"), LIMITS, "limit")

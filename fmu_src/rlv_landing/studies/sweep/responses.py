@@ -41,7 +41,7 @@ MARGINS = ("stability_min", "stability_end", "stroke_left", "slid", "joint_clear
 OUTCOME = (
     Quantity(
         "",
-        "toppled, bottomed out, slid, moving, standing or settled",
+        "toppled, body strike, bottomed out, slid, moving, standing or settled",
         name="outcome",
         kind="string",
     ),

@@ -5,7 +5,7 @@ It is read from TOML and checked before anything runs.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -17,9 +17,10 @@ from ...effort import duration_text
 from ...errors import LandingError, unknown
 from ...parameters import PARAMETER_QUANTITIES, Parameters
 from ...presets import to_toml
-from ...quantities import MODES, MOST_LEGS, SPACE, Interface, Quantity, interface_of
+from ...quantities import MODES, SPACE, Interface, Quantity
 from ...text.files import LARGEST_INTEGER
 from .. import toml_keys
+from ..landed import interface_for, landed_modes
 from ..limits import LIMITS
 from ..outcome import SLIDE
 from ..variables import VARIABLES, check_variables
@@ -28,7 +29,6 @@ from .factors import LARGEST, Factor, read_factor
 from .responses import expand
 from .states_table import read_states
 
-LEGS = "vehicle.legs"
 # where a landing without `until` ends, unless it topples
 ENDS = {
     "rests": "the vehicle is at rest",
@@ -185,12 +185,13 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
     # a table says which quantities it has after its mode is known
     parameters = _parameters(keys, path, fixed)
     modes = _modes(keys, parameters, {*given})
-    landed = landed_modes(modes, parameters, fixed, factors)
+    varied = {f.name: f.values or (f.low, f.high) for f in factors}
+    landed = landed_modes(modes, parameters, fixed, varied)
     table = _states(keys, method, path, given, in_space=SPACE in landed)
     columns = table.columns if table is not None else {}
     if "drop.mode" in columns:
         modes = _modes(keys, parameters, {*given, *columns})
-        landed = landed_modes(modes, parameters, fixed, factors, columns)
+        landed = landed_modes(modes, parameters, fixed, {**varied, **columns})
     check_variables([*given, *columns], landed)
     if table is None and not factors:
         raise LandingError(
@@ -214,7 +215,7 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
         seed=toml_keys.integer(keys, "seed", 1, 0, 2**31 - 1),
         parameters=parameters,
         modes=modes,
-        interface=(interface := interface_for(landed, parameters, factors, columns)),
+        interface=(interface := interface_for(landed, parameters, {**varied, **columns})),
         responses=expand(toml_keys.texts(keys, "responses"), interface),
         limits={name: float(v) for name, v in limits.items()},
         fixed=fixed,
@@ -257,47 +258,6 @@ def _check_samples_apart(every: float, until: float | None) -> None:
             f"every = {every:g} s is above until = {longest:g} s; "
             "no landing would have a second sample"
         )
-
-
-def landed_modes(
-    modes: tuple[str, ...],
-    parameters: Parameters,
-    fixed: Mapping[str, float | str],
-    factors: Iterable[Factor],
-    columns: Mapping[str, Iterable[Any]] | None = None,
-) -> set[str]:
-    """The modes that a study lands with, all symmetric, or all in space.
-
-    Raises:
-        LandingError: Landings of both kinds, which have other responses.
-    """
-    given: set[Any] = {*modes}
-    if not modes:
-        given.update({fixed["drop.mode"]} if "drop.mode" in fixed else ())
-        given.update(*(f.values for f in factors if f.name == "drop.mode"))
-        given.update((columns or {}).get("drop.mode", ()))
-    known = {mode for mode in given if mode in (*MODES, SPACE)} or {parameters.drop.mode}
-    if SPACE in known and len(known) > 1:
-        raise LandingError(
-            f"a study lands with {', '.join(sorted(known))}, and landings in space have other "
-            "responses than symmetric ones; make a study of each"
-        )
-    return known
-
-
-def interface_for(
-    modes: Iterable[str],
-    parameters: Parameters,
-    factors: Iterable[Factor] = (),
-    columns: Mapping[str, Iterable[Any]] | None = None,
-) -> Interface:
-    """The outputs of a study's landings, on as many legs as one of them may have."""
-    legs: list[float] = [parameters.vehicle.legs]
-    for f in factors:
-        if f.name == LEGS:
-            legs += [v for v in (f.high, *f.values) if isinstance(v, float)]
-    legs += [v for v in (columns or {}).get(LEGS, ()) if isinstance(v, float)]
-    return interface_of(min(modes), int(max(v for v in legs if v <= MOST_LEGS)))
 
 
 def _states(

@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator
 
 from rlv_landing.errors import LandingError
 
-from ..messages.wire import ENCAPSULATION, NANOSECONDS
-from .log_files import shown_time
-from .reader import Decoder, LogMessage
+from ...messages.wire import ENCAPSULATION, NANOSECONDS
+from ..log_files import shown_time
+from ..reader import Decoder, LogMessage
 
 # Instants are whole nanoseconds; a bound given in s may miss one by its last digit [s].
 TIME_TOLERANCE = 1e-9
