@@ -81,6 +81,8 @@ class History:
         self.extremes = extremes
         self.decks: Sequence[SpatialInputs] | None = None
         self.stamps: Sequence[int] | None = None
+        # by leg, see `rlv_landing.validation.first_contact`
+        self.first_contacts: dict[int, Any] = {}
         self._index = {name: i for i, name in enumerate(self.names)}
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
@@ -124,19 +126,8 @@ class History:
             float(values[low]), float(self.time[low]), float(values[high]), float(self.time[high])
         )
 
-    def turned_true(
-        self, _name: str, _after: float, _before: float
-    ) -> tuple[float, Mapping[str, float]] | None:
-        """When a boolean column turns true, and all outputs then.
-
-        Args:
-            _name: The column.
-            _after: A time at which it is false [s].
-            _before: A later time at which it is true [s].
-
-        Returns:
-            The time [s] and the outputs by name; None where no more than the samples is known.
-        """
+    def outputs_at(self, _times: Sequence[float]) -> list[Mapping[str, float]] | None:
+        """All outputs at these times [s], ascending; None where only the samples are known."""
         return None
 
     def until(self, samples: int, extremes: Mapping[str, Extreme] | None = None) -> History:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from array import array
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
 import numpy as np
@@ -82,13 +82,14 @@ class ReplayedHistory(History):
         finally:
             landing.restore(end, checked=False)
 
-    def turned_true(
-        self, name: str, after: float, before: float
-    ) -> tuple[float, Mapping[str, float]]:
-        """As `History.turned_true`; it is always known."""
-        time = self.first_time(lambda landing: landing.get(name) > 0.0, after, before)
-        with self._landing_at(time) as landing:
-            return time, landing.outputs()
+    def outputs_at(self, times: Sequence[float]) -> list[Mapping[str, float]]:
+        """All outputs at these times [s], ascending."""
+        found: list[Mapping[str, float]] = []
+        with self._landing_at(times[0]) as landing:
+            for t in times:
+                landing.advance_to(max(t, landing.time))
+                found.append(landing.outputs())
+        return found
 
     def first_time(self, holds: Holds, after: float, before: float) -> float:
         """The first time [s] at which something `holds` that does not end again.

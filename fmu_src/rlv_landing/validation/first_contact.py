@@ -16,9 +16,11 @@ from ..history import History
 Array = NDArray[np.float64]
 # samples of the flight before the contact by which what is smooth goes on to it
 BEFORE = 3
-# a contact before so many samples is looked for in the landing itself, where that can be repeated:
-# some microseconds are much of its time then
-EARLY = 10
+# a contact that comes before so long [s], or with fewer samples before it, is looked for in the
+# landing itself, where that can be repeated: some microseconds are much of its time then
+EARLY = 0.01
+# between between this long before the integrator's first step in contact, and that step [s]
+NEAR = 2e-5
 # a footpad that is no further above the ground at the start touches it [m]
 TOUCHING = 1e-9
 
@@ -53,7 +55,17 @@ class FirstContact:
 
 
 def first_contact(history: History, leg: int) -> FirstContact | None:
-    """The first contact of the footpad of `leg`; None where the ground never pushes on it."""
+    """The first contact of the footpad of `leg`; None where the ground never pushes on it.
+
+    It is found once, and kept with the history.
+    """
+    if leg not in history.first_contacts:
+        history.first_contacts[leg] = _found(history, leg)
+    contact: FirstContact | None = history.first_contacts[leg]
+    return contact
+
+
+def _found(history: History, leg: int) -> FirstContact | None:
     found = _first_known(history, leg)
     if found is None:
         return None
@@ -64,14 +76,42 @@ def first_contact(history: History, leg: int) -> FirstContact | None:
     depth, before = history[name], float(history.time[sample - 1])
     if sample == 1 and depth[0] > -TOUCHING:
         return FirstContact(sample, before)
-    if sample < EARLY:
-        exact = history.turned_true(f"leg[{leg}].contact.active", before, last)
+    if sample < BEFORE or last - float(history.time[0]) < EARLY:
+        exact = _exact(history, sample, before, last, name)
         if exact is not None:
-            return FirstContact(sample, *exact)
+            return exact
     start, curve = _curve(history.time, depth, sample)
     roots = start + np.roots(curve)
     inside = [t for t in roots[np.isreal(roots)].real if before <= t <= last]
     return FirstContact(sample, float(min(inside, default=last)))
+
+
+def _exact(
+    history: History, sample: int, before: float, last: float, depth: str
+) -> FirstContact | None:
+    """The contact between two times of the landing; None where it cannot be repeated.
+
+    Two near times are looked for, between which all outputs are linear.
+    """
+    above = max(before, last - NEAR)
+    looks = history.outputs_at((above, last))
+    while looks is not None and looks[0][depth] >= 0.0 and above > before:
+        last, above = above, max(before, last - 8.0 * (last - above))
+        looks = history.outputs_at((above, last))
+    while looks is not None and last - above > NEAR:
+        middle = 0.5 * (above + last)
+        look = history.outputs_at((middle,))
+        assert look is not None
+        if look[0][depth] < 0.0:
+            above, looks[0] = middle, look[0]
+        else:
+            last, looks[1] = middle, look[0]
+    if looks is None or not looks[0][depth] < 0.0 <= looks[1][depth]:
+        return None
+    first, second = looks
+    part = first[depth] / (first[depth] - second[depth])
+    values = {name: first[name] + part * (second[name] - first[name]) for name in history.names}
+    return FirstContact(sample, above + part * (last - above), values)
 
 
 def _first_known(history: History, leg: int) -> tuple[int, float] | None:
