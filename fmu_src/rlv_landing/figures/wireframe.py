@@ -55,14 +55,15 @@ def wireframe(
     directions = leg_directions(parameters)
     main, auxiliary = np.empty((2, len(rows), len(directions), 2, 3))
     for i, (leg, (sine, cosine)) in enumerate(directions.items()):
+        own = parameters.of_leg(leg)
         out = np.array([cosine, 0.0, sine])
         up = np.array([0.0, 1.0, 0.0])
         lengths = [
             s.length - history[f"leg[{leg}].{n}.stroke"][rows]
-            for s, n in ((m, "main_strut"), (a, "auxiliary_strut"))
+            for s, n in ((own.main_strut, "main_strut"), (own.auxiliary_strut, "auxiliary_strut"))
         ]
-        feet = np.array([footpad_between(parameters, *map(float, pair)) for pair in zip(*lengths)])
-        for lines, strut in ((main, m), (auxiliary, a)):
+        feet = np.array([footpad_between(own, *map(float, pair)) for pair in zip(*lengths)])
+        for lines, strut in ((main, own.main_strut), (auxiliary, own.auxiliary_strut)):
             lines[:, i, 0] = strut.joint_radius * out - strut.joint_depth * up
             lines[:, i, 1] = feet[:, :1] * out + feet[:, 1:] * up
     parts = {

@@ -66,11 +66,12 @@ def joint_clearance(history: History) -> float:
     turn = _turns(*(history[f"body.q_{k}"] for k in "wxyz"))
     normal = np.array(_normal(p))
     found = []
-    for s, c in leg_directions(p).values():
+    for leg, (s, c) in leg_directions(p).items():
+        strut = p.of_leg(leg).auxiliary_strut
         joint = np.array([
-            radius * c - p.vehicle.cg_offset_x,
-            -depth,
-            radius * s - p.vehicle.cg_offset_z,
+            strut.joint_radius * c - p.vehicle.cg_offset_x,
+            -strut.joint_depth,
+            strut.joint_radius * s - p.vehicle.cg_offset_z,
         ])  # fmt: skip
         place = body + np.tensordot(joint, turn, axes=(0, 1))
         found.append(_least(history.time, normal @ _seen_from_ground(history, place)))
@@ -85,14 +86,16 @@ def crossed_edge(history: History) -> tuple[str, float] | None:
         inertial x towards z; None where the CG is inside, or there is no polygon.
     """
     p = _parameters(history)
-    mass, foot = p.vehicle.mass, p.vehicle.footpad_mass
+    mass = p.vehicle.mass
+    feet = [p.of_leg(leg).vehicle.footpad_mass for leg in history.legs]
     places = [
         (float(history[f"leg[{leg}].footpad.x"][-1]), float(history[f"leg[{leg}].footpad.z"][-1]))
         for leg in history.legs
     ]
-    whole = mass + foot * len(places)
+    whole = mass + sum(feet)
     x, z = (
-        (mass * float(history[f"body.{axis}"][-1]) + foot * sum(q[k] for q in places)) / whole
+        (mass * float(history[f"body.{axis}"][-1]) + sum(m * q[k] for m, q in zip(feet, places)))
+        / whole
         for k, axis in enumerate("xz")
     )
     nearest = (0.0, "", 0.0)

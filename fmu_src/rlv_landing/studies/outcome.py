@@ -14,6 +14,7 @@ from ..core import Phase
 from ..errors import LandingError
 from ..history import History
 from ..landing import Landing
+from ..parameters import Parameters
 from ..quantities import SPACE, Quantity
 from .limits import PassedLimit, first_limit_passed, time_passed
 from .on_ground import counted_legs, crossed_edge, joint_clearance, lean, slip
@@ -117,16 +118,18 @@ def judged(
     end = float(history.time[-1])
     if toppled:
         end, history = _until_toppled(history)
-    stop = p.main_strut.stroke_max
+    stops = {leg: stop_of(p, leg) for leg in legs}
     strokes = {leg: history.extreme(_stroke(leg)).maximum for leg in legs}
     slips = [slip(history, leg) for leg in legs]
     bottomed = sorted(
-        (time_passed(history, _stroke(leg), stop), leg) for leg, s in strokes.items() if s > stop
+        (time_passed(history, _stroke(leg), stops[leg]), leg)
+        for leg, s in strokes.items()
+        if s > stops[leg]
     )
     margins = {
         "stability_min": least_margin,
         "stability_end": float(margin[-1]),
-        "stroke_left": stop - max(strokes.values()),
+        "stroke_left": min(stops[leg] - s for leg, s in strokes.items()),
         "slid": max((float(s[-1]) for s in slips if len(s)), default=0.0),
         "joint_clearance": joint_clearance(history),
     }
@@ -153,6 +156,11 @@ def judged(
 def _over(history: History) -> tuple[str | None, float]:
     """The edge over which a vehicle toppled in space, if any, and the direction [rad]."""
     return crossed_edge(history) or (None, lean(history))
+
+
+def stop_of(parameters: Parameters, leg: int) -> float:
+    """The stroke at which a leg's main strut meets its stop [m]."""
+    return parameters.of_leg(leg).main_strut.stroke_max
 
 
 def _stroke(leg: int) -> str:
