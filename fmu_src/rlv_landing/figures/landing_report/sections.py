@@ -126,6 +126,8 @@ def _main_results(found: Landed) -> dict[str, str]:
         if not found.audits
         else "all bounds are kept"
         if not missed
+        else "1 bound is missed"
+        if missed == 1
         else f"{missed} bounds are missed",
     }
 
