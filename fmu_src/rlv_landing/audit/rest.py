@@ -10,7 +10,7 @@ import numpy as np
 
 from ..history import History
 from ..landing import Landing
-from .bounds import TIGHT_RTOL, Check
+from .bounds import BOUNDS, TIGHT_RTOL, Check
 from .cases import Case, weight
 from .energy import largest_fall
 
@@ -24,16 +24,18 @@ def rest(case: Case) -> tuple[dict[str, float], list[Check]]:
 
     A vehicle that neither rests nor has toppled by then, and that friction can hold, is given up to
     60 s to settle, and 30 s more. The state has the time since when the vehicle has been settled
-    (NaN if it is not, or has toppled), and how fast a footpad drifts in the 5 s after that.
+    (NaN if it is not, or has toppled), and how fast a footpad drifts in the 5 s after that; if it
+    does, then once more 30 s later.
     """
     landing = case.landing(TIGHT_RTOL)
     parts = _until_rest(landing, case)
     history, stands = parts[-1], _stands(parts)
     since = settled_since(next(h for h in parts if _settled(h))) if stands else float("nan")
-    before = feet(history, -1)
-    drift = float(
-        np.abs(feet(landing.run(landing.time + DRIFT_TIME, DRIFT_TIME), -1) - before).max()
-    )
+    drift = _drift(landing)
+    if stands and case.holds and drift > BOUNDS["rest_drift"].limit:
+        # what has settled may still decay; a creep stays
+        landing.advance_to(landing.time + DECAY)
+        drift = _drift(landing)
     state = {
         "settled_since": since,
         "pitch": float(history["body.pitch"][-1]),
@@ -49,9 +51,15 @@ def rest(case: Case) -> tuple[dict[str, float], list[Check]]:
         Check("dissipated", largest_fall(parts[0])),
         Check("rest_weight", abs(carried - whole) / whole if whole > 0.0 else float("nan")),
         Check("rest_speed", _speed(history), case.holds),
-        Check("rest_drift", drift / DRIFT_TIME, case.holds),
+        Check("rest_drift", drift, case.holds),
         Check("rest_phase", float(stands), case.holds),
     ]
+
+
+def _drift(landing: Landing) -> float:
+    """The speed [m/s] of the footpad that drifts farthest in the next 5 s."""
+    moved = landing.run(landing.time + DRIFT_TIME, DRIFT_TIME)
+    return float(np.abs(feet(moved, -1) - feet(moved, 0)).max()) / DRIFT_TIME
 
 
 def _until_rest(landing: Landing, case: Case) -> list[History]:
