@@ -22,7 +22,7 @@ LEG = OVERRIDES | {
 MASSES = frozenset(
     f"vehicle.{what}"
     for what in (
-        *("mass", "footpad_mass", "cg_offset_x", "cg_offset_z", "leg_azimuth"),
+        *("mass", "footpad_mass", "cg_offset_x", "cg_offset_z", "leg_azimuth", "leg_azimuths"),
         *(f"inertia{axes}" for axes in ("", "_roll", "_yaw", "_xy", "_xz", "_yz")),
     )
 )
@@ -34,7 +34,7 @@ MOTION = LEG | MASSES | TURN
 VX = MOTION | {"drop.horizontal_velocity"}
 VY = MOTION | {"drop.vertical_velocity", "ground.gravity"}
 VZ = MOTION | {"drop.lateral_velocity"}
-FEET = frozenset({"vehicle.leg_azimuth"})
+FEET = frozenset({"vehicle.leg_azimuth", "vehicle.leg_azimuths"})
 HEIGHT = (
     VY
     | FEET

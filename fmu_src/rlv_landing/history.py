@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .assembly import DeckMotion
+from .core import SpatialInputs
 from .errors import LandingError, unknown
 from .outputs import Extreme
 from .parameters import Parameters
@@ -48,6 +49,8 @@ class History:
         parameters: The landing's parameters, where they are known.
         ground: Motion of the ground from the first of the times on, in space that of the deck; by
             default it is at rest.
+        decks: Where the ground is at each sample, where it was moved in the course of the landing
+            and that is known; else None.
         stamps: The times in whole nanoseconds, (n,), where a log has them; else None.
         extremes: Extremes of outputs by name, over the whole span, also between the samples; None
             where there are samples only. A log has those of some outputs.
@@ -76,6 +79,7 @@ class History:
         self.parameters = parameters
         self.ground = ground
         self.extremes = extremes
+        self.decks: Sequence[SpatialInputs] | None = None
         self.stamps: Sequence[int] | None = None
         self._index = {name: i for i, name in enumerate(self.names)}
 

@@ -190,6 +190,10 @@ class Landing:
         self._solver.inputs_at(self._time)
         return dict(zip(self.interface.input_names, view(self._solver.u_now)))
 
+    def ground_places(self) -> dict[str, float]:
+        """The ground's positions by name as they are now, on their ways to those that were set."""
+        return self._inputs.places(self._time)
+
     def step(self, dt: float) -> None:
         """Go on by `dt` [s].
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import itertools
 from array import array
 from collections.abc import Iterator, Sequence
-from math import isfinite
+from math import hypot, isfinite
 from typing import NamedTuple
 
-from .core import Fault, Solver
+from .core import Fault, Solver, Spatial
 from .core.solvers.step_control import LEAST_PREVIOUS_ERROR, LONGEST_STEP
 from .errors import LandingError
 from .inputs.ground_way import Way, way_faults
@@ -22,6 +22,8 @@ MOST_STILL = 1e6
 LATEST = 1e9
 # the last step's interpolant, in parts of its state's scale and size; that of landings comes to 1
 MOST_INSIDE = 1e6
+# where the state of a body in space has its attitude, and how far its length may be off 1
+QUATERNION, MOST_OFF_LENGTH = slice(3, 7), 1e-6
 
 
 class StateHeader(NamedTuple):
@@ -142,6 +144,7 @@ def _check(solver: Solver, positions: Sequence[int], state: array[float], at: in
         _faults(header, len(solver.dense) // 2),
         way_faults(ways, positions, rates, header.time),
         _step_faults(solver, header, state[at + 2 * len(solver.u) :]),
+        _attitude_faults(solver, state[at + 2 * len(solver.u) :]),
     ):
         raise LandingError(f"state holds {fault}; take one that state() gave")
 
@@ -156,6 +159,15 @@ def _step_faults(solver: Solver, h: StateHeader, numbers: Sequence[float]) -> It
         size = scale[j % n] + abs(numbers[j % n])
         if abs(number) > MOST_INSIDE * size:
             yield f"an interpolant of {number:g} for a state of the size {size:g}"
+
+
+def _attitude_faults(solver: Solver, numbers: Sequence[float]) -> Iterator[str]:
+    """The faults of the attitude in space; `numbers` are those from the solver's `y` on."""
+    if not isinstance(solver.system, Spatial):
+        return
+    length = hypot(*numbers[QUATERNION])
+    if not abs(length - 1.0) <= MOST_OFF_LENGTH:
+        yield f"a quaternion of length {length:g}, which is no attitude"
 
 
 def _faults(h: StateHeader, dense: int) -> Iterator[str]:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from .errors import LandingError
 from .parameters import Parameters
+from .parameters.surroundings import read_azimuths
 from .quantities import SPACE, azimuth, groups_of
 
 # parts of the free flight's duration at which the footpads are checked to be above the ground
@@ -46,11 +47,14 @@ AT_REST = GroundMotion()
 def leg_directions(parameters: Parameters) -> dict[int, tuple[float, float]]:
     """Sine and cosine of each leg's azimuth, from body x towards z, by the leg's number.
 
-    In space the legs stand evenly round the body, with growing azimuths. At heading 0 and with the
-    default azimuth, four stand as in the mode 1-2-1.
+    In space the legs stand at azimuths of their own, or evenly round the body, with growing
+    azimuths. At heading 0 and with the default azimuth, four stand as in the mode 1-2-1.
     """
     if parameters.drop.mode == SPACE:
         legs = int(parameters.vehicle.legs)
+        own = read_azimuths(parameters.vehicle.leg_azimuths)
+        if own:
+            return {i: azimuth(angle / radians(1.0)) for i, angle in enumerate(own, 1)}
         first = parameters.vehicle.leg_azimuth / radians(1.0)
         return {i + 1: azimuth(first + 360.0 * i / legs) for i in range(legs)}
     found = {}

@@ -46,8 +46,8 @@ def test_pages_define_every_variable_that_they_use():
 @pytest.mark.parametrize("view", ["side", "3d"])
 @pytest.mark.parametrize("mode", ["2-2", "1-2-1", "space"])
 def test_no_label_of_a_film_covers_another(view, mode):
-    vehicle = five_legs() if mode == "space" else load_preset("yue2022-figures")
-    history = Landing(vehicle, mode).run(0.3, 5e-3)
+    parameters = five_legs() if mode == "space" else load_preset("yue2022-figures").for_mode(mode)
+    history = Landing(parameters).run(0.3, 5e-3)
     rows = np.arange(0, len(history), 20)
     film = MovingFigure(history, history.parameters, rows, f"{mode} landing", view)
     canvas = FigureCanvasAgg(film.figure)

@@ -13,10 +13,10 @@ from math import sqrt
 
 import mujoco
 import numpy as np
-from vehicle_3d import AZIMUTHS, Array, pitch_of
+from vehicle_3d import Array, pitch_of
 
 from rlv_landing import Parameters
-from rlv_landing.touchdown import footpad_at_rest
+from rlv_landing.touchdown import footpad_at_rest, leg_directions
 
 STIFFNESS, DAMPING = (
     2.3e5,
@@ -82,13 +82,13 @@ def build(
         parameters.ground,
     )
     r, h = footpad_at_rest(parameters)
-    normal = np.array([np.sin(g.slope), np.cos(g.slope), 0.0])
+    normal = ground_normal(parameters)
+    cg = np.array([v.cg_offset_x, 0.0, v.cg_offset_z])
     legs, tendons = "", ""
-    for i, degrees in enumerate(AZIMUTHS[parameters.drop.mode]):
-        c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    for i, (s, c) in enumerate(leg_directions(parameters).values()):
 
         def at(radius: float, height: float, c: float = c, s: float = s) -> Array:
-            return np.array([radius * c, height, radius * s])
+            return np.array([radius * c, height, radius * s]) - cg
 
         foot, joint = at(r, h), at(a.joint_radius, -a.joint_depth)
         legs += f"""
@@ -107,6 +107,10 @@ def build(
              springlength="{m.length!r}">
       <site site="top{i}"/><site site="foot{i}"/>
     </spatial>"""
+    inertia = (v.inertia, 40.0, v.inertia, 0.0, 0.0, 0.0)
+    if parameters.drop.mode == "space":
+        products = (v.inertia_xy, v.inertia_xz, v.inertia_yz)
+        inertia = (v.inertia_roll, v.inertia_yaw, v.inertia, *products)
     time_constant, ratio = contact or (1e-3, 1.0)
     method = "implicitfast" if contact else "RK4"
     return mujoco.MjModel.from_xml_string(f"""
@@ -124,7 +128,7 @@ def build(
     <body name="stage">
       <freejoint/>
       <inertial pos="0 0 0" mass="{v.mass!r}"
-                diaginertia="{_text(v.inertia, 40.0, v.inertia)}"/>{legs}
+                fullinertia="{_text(*inertia)}"/>{legs}
     </body>
   </worldbody>
   <tendon>{tendons}
@@ -132,16 +136,23 @@ def build(
 </mujoco>""")
 
 
+def ground_normal(parameters: Parameters) -> Array:
+    """The normal of the ground at rest."""
+    slope, direction = parameters.ground.slope, parameters.ground.slope_direction
+    down = np.sin(slope)
+    return np.array([down * np.cos(direction), np.cos(slope), down * np.sin(direction)])
+
+
 def ground_law(parameters: Parameters, model: mujoco.MjModel, data: mujoco.MjData) -> None:
     """Apply the model's ground law, linear and frictionless, as a passive force on the footpads.
 
     Depth and speed are computed from MuJoCo's own kinematics.
     """
-    g = parameters.ground
-    normal = np.array([np.sin(g.slope), np.cos(g.slope), 0.0])
+    g, normal = parameters.ground, ground_normal(parameters)
     jacobian = np.zeros((3, model.nv))
-    for i in range(4):
-        depth = -float(normal @ data.site(f"foot{i}").xpos)
+    for i in range(int(parameters.vehicle.legs)):
+        step = parameters[f"leg[{i + 1}].ground.step"]
+        depth = step - float(normal @ data.site(f"foot{i}").xpos)
         if depth <= 0.0:
             continue
         mujoco.mj_jacSite(model, data, jacobian, None, model.site(f"foot{i}").id)
@@ -149,6 +160,39 @@ def ground_law(parameters: Parameters, model: mujoco.MjModel, data: mujoco.MjDat
         sinking = -float(normal @ jacobian @ data.qvel)
         force = max(g.stiffness * depth + g.damping * q * q * (3.0 - 2.0 * q) * sinking, 0.0)
         data.qfrc_passive += force * (normal @ jacobian)
+
+
+def land_in_space(
+    parameters: Parameters, start: Sequence[float], until: float, timestep: float
+) -> tuple[Array, Array]:
+    """Land in space on `ground_law`, by the fourth-order Runge-Kutta method.
+
+    Args:
+        parameters: Vehicle, struts, ground and drop.
+        start: Position [m], quaternion (w, x, y, z), velocity [m/s] and spin [rad/s] of the stage
+            at time 0, inertial but the spin, which is in body axes.
+        until: End [s].
+        timestep: Time step [s].
+
+    Returns:
+        Position and quaternion of the stage (7, n), and the main struts' strokes [m] (legs, n), at
+        every millisecond.
+    """
+    model = build(parameters, timestep)
+    data = mujoco.MjData(model)
+    data.qpos[:7], data.qvel[:6] = start[:7], start[7:]
+    poses, strokes, every = [], [], round(1e-3 / timestep)
+    mujoco.set_mjcb_passive(lambda m, d: ground_law(parameters, m, d))
+    try:
+        for k in range(round(until / timestep) + 1):
+            if k % every == 0:
+                mujoco.mj_forward(model, data)
+                poses.append(data.qpos[:7].copy())
+                strokes.append(parameters.main_strut.length - data.ten_length)
+            mujoco.mj_step(model, data)
+    finally:
+        mujoco.set_mjcb_passive(None)
+    return np.array(poses).T, np.array(strokes).T
 
 
 def land(
@@ -182,7 +226,7 @@ def land(
     legs = [(j.qposadr[0], j.dofadr[0]) for j in slides]
     a = parameters.auxiliary_strut
     feet = [model.site(f"foot{i}").id for i in range(4)]
-    normal = np.array([np.sin(parameters.ground.slope), np.cos(parameters.ground.slope), 0.0])
+    normal = ground_normal(parameters)
     first_touch = np.full(4, np.inf)
     rows: list[list[Array]] = []
     every = round(1e-3 / timestep)

@@ -1,14 +1,15 @@
 """The vehicle as a full 3-D Newton-Euler model that shares no code with the kernels.
 
-A rigid body with six degrees of freedom (quaternion, full inertia about its axes) carries four
-separate legs. Each footpad is a point mass, held in a plane fixed in the body by a transverse
-constraint force N. Nothing is eliminated by hand: Newton's law of the body (3), Euler's (3) and
-Newton's law of four footpads (12) are 18 linear equations. The 18 unknowns are the accelerations of
-the body (3 + 3) and of the footpads in their planes (4 + 4), and N (4). They are solved as they
-are, with all four legs separate: no groups, no mirror images, no symmetric plane.
+A rigid body with six degrees of freedom (quaternion, full inertia tensor) carries n separate legs.
+Each footpad is a point mass, held in a plane fixed in the body by a transverse constraint force N.
+Nothing is eliminated by hand: Newton's law of the body (3), Euler's (3) and Newton's law of n
+footpads (3 n) are 6 + 3 n linear equations, 18 with four legs. As many unknowns are the
+accelerations of the body (3 + 3) and of the footpads in their planes (n + n), and N (n). They are
+solved as they are, with all legs separate: no groups, no mirror images, no symmetric plane. In
+space legs may stand on steps and have their own friction.
 
 Axes: inertial x, y up, z = x cross y. Pitch is clockwise positive, so a pitch psi is a rotation
-about z by -psi. SI units. Arrays of vectors are (3, 4): component, leg.
+about z by -psi. SI units. Arrays of vectors are (3, n): component, leg.
 """
 
 from __future__ import annotations
@@ -32,10 +33,15 @@ POSITION, QUATERNION, VELOCITY, SPIN = slice(0, 3), slice(3, 7), slice(7, 10), s
 LEGS = 13
 LEG_STATES = ("r", "h", "r_rate", "h_rate", "upper", "lower", "slip_x", "slip_z")
 SIZE = LEGS + 4 * len(LEG_STATES)
-# what counts as small in each state: the absolute tolerance is the relative one times this
-SCALE = np.concatenate(
-    ([0.1] * 3, [0.1] * 4, [1.0] * 6, np.repeat([0.1, 0.1, 1.0, 1.0, 1e5, 1e5, 1e-3, 1e-3], 4))
-)
+
+
+def scale_of(legs: int) -> Array:
+    """What counts as small in each state: the absolute tolerance is the relative one times this."""
+    leg = [0.1, 0.1, 1.0, 1.0, 1e5, 1e5, 1e-3, 1e-3]
+    return np.concatenate(([0.1] * 3, [0.1] * 4, [1.0] * 6, np.repeat(leg, legs)))
+
+
+SCALE = scale_of(4)
 
 
 @dataclass(frozen=True)
@@ -74,13 +80,13 @@ def rotation(q: Array) -> Array:
 
 
 class Vehicle3D:
-    """The right-hand side of the four-legged vehicle in space.
+    """The right-hand side of the vehicle in space.
 
     Args:
         parameters: numbers of vehicle, ground and drop (its mode gives the legs' azimuths).
-        inputs: loads and the ground's motion, from time 0 on.
+        inputs: loads and the ground's motion, from time 0 on; in space the loads alone.
         roll_yaw: the body's inertia about its own x and y [kg m2]; a symmetric landing must not
-            depend on them.
+            depend on them, and one in space has its own.
     """
 
     def __init__(
@@ -96,19 +102,47 @@ class Vehicle3D:
             parameters.auxiliary_strut,
         )
         self.ground = parameters.ground
-        azimuth = np.radians(AZIMUTHS[parameters.drop.mode])
-        s, c, one, none = np.sin(azimuth), np.cos(azimuth), np.ones(4), np.zeros(4)
+        v, g = parameters.vehicle, parameters.ground
+        in_space = self.in_space = parameters.drop.mode == "space"
+        self.n, self.whole_mass = 4, parameters.whole_mass
+        self.cg, self.mu, self.step = np.zeros((3, 1)), g.friction, 0.0
+        if in_space:
+            self.n = int(v.legs)
+            azimuth = v.leg_azimuth + 2.0 * np.pi * np.arange(self.n) / self.n
+            if v.leg_azimuths:
+                azimuth = np.array([float(word) for word in v.leg_azimuths.split()])
+            self.cg = np.array([[v.cg_offset_x], [0.0], [v.cg_offset_z]])
+            self.mu, self.step = (
+                np.array([float(parameters[f"leg[{i + 1}].ground.{what}"]) for i in range(self.n)])
+                for what in ("friction", "step")
+            )
+        else:
+            azimuth = np.radians(AZIMUTHS[parameters.drop.mode])
+        s, c, one, none = np.sin(azimuth), np.cos(azimuth), np.ones(self.n), np.zeros(self.n)
         self.e_r, self.e_y, self.e_t = (
             np.array([c, none, s]),
             np.array([none, one, none]),
             np.array([-s, none, c]),
         )
-        self.main_joint = self.damper.joint_radius * self.e_r - self.damper.joint_depth * self.e_y
-        self.aux_joint = self.strut.joint_radius * self.e_r - self.strut.joint_depth * self.e_y
+        self.main_joint = (
+            self.damper.joint_radius * self.e_r - self.damper.joint_depth * self.e_y - self.cg
+        )
+        self.aux_joint = (
+            self.strut.joint_radius * self.e_r - self.strut.joint_depth * self.e_y - self.cg
+        )
         # a leg in the symmetric plane spends its whole friction coefficient along x, any other one
         # shares it evenly at rest
         self.share_x = np.where(np.abs(s) < 1e-12, 1.0, 0.5)
         self.inertia = np.array([roll_yaw[0], roll_yaw[1], self.vehicle.inertia])
+        self.tensor = np.diag(self.inertia)
+        if in_space:
+            self.tensor = np.array(
+                [
+                    [v.inertia_roll, v.inertia_xy, v.inertia_xz],
+                    [v.inertia_xy, v.inertia_yaw, v.inertia_yz],
+                    [v.inertia_xz, v.inertia_yz, v.inertia],
+                ]
+            )
         self.matrix = self._constant_part()
         self.calls = 0
 
@@ -117,17 +151,18 @@ class Vehicle3D:
 
         The rows are the body's Newton, Euler, and the footpads' Newton equations.
         """
-        A = np.zeros((18, 18))
+        n = self.n
+        A = np.zeros((6 + 3 * n, 6 + 3 * n))
         A[0:3, 0:3] = self.vehicle.mass * np.eye(3)
-        A[0:3, 14:18] = self.e_t  # the body feels -N e_t; brought to the left
-        A[3:6, 3:6] = np.diag(self.inertia)
+        A[0:3, 6 + 2 * n :] = self.e_t  # the body feels -N e_t; brought to the left
+        A[3:6, 3:6] = self.tensor
         m = self.vehicle.footpad_mass
-        for i in range(4):
+        for i in range(n):
             rows = slice(6 + 3 * i, 9 + 3 * i)
             A[rows, 0:3] = m * np.eye(3)
             A[rows, 6 + i] = m * self.e_r[:, i]
-            A[rows, 10 + i] = m * self.e_y[:, i]
-            A[rows, 14 + i] = -self.e_t[:, i]
+            A[rows, 6 + n + i] = m * self.e_y[:, i]
+            A[rows, 6 + 2 * n + i] = -self.e_t[:, i]
         return A
 
     def exp(self, x: Array) -> Array:
@@ -237,11 +272,11 @@ class Vehicle3D:
         displaced by `s`, both (2, 4).
         """
         g = self.ground
-        weight = 9.80665 * (self.vehicle.mass + 4.0 * self.vehicle.footpad_mass)
+        weight = 9.80665 * self.whole_mass
         k = g.tangential_stiffness or weight / g.stick_displacement
         zone = g.slip_zone * g.stick_displacement
         speed, length = np.sqrt((v * v).sum(axis=0)), np.sqrt((s * s).sum(axis=0))
-        cone = g.friction * Fn * (1.0 + g.stribeck_gain * np.exp(-speed / g.stribeck_speed))
+        cone = self.mu * Fn * (1.0 + g.stribeck_gain * np.exp(-speed / g.stribeck_speed))
         elastic = np.minimum(k * length, cone)
         n = s / np.where(length > 0.0, length, 1.0)
         beyond = length - cone / k
@@ -290,26 +325,25 @@ class Vehicle3D:
         """
         g, u = self.ground, self.inputs
         angle = g.slope + u.tilt + u.tilt_rate * t
-        along, normal = (
-            np.array([np.cos(angle), -np.sin(angle), 0.0]),
-            np.array([np.sin(angle), np.cos(angle), 0.0]),
-        )
+        ahead, aside = np.cos(g.slope_direction), np.sin(g.slope_direction)
+        along = np.array([np.cos(angle) * ahead, -np.sin(angle), np.cos(angle) * aside])
+        normal = np.array([np.sin(angle) * ahead, np.cos(angle), np.sin(angle) * aside])
+        across = np.array([-aside, 0.0, ahead])
         arm = place - np.array([[0.0], [u.heave + u.heave_rate * t], [0.0]])
         relative = (
             speed - cross((0.0, 0.0, -u.tilt_rate), arm) - np.array([[0.0], [u.heave_rate], [0.0]])
         )
-        d, sinking = -(normal @ arm), -(normal @ relative)
+        d, sinking = self.step - normal @ arm, -(normal @ relative)
         depth = np.maximum(d, 0.0)
         Fn = np.maximum(
             g.stiffness * depth**g.exponent + g.damping * self.ramp(depth) * sinking, 0.0
         )
-        vx, vz = along @ relative, relative[2]
+        vx, vz = along @ relative, across @ relative
         if g.friction_law == "passive":
             (Fx, Fz), (rate_x, rate_z) = self.passive_friction(
                 d, Fn, np.array([vx, vz]), np.array([slip_x, slip_z])
             )
-            force = normal[:, None] * Fn + along[:, None] * Fx
-            force[2] += Fz
+            force = normal[:, None] * Fn + along[:, None] * Fx + across[:, None] * Fz
             return force, rate_x, rate_z, d
         small = g.direction_speed**2
         whole = vx * vx + vz * vz + small
@@ -322,8 +356,7 @@ class Vehicle3D:
             vz,
             slip_z,
         )
-        force = normal[:, None] * Fn + along[:, None] * Fx
-        force[2] += Fz
+        force = normal[:, None] * Fn + along[:, None] * Fx + across[:, None] * Fz
         return force, rate_x, rate_z, d
 
     def pull(
@@ -339,17 +372,20 @@ class Vehicle3D:
         return length - now, -(direction * rho_rate).sum(axis=0), direction
 
     def solve(self, A: Array, b: Array) -> Array:
-        """The linear system of 18 equations."""
+        """The linear system of all equations."""
         return np.linalg.solve(A, b)
 
     def evaluate(self, t: float, y: Array) -> dict[str, Array]:
         """Everything at one state: accelerations, loads, rates."""
         v = self.vehicle
-        legs = y[LEGS:].reshape(len(LEG_STATES), 4)
+        n, legs = self.n, y[LEGS:].reshape(len(LEG_STATES), self.n)
         r, h, r_rate, h_rate, upper, lower, slip_x, slip_z = legs
         spin, R = y[SPIN], rotation(y[QUATERNION])
         omega = spin[:, None]
-        rho, rho_rate = r * self.e_r + h * self.e_y, r_rate * self.e_r + h_rate * self.e_y
+        rho_rate = r_rate * self.e_r + h_rate * self.e_y
+        rho = r * self.e_r + h * self.e_y
+        if self.in_space:
+            rho = rho - self.cg
         swept = cross(omega, rho)
         place, speed = y[POSITION][:, None] + R @ rho, y[VELOCITY][:, None] + R @ (swept + rho_rate)
 
@@ -367,14 +403,15 @@ class Vehicle3D:
         )
         torque = R.T @ np.array([0.0, 0.0, -self.inputs.moment])  # clockwise positive
         torque = torque - (cross(self.main_joint, main) + cross(self.aux_joint, aux)).sum(axis=1)
-        gyroscopic = cross(spin, self.inertia * spin)
+        turning = self.tensor @ spin if self.in_space else self.inertia * spin
+        gyroscopic = cross(spin, turning)
         carried = cross(omega, swept) + 2.0 * cross(
             omega, rho_rate
         )  # centripetal and Coriolis acceleration of the footpads
 
         A = self.matrix.astype(y.dtype)
         at = rho if v.transverse_load_at == "footpad" else self.aux_joint
-        A[3:6, 14:18] = cross(at, self.e_t)
+        A[3:6, 6 + 2 * n :] = cross(at, self.e_t)
         m = v.footpad_mass
         for i, (x, height, z) in enumerate(rho.T):  # m spin' cross rho
             k = 6 + 3 * i
@@ -385,7 +422,7 @@ class Vehicle3D:
         x = self.solve(A, b)
         return {
             "rotation": R, "acceleration": R @ x[0:3], "spin_rate": x[3:6],
-            "r_acc": x[6:10], "h_acc": x[10:14], "transverse": x[14:18],
+            "r_acc": x[6:6 + n], "h_acc": x[6 + n:6 + 2 * n], "transverse": x[6 + 2 * n:],
             "upper_rate": upper_rate, "lower_rate": lower_rate,
             "slip_x_rate": rate_x, "slip_z_rate": rate_z,
             "main_force": Fm, "stroke": s, "stroke_rate": s_rate,
@@ -406,7 +443,7 @@ class Vehicle3D:
                 q[0] * w[2] + q[1] * w[1] - q[2] * w[0],
             ]
         )
-        rates = y[LEGS + 8 : LEGS + 16]  # r', h' of the four legs
+        rates = y[LEGS + 2 * self.n : LEGS + 4 * self.n]  # r', h' of the legs
         names = ("r_acc", "h_acc", "upper_rate", "lower_rate", "slip_x_rate", "slip_z_rate")
         return np.concatenate(
             (y[VELOCITY], turn, e["acceleration"], e["spin_rate"], rates, *(e[n] for n in names))
@@ -418,8 +455,8 @@ class Vehicle3D:
         `body` is (x, y, pitch, vx, vy, pitch rate).
         """
         x, y, pitch, vx, vy, rate = body
-        a, b = self.main_joint[:, 0] @ self.e_r[:, 0], -self.damper.joint_depth
-        c, d = self.aux_joint[:, 0] @ self.e_r[:, 0], -self.strut.joint_depth
+        a, b = self.damper.joint_radius, -self.damper.joint_depth
+        c, d = self.strut.joint_radius, -self.strut.joint_depth
         apart = np.hypot(c - a, d - b)
         # law of cosines at the main strut's joint, turned outwards from the line between the joints
         opening = np.arccos(
@@ -427,7 +464,7 @@ class Vehicle3D:
             / (2.0 * self.damper.length * apart)
         )
         angle = np.arctan2(d - b, c - a) + opening
-        legs = np.zeros((len(LEG_STATES), 4))
+        legs = np.zeros((len(LEG_STATES), self.n))
         legs[0], legs[1] = (
             a + self.damper.length * np.cos(angle),
             b + self.damper.length * np.sin(angle),

@@ -55,7 +55,12 @@ def near(rng: random.Random) -> Parameters:
     base = load_preset("yue2022-figures", rng.choice(sorted(MODES)))
     values = {}
     for name, q in PARAMETER_QUANTITIES.items():
-        if q.choices or name in OTHERS or name.endswith(SHAPE) or not float(base[name]) > 0.0:
+        if (
+            q.kind == "string"
+            or name in OTHERS
+            or name.endswith(SHAPE)
+            or not float(base[name]) > 0.0
+        ):
             continue
         values[name] = min(max(float(base[name]) * exp(rng.uniform(-1.2, 1.2)), q.lo), q.hi)
     return base.with_values({**values, **fast(base, rng)})

@@ -23,6 +23,8 @@ FIVE_LEGS: dict[str, float | str] = {
     "drop.lateral_velocity": 0.3,
     "ground.slope": radians(3.0),
     "ground.slope_direction": radians(50.0),
+    # bumps of some centimetres
+    "ground.terrain": "x -6 4 4 z -6 4 4 h 0 0.02 0 0 0.01 0.03 0 0.02 0 0.01 0.02 0 0.02 0 0 0.01",
     "leg[2].ground.step": 0.012,
     "leg[2].main_strut.orifice_area_compression": 7e-6,
     "leg[4].ground.friction": 0.15,

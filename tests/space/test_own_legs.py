@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import pi
 from typing import Any
 
 import pytest
@@ -60,11 +61,11 @@ def test_the_energy_balance_holds_with_legs_that_all_differ(method: str) -> None
 
 def test_what_leg_2_has_for_itself_is_leg_1_s_where_legs_are_counted_from_the_next_one() -> None:
     five = vehicle(TURNING | {"vehicle.legs": 5.0})
-    spacing = 2.0 * 3.141592653589793 / 5.0
+    spacing = 2.0 * pi / 5.0
     values = [value for name, value in OWN.items() if name.startswith("leg[2]")]
     names = [name[7:] for name in OWN if name.startswith("leg[2]")]
     first, second = ({f"leg[{leg}].{n}": v for n, v in zip(names, values)} for leg in (1, 2))
-    start = five.vehicle.leg_azimuth - 2.0 * 3.141592653589793
+    start = five.vehicle.leg_azimuth - 2.0 * pi
     one = five.with_values({"vehicle.leg_azimuth": start + spacing, **first})
     two = five.with_values({"vehicle.leg_azimuth": start, **second})
     landings = Landing(one, rtol=1e-8), Landing(two, rtol=1e-8)
@@ -76,6 +77,48 @@ def test_what_leg_2_has_for_itself_is_leg_1_s_where_legs_are_counted_from_the_ne
     assert landings[0].get(force.format(1)) == pytest.approx(
         landings[1].get(force.format(2)), rel=1e-5
     )
+
+
+def test_even_azimuths_are_those_of_legs_evenly_round_the_body() -> None:
+    three = vehicle(TURNING | {"vehicle.legs": 3.0, "vehicle.leg_azimuth": 0.5})
+    listed = " ".join(repr(0.5 + 2.0 * pi * i / 3.0) for i in range(3))
+    # and in another order: leg 1 is the second then
+    turned = " ".join(repr(0.5 + 2.0 * pi * i / 3.0) for i in (1, 0, 2))
+    landings = [
+        Landing(three.with_values(own), rtol=1e-8)
+        for own in ({}, {"vehicle.leg_azimuths": listed}, {"vehicle.leg_azimuths": turned})
+    ]
+    for landing in landings:
+        landing.advance_to(0.3)
+    for name in ("body.x", "body.pitch", "body.heading", "status.stability_margin"):
+        values = [landing.get(name) for landing in landings]
+        assert values == pytest.approx([values[0]] * 3, abs=1e-8)
+    force = "leg[{}].main_strut.force"
+    found = [landings[0].get(force.format(1)), landings[2].get(force.format(2))]
+    assert found[1] == pytest.approx(found[0], rel=1e-5)
+
+
+def test_files_have_azimuths_as_an_array_with_units() -> None:
+    text = '[drop]\nmode = "space"\n[vehicle]\nlegs = 3\nleg_azimuths = ["0 deg", 2.0, "-90 deg"]\n'
+    found = parse_toml(text, "mine.toml")
+    assert found.vehicle.leg_azimuths == f"0.0 2.0 {-0.5 * pi!r}"
+    assert parse_toml(to_toml(found), "again").vehicle == found.vehicle
+
+
+@pytest.mark.parametrize(
+    ("azimuths", "told"),
+    [
+        ("0 1 2", "has 3 azimuths for vehicle.legs = 4"),
+        ("0 1 2 1.0000001", "legs 2 and 4 stand 1e-07 rad apart, at one azimuth"),
+        ("0 1 2 6.2831", "legs 1 and 4 stand"),
+        ("0 1 2 north", "leg 4 = 'north' is no angle"),
+        ("0 1 2 nan", "leg 4 = 'nan' is no angle"),
+    ],
+)
+def test_legs_at_one_azimuth_are_refused(azimuths: str, told: str) -> None:
+    with pytest.raises(LandingError) as e:
+        vehicle(SPACE | {"vehicle.leg_azimuths": azimuths})
+    assert told in str(e.value)
 
 
 def test_a_foot_stands_on_its_stone_and_another_in_its_hole() -> None:

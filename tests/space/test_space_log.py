@@ -13,6 +13,8 @@ from five_legs import DECK, five_legs
 from rclpy.serialization import serialize_message
 
 from rlv_landing import Landing
+from rlv_landing.core import SpatialInputs
+from rlv_landing.figures.ground.shape import deck_of
 from rlv_landing.presets import to_toml
 from rlv_landing.quantities import interface_of
 from rlv_ros_bridge.fmu.builds import build_metadata
@@ -20,6 +22,7 @@ from rlv_ros_bridge.logs.history import log_history
 from rlv_ros_bridge.logs.peaks import landing_peaks, peak_texts
 from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.logs.verification.repeat import RepeatedRun
 from rlv_ros_bridge.logs.verification.verify import verify
 from rlv_ros_bridge.messages.columns import readings_of
 from rlv_ros_bridge.messages.fields import Vehicle
@@ -85,8 +88,11 @@ def test_the_planar_fmu_does_not_repeat_it(recorded: Path, fmu: Path, command) -
     assert done.err.count("\n") == 1
 
 
-def log_with_inputs(folder: Path) -> LogReader:
-    """A log as the node writes it, of a landing on a deck and in gusts, in all directions."""
+def log_with_inputs(folder: Path, decks: list[SpatialInputs]) -> LogReader:
+    """A log as the node writes it, of a landing on a deck and in gusts, in all directions.
+
+    `decks` gets where the deck is at each sample.
+    """
     parameters, random = five_legs(), Random(7)
     table, names = input_table_of(SPACE), topics_of(SPACE.legs)
     packer, landing = SampleBytes(Vehicle.of(parameters)), Landing(parameters)
@@ -118,6 +124,7 @@ def log_with_inputs(folder: Path) -> LogReader:
     change_inputs(0)
     for k in range(round(STOP_TIME * 1e3) + 1):
         landing.advance_to(k * 1e-3)
+        decks.append(deck_of(landing.ground_places()))
         messages = packer.pack(k * 1_000_000, landing.values())
         for topic, part in wanted:
             recorder.write(f"/landing/{topic.name}", k * 1_000_000, messages[part])
@@ -128,9 +135,21 @@ def log_with_inputs(folder: Path) -> LogReader:
 
 
 def test_a_run_with_all_inputs_is_repeated_bit_for_bit(space_fmu: Path, tmp_path: Path) -> None:
-    reader = log_with_inputs(tmp_path / "log")
+    reader = log_with_inputs(tmp_path / "log", [])
     for fmu in (None, space_fmu):
         found = verify(reader, fmu)
         assert (found.first, found.other_bits) == (None, 0)
         assert found.inputs > 40
         assert found.peaks == len(SPACE.peaks)
+
+
+def test_a_film_of_it_shows_the_deck_as_it_moved(command, tmp_path: Path) -> None:
+    decks: list[SpatialInputs] = []
+    reader, film = log_with_inputs(tmp_path / "log", decks), tmp_path / "landing.gif"
+    reader.read_through()
+    chosen = range(0, 401, 7)
+    assert RepeatedRun(reader).decks([k * 1e-3 for k in chosen]) == [decks[k] for k in chosen]
+    size = ("--fps", "10", "--slow-motion", "1", "--width", "320")
+    done = command("animate", str(tmp_path / "log"), str(film), *size)
+    assert (done.code, done.err) == (0, "")
+    assert f"{film}: 5 frames" in done.out

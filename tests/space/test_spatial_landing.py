@@ -201,3 +201,21 @@ def test_a_state_that_is_restored_on_the_way_goes_on_with_the_same_digits(method
             landing.advance_to(4e-3 * k)
         again.restore(again.state())
     assert again.state() == plain.state()
+
+
+@pytest.mark.parametrize("factor", [0.0, 0.5, 1.001])
+def test_a_state_whose_quaternion_is_no_attitude_is_refused(factor: float) -> None:
+    landing = Landing(vehicle(TURNING))
+    landing.advance_to(0.1)
+    state, before = landing.state(), landing.values()
+    quaternion = [landing.get(f"body.q_{part}") for part in "wxyz"]
+    at = next(
+        i
+        for i in range(len(state))
+        if state[i : i + 4].tolist() == pytest.approx(quaternion, abs=1e-3)
+    )
+    for k in range(4):
+        state[at + k] *= factor
+    with pytest.raises(LandingError, match=r"a quaternion of length .*, which is no attitude"):
+        landing.restore(state)
+    assert landing.values() == before

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from ..effort import check_memory
 from ..errors import LandingError
 from ..history import History
+from ..quantities import SPACE
 from ..signals.handlers import ENDING
 from ..text.durable import PART, temporary_name, unwritable
 from .moving_figure import WIDTH, MovingFigure
@@ -46,7 +47,7 @@ class Film:
         slow_motion: Factor by which the animation is slower than the landing.
         start: First time shown [s]; None for the landing's first.
         end: Last time shown [s]; None for the landing's last.
-        view: `side`, the symmetric plane, or `3d`.
+        view: `side`, along z, or `3d`; None: `3d` in space, else `side`.
         width: Width of the picture [pixels].
     """
 
@@ -54,7 +55,7 @@ class Film:
     slow_motion: float = 5.0
     start: float | None = None
     end: float | None = None
-    view: Literal["side", "3d"] = "side"
+    view: Literal["side", "3d"] | None = None
     width: int = 960
 
 
@@ -105,7 +106,8 @@ def save_animation(
             2.0 * len(rows) * film.width**2,
             "take fewer or smaller frames, or write an .mp4",
         )
-    figure = MovingFigure(history, parameters, rows, title, film.view)
+    view = film.view or ("3d" if parameters.drop.mode == SPACE else "side")
+    figure = MovingFigure(history, parameters, rows, title, view)
     unfinished = temporary_name(path, f"{PART}{path.suffix}")
     try:
         # where it cannot be made, ffmpeg says so in lines of its own

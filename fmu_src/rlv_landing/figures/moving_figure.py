@@ -11,10 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..history import History
+from ..quantities import SPACE
 from ..touchdown import leg_directions
-from .plots import MAIN_FORCE, MAIN_STROKE, legs_of_a_curve
-from .style import COLOURS, FAINT, FILM_GROUND, GROUND, INK
-from .wireframe import ground_height, wireframe
+from .ground.drawn import DrawnGround, empty_line, set_line
+from .ground.shape import GroundShape, Points, decks_of
+from .plots import MAIN_FORCE, MAIN_STROKE, legs_together
+from .style import COLOURS, FAINT, FORCE, INK
+from .wireframe import contact_forces, wireframe
 
 if TYPE_CHECKING:
     from ..parameters import Parameters
@@ -22,12 +25,21 @@ if TYPE_CHECKING:
 WIDTH, HEIGHT = 9.6, 5.28
 CURVES = (MAIN_FORCE, MAIN_STROKE)
 WIDTHS = {"hull": 0.6, "outline": 1.4, "main": 2.2, "auxiliary": 1.2}
+# by part, of what is drawn as marks
+MARKS = {"feet": 5, "points": 2}
+# length of the largest contact force, in parts of the picture's height
+LONGEST_FORCE = 0.45
 
 
 class MovingFigure:
     """The figure of a landing, WIDTH inches wide; `show(i)` sets it to the i-th of `rows`.
 
-    `view` is `side` or `3d`.
+    Args:
+        history: The landing's columns over time.
+        parameters: The vehicle and its ground.
+        rows: The samples that are shown.
+        title: The figure's title.
+        view: `side` or `3d`.
     """
 
     def __init__(
@@ -45,9 +57,11 @@ class MovingFigure:
         self._history, self._rows = history, rows
         self._lines = wireframe(history, parameters, rows)
         self._solid = view == "3d"
-        self._legs = sorted(leg_directions(parameters))
-        groups = legs_of_a_curve(parameters.drop.mode, self._legs)
+        groups = legs_together(parameters.drop.mode, leg_directions(parameters))
         self._colours = {leg: colour for legs, colour in zip(groups, COLOURS) for leg in legs}
+        in_space = parameters.drop.mode == SPACE
+        self._angles = ("pitch", "roll", "heading") if in_space else ("pitch",)
+        self._decks = decks_of(history, rows)
         grid = self.figure.add_gridspec(len(CURVES), 2, width_ratios=(1.0, 1.15))
         # Any: matplotlib's types do not distinguish axes in space
         self._vehicle: Any = self.figure.add_subplot(
@@ -58,16 +72,13 @@ class MovingFigure:
             for part in self._lines
         }
         self._set_up_vehicle(parameters, title)
-        first = [min(legs) for legs in groups]
+        self._set_up_forces(contact_forces(history, parameters, rows))
+        first = [legs[0] for legs in groups]
         axes = [self.figure.add_subplot(grid[i, 1]) for i in range(len(CURVES))]
         self._curves = [self._curve(ax, first, *curve) for ax, curve in zip(axes, CURVES)]
         # above the curves, so that it covers none
         axes[0].legend(
-            loc="lower right",
-            bbox_to_anchor=(1.0, 1.0),
-            ncols=len(groups),
-            frameon=False,
-            fontsize=8,
+            loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, frameon=False, fontsize=8
         )
         axes[-1].set_xlabel("time [s]")
         self.show(0)
@@ -76,28 +87,32 @@ class MovingFigure:
         self.figure.set_layout_engine("none")
 
     def show(self, i: int) -> None:
-        """Set vehicle, marks and the printed time to the i-th frame."""
+        """Set vehicle, ground, forces, marks and the printed time to the i-th frame."""
         for part, lines in self._drawn.items():
             for line, points in zip(lines, self._lines[part][i]):
-                if self._solid:
-                    line.set_data_3d(points[:, 0], -points[:, 2], points[:, 1])
-                else:
-                    line.set_data(points[:, 0], points[:, 1])
+                set_line(line, points)
+        set_line(self._forces, self._force_lines[i])
+        self._ground.show(self._decks[i])
         row = self._rows[i]
         now = self._history.time[row]
         for bar, dots in self._curves:
             bar.set_xdata((now, now))
             for dot, values in dots:
                 dot.set_data((now,), (values[row],))
-        pitch = np.degrees(self._history["body.pitch"][row])
-        self._time_text.set_text(f"t = {now:.3f} s   pitch {pitch:+.2f}°")
+        turned = (
+            f"{name} {np.degrees(self._history[f'body.{name}'][row]):+.2f}°"
+            for name in self._angles
+        )
+        # the three of a landing in space take a line of their own
+        between = "   " if len(self._angles) == 1 else "\n"
+        self._time_text.set_text(f"t = {now:.3f} s{between}{'  '.join(turned)}")
 
     def _line(self, part: str, i: int) -> Any:
         style: dict[str, Any]
-        if part == "feet":
-            style = {"marker": "o", "markersize": 5, "linestyle": "", "color": INK}
+        if part in MARKS:
+            style = {"marker": "o", "markersize": MARKS[part], "linestyle": "", "color": INK}
         else:
-            colour = self._colours[self._legs[i]] if part in ("main", "auxiliary") else INK
+            colour = self._colours[i + 1] if part in ("main", "auxiliary") else INK
             visible = self._solid or part != "hull"
             style = {
                 "linewidth": WIDTHS[part],
@@ -105,50 +120,69 @@ class MovingFigure:
                 "solid_capstyle": "round",
                 "visible": visible,
             }
-        (line,) = self._vehicle.plot(*([(), (), ()] if self._solid else [(), ()]), **style)
-        return line
+        return empty_line(self._vehicle, **style)
 
     def _set_up_vehicle(self, parameters: Parameters, title: str) -> None:
         """Set limits that fit all frames; draw the ground and the text for the time."""
-        ax = self._vehicle
         every = np.concatenate([lines.reshape(-1, 3) for lines in self._lines.values()])
         low, high = every.min(axis=0) - 0.15, every.max(axis=0) + 0.15
-        ends = np.array([low[0], high[0]])
-        heights = ground_height(parameters, ends)
-        low[1] = min(low[1], heights.min())
-        if self._solid:
-            across = max(-low[2], high[2])
-            x, y = np.meshgrid(ends, (-across, across))
-            ax.plot_surface(
-                x,
-                y,
-                ground_height(parameters, x, -y),
-                color=FILM_GROUND,
-                alpha=0.6,
-                shade=False,
-                linewidth=0,
-                zorder=0,
-            )
-            ax.set(
-                xlim=ends,
-                ylim=(-across, across),
-                zlim=(low[1], high[1]),
-                xlabel="x [m]",
-                ylabel="y [m]",
-                zlabel="z [m]",
-            )
-            ax.set_box_aspect((ends[1] - ends[0], 2.0 * across, high[1] - low[1]), zoom=0.97)
-            ax.view_init(elev=14.0, azim=-62.0)
-            ax.locator_params(nbins=4)
-            ax.tick_params(labelsize=7)
-        else:
-            ax.plot(ends, heights, color=GROUND, linewidth=1.2, zorder=0)
-            ax.fill_between(ends, heights, low[1] - 0.1, color=FILM_GROUND, zorder=0)
-            ax.set(xlim=ends, ylim=(low[1] - 0.1, high[1]), xlabel="x [m]", ylabel="y [m]")
-            ax.set_aspect("equal")
-            ax.spines[["top", "right"]].set_visible(False)
-        self._time_text = ax.set_title("t", loc="left", fontsize=10, family="monospace")
+        in_space = parameters.drop.mode == SPACE
+        if not in_space:
+            high[2] = max(-low[2], high[2])
+            low[2] = -high[2]
+        decks = list(dict.fromkeys(self._decks))
+        ways = np.array([(deck.surge, 0.0, deck.sway) for deck in decks])
+        first, last = low - ways.max(axis=0), high - ways.min(axis=0)
+        shape = GroundShape(parameters, (first[0], last[0]), (first[2], last[2]))
+        shown = shape.grid if self._solid else shape.cut
+        low[1] = min(low[1], *(float(np.nanmin(shown(deck)[:, 1])) for deck in decks))
+        self._set_up_axes(low, high)
+        self._ground = DrawnGround(self._vehicle, shape, low[1] - 0.1, in_space=in_space)
+        self._reach = LONGEST_FORCE * (high[1] - low[1])
+        self._time_text = self._vehicle.set_title(
+            "\n" * (len(self._angles) > 1),
+            loc="left",
+            fontsize=10 if len(self._angles) == 1 else 9,
+            family="monospace",
+        )
         self.figure.suptitle(title, fontsize=11)
+
+    def _set_up_axes(self, low: Points, high: Points) -> None:
+        ax = self._vehicle
+        if not self._solid:
+            ax.set(xlim=(low[0], high[0]), ylim=(low[1] - 0.1, high[1]))
+            ax.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
+            ax.spines[["top", "right"]].set_visible(False)
+            return
+        ax.set(
+            xlim=(low[0], high[0]),
+            ylim=(-high[2], -low[2]),
+            zlim=(low[1], high[1]),
+            xlabel="x [m]",
+            ylabel="y [m]",
+            zlabel="z [m]",
+        )
+        ax.set_box_aspect((high - low)[[0, 2, 1]], zoom=0.97)
+        ax.view_init(elev=14.0, azim=-62.0)
+        ax.locator_params(nbins=4)
+        ax.tick_params(labelsize=7)
+
+    def _set_up_forces(self, forces: Points) -> None:
+        """Make lines from the footpads along the ground's forces, (frames, legs, 3) [N]."""
+        largest = float(np.linalg.norm(forces, axis=-1).max())
+        feet = self._lines["feet"][:, :, 0]
+        ends = feet + forces * (self._reach / largest if largest > 0.0 else 0.0)
+        lines = np.stack([feet, ends, np.full_like(feet, np.nan)], axis=2)
+        self._force_lines = lines.reshape(self.frames, -1, 3)
+        label = f"contact forces, the longest {largest / 1e3:.3g} kN"
+        self._forces = empty_line(self._vehicle, color=FORCE, linewidth=2.0, zorder=3, label=label)
+        self._vehicle.legend(
+            handles=[self._forces],
+            loc="upper center",
+            bbox_to_anchor=(0.5, -0.1),
+            frameon=False,
+            fontsize=8,
+        )
 
     def _curve(
         self, ax: Any, legs: list[int], name: str, factor: float, label: str
@@ -182,5 +216,5 @@ class MovingFigure:
 
     def _legs_like(self, leg: int) -> str:
         return "leg " + "/".join(
-            str(other) for other in self._legs if self._colours[other] == self._colours[leg]
+            str(other) for other in self._colours if self._colours[other] == self._colours[leg]
         )

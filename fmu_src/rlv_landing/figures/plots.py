@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -155,9 +155,9 @@ def inline_svg(
 def drawn_legs(history: History) -> list[tuple[int, ...]]:
     """The legs that share a curve: mirror images, by touchdown; in space each alone."""
     mode = history.parameters.drop.mode if history.parameters is not None else SPACE
-    return legs_of_a_curve(mode, history.legs)
+    return legs_together(mode, history.legs)
 
 
-def legs_of_a_curve(mode: str, legs: Sequence[int]) -> list[tuple[int, ...]]:
-    """The legs that share a curve in a landing of the `mode`, of all `legs`."""
+def legs_together(mode: str, legs: Iterable[int]) -> list[tuple[int, ...]]:
+    """As `drawn_legs`, of a landing in `mode` on `legs`."""
     return [(leg,) for leg in legs] if mode == SPACE else touchdown_groups(mode)

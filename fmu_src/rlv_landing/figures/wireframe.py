@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from ..history import History
 from ..parameters import Parameters
+from ..parameters.surroundings import read_points
 from ..quantities import SPACE
 from ..touchdown import footpad_between, leg_directions
 
@@ -33,7 +34,8 @@ def wireframe(
     Returns:
         Arrays (rows, lines, points, 3) [m] by part: `outline`, the body's rectangle in the
         symmetric plane; `hull`, its rings and the rectangle across; `main` and `auxiliary`, the
-        struts from joint to footpad by leg; `feet`, the footpads.
+        struts from joint to footpad by leg; `feet`, the footpads; `points`, the body's that meet
+        the ground, where it has such.
     """
     m, a = parameters.main_strut, parameters.auxiliary_strut
     half, bottom, top = (
@@ -52,17 +54,22 @@ def wireframe(
     across = np.stack([np.zeros(5), corners[:, 1], corners[:, 0]], axis=-1)
     across = np.concatenate([across, np.repeat(across[-1:], RING - 4, axis=0)])
     outline = np.stack([corners[:, 0], corners[:, 1], np.zeros(5)], axis=-1)
+    in_space = parameters.drop.mode == SPACE
     directions = leg_directions(parameters)
     main, auxiliary = np.empty((2, len(rows), len(directions), 2, 3))
     for i, (leg, (sine, cosine)) in enumerate(directions.items()):
+        own = parameters.of_leg(leg) if in_space else parameters
         out = np.array([cosine, 0.0, sine])
         up = np.array([0.0, 1.0, 0.0])
         lengths = [
-            s.length - history[f"leg[{leg}].{n}.stroke"][rows]
-            for s, n in ((m, "main_strut"), (a, "auxiliary_strut"))
+            length - history[f"leg[{leg}].{name}.stroke"][rows]
+            for name, length in (
+                ("main_strut", own.main_strut.length),
+                ("auxiliary_strut", own.auxiliary_strut.length),
+            )
         ]
-        feet = np.array([footpad_between(parameters, *map(float, pair)) for pair in zip(*lengths)])
-        for lines, strut in ((main, m), (auxiliary, a)):
+        feet = np.array([footpad_between(own, *map(float, pair)) for pair in zip(*lengths)])
+        for lines, strut in ((main, own.main_strut), (auxiliary, own.auxiliary_strut)):
             lines[:, i, 0] = strut.joint_radius * out - strut.joint_depth * up
             lines[:, i, 1] = feet[:, :1] * out + feet[:, 1:] * up
     parts = {
@@ -72,11 +79,25 @@ def wireframe(
         "auxiliary": auxiliary,
     }
     parts["feet"] = main[:, :, 1:]
-    if parameters.drop.mode == SPACE:
+    if in_space:
         v = parameters.vehicle
+        if points := read_points(v.body_points):
+            parts["points"] = np.array(points)[None, :, None]
         cg = np.array([v.cg_offset_x, 0.0, v.cg_offset_z])
-        return {name: _turned(history, rows, points - cg) for name, points in parts.items()}
+        return {name: _turned(history, rows, lines - cg) for name, lines in parts.items()}
     return {name: _in_inertial_axes(history, rows, points) for name, points in parts.items()}
+
+
+def contact_forces(
+    history: History, parameters: Parameters, rows: Sequence[int] | NDArray[np.intp]
+) -> Lines:
+    """The ground's forces on the footpads at `rows`: (rows, legs, 3) [N], inertial axes."""
+    legs = [
+        [history[f"leg[{leg}].contact.force_{axis}"][rows] for axis in "xyz"]
+        for leg in leg_directions(parameters)
+    ]
+    forces: Lines = np.array(legs).transpose(2, 0, 1)
+    return forces
 
 
 def ground_height(

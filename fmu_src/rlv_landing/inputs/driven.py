@@ -97,6 +97,12 @@ class DrivenInputs:
         self._restart(t, setting, position, [rate[i] for i in self._positions])
         return True
 
+    def places(self, t: float) -> dict[str, float]:
+        """The ground's positions by name at time `t` [s], on their ways to those that were set."""
+        names = self._interface.input_names
+        found = self._position(t, self.setting(t))
+        return {names[i]: at for i, at in zip(self._positions, found)}
+
     def begin_step(self, t: float, until: float) -> None:
         """Begin the ways whose goals were set at time `t` [s], and end those that end there.
 

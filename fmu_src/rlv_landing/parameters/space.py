@@ -8,12 +8,13 @@ from ..errors import LandingError
 from ..quantities import SPACE
 from .drop import Drop
 from .ground import Ground
+from .surroundings import check_azimuths
 from .vehicle import Vehicle
 
 # a symmetric landing cannot have them otherwise than by default
 ONLY_IN_SPACE = {
     Vehicle: (
-        *("legs", "leg_overrides", "body_points", "cg_offset_x", "cg_offset_z"),
+        *("legs", "leg_azimuths", "leg_overrides", "body_points", "cg_offset_x", "cg_offset_z"),
         *("inertia_xy", "inertia_xz", "inertia_yz"),
     ),
     Drop: ("heading", "roll", "roll_rate", "yaw_rate", "lateral_velocity"),
@@ -33,6 +34,7 @@ def check_space(vehicle: Vehicle, drop: Drop, ground: Ground) -> None:
     if not float(vehicle.legs).is_integer():
         raise LandingError(f"vehicle.legs = {vehicle.legs:g} is not a whole number from 3 to 8")
     if drop.mode == SPACE:
+        check_azimuths(vehicle.leg_azimuths, int(vehicle.legs))
         _check_inertia(vehicle)
         return
     for name, group in (("vehicle", vehicle), ("drop", drop), ("ground", ground)):

@@ -1,15 +1,19 @@
-"""Lists that are one text each: the points of the body that meet the ground, and a height field."""
+"""Lists that are one text each: points of the body, a height field, the legs' azimuths."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import isfinite
+from functools import lru_cache
+from math import isfinite, pi, remainder
 from typing import NamedTuple
 
 from ..errors import LandingError
 
 POINTS = "vehicle.body_points"
 TERRAIN = "ground.terrain"
+AZIMUTHS = "vehicle.leg_azimuths"
+# two legs nearer to each other than this stand at one azimuth [rad]
+LEAST_ANGLE = 1e-3
 MOST_POINTS = 32
 FARTHEST = 100.0
 MOST_NODES = 40_000
@@ -110,6 +114,7 @@ def is_terrain(text: str) -> bool:
     return len(words) > 4 and (words[0], words[4]) == ("x", "z")
 
 
+@lru_cache(maxsize=4)
 def read_terrain(text: str) -> Terrain:
     """The height field of a text.
 
@@ -128,6 +133,16 @@ def read_terrain(text: str) -> Terrain:
     except (ValueError, OverflowError):
         raise LandingError(f"{TERRAIN}: {text[:60]!r} ... has what is no number") from None
     return _checked(Terrain(axes[0], axes[1], tuple(numbers[6:])))
+
+
+@lru_cache(maxsize=4)
+def canonical_terrain(text: str) -> str:
+    """A text of a height field as it is kept; an empty one is none.
+
+    Raises:
+        LandingError: As `read_terrain`.
+    """
+    return written_terrain(read_terrain(text)) if text.strip() else ""
 
 
 def terrain_from_table(text: str, name: str) -> str:
@@ -212,3 +227,42 @@ def _checked(field: Terrain) -> Terrain:
                 f"outside [-{HIGHEST:g}, {HIGHEST:g}] m; a field has no holes: fill them"
             )
     return field
+
+
+def read_azimuths(text: str) -> list[float]:
+    """The azimuths of a text `g1 g2 g3` [rad].
+
+    Raises:
+        LandingError: One is no number, or two legs stand at one azimuth.
+    """
+    found = []
+    for leg, word in enumerate(text.replace(",", " ").split(), 1):
+        if not _is_number(word) or not abs(float(word)) <= 2.0 * pi:
+            raise LandingError(
+                f"{AZIMUTHS}: leg {leg} = {word!r} is no angle; write numbers in rad from -2 pi to "
+                "2 pi, with a blank between two"
+            )
+        found.append(float(word))
+    for j, second in enumerate(found):
+        for i, first in enumerate(found[:j]):
+            apart = abs(remainder(second - first, 2.0 * pi))
+            if apart < LEAST_ANGLE:
+                raise LandingError(
+                    f"{AZIMUTHS}: legs {i + 1} and {j + 1} stand {apart:g} rad apart, at one "
+                    f"azimuth, {first:g} rad; the least angle is {LEAST_ANGLE:g} rad"
+                )
+    return found
+
+
+def check_azimuths(text: str, legs: int) -> None:
+    """Check that a text of azimuths has one for each of so many legs, or none.
+
+    Raises:
+        LandingError: It has more or fewer.
+    """
+    found = read_azimuths(text)
+    if found and len(found) != legs:
+        raise LandingError(
+            f"{AZIMUTHS} has {len(found)} azimuths for vehicle.legs = {legs}; give each leg "
+            "one, or none for legs evenly round the body"
+        )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import fields, replace
+from functools import lru_cache
 from math import isfinite, isinf
 from typing import Any, Literal, get_args, get_type_hints
 
@@ -14,12 +15,13 @@ from .ground import Ground
 from .one_leg import OVERRIDES, read_overrides, split_leg, written_overrides
 from .space import NO_EFFECT_IN_A_PLANE, ONLY_IN_SPACE
 from .surroundings import (
+    AZIMUTHS,
     POINTS,
     TERRAIN,
+    canonical_terrain,
+    read_azimuths,
     read_points,
-    read_terrain,
     written_points,
-    written_terrain,
 )
 from .vehicle import AuxiliaryStrut, MainStrut, Vehicle
 
@@ -148,7 +150,12 @@ def overrides_of(text: str) -> dict[str, float | str]:
     Raises:
         LandingError: A name is none that a leg can have for itself, or a value is bad.
     """
-    return {name: _override(name, value) for name, value in read_overrides(text).items()}
+    return dict(_parsed_overrides(text))
+
+
+@lru_cache(maxsize=64)
+def _parsed_overrides(text: str) -> tuple[tuple[str, float | str], ...]:
+    return tuple((name, _override(name, value)) for name, value in read_overrides(text).items())
 
 
 def _override(name: str, text: str) -> float | str:
@@ -175,5 +182,6 @@ def _override(name: str, text: str) -> float | str:
 FORMS: dict[str, Callable[[str], str]] = {
     OVERRIDES: lambda text: written_overrides(overrides_of(text)),
     POINTS: lambda text: written_points(read_points(text)),
-    TERRAIN: lambda text: written_terrain(read_terrain(text)) if text.strip() else "",
+    AZIMUTHS: lambda text: " ".join(map(repr, read_azimuths(text))),
+    TERRAIN: canonical_terrain,
 }

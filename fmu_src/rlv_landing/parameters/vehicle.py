@@ -45,6 +45,12 @@ class Vehicle:
         "azimuth of the first leg, from body x towards z; the others follow evenly; mode = space",
         real("rad", -3.2, 3.2, display_unit="deg"),
     ] = 3.141592653589793
+    leg_azimuths: Annotated[
+        str,
+        "azimuths of all legs in rad, from body x towards z, with blanks between; without them the "
+        "legs stand evenly from leg_azimuth on; mode = space",
+        listed(),
+    ] = ""
     inertia_roll: Annotated[
         float,
         "rotational inertia of the upper mass about body x through its CG; 0: that about z; "

@@ -53,6 +53,7 @@ def _vehicle(needs: Needs) -> Rules:
         "vehicle.leg_azimuth": (pi, "closure: leg 1 behind"),
         "vehicle.leg_overrides": ("", "closure: legs that are alike"),
         "vehicle.body_points": ("", "closure: none"),
+        "vehicle.leg_azimuths": ("", "closure: evenly"),
         "vehicle.inertia_roll": (0.0, "derived: that about z"),
         "vehicle.inertia_yaw": (
             needs.mass * r**2 / 2.0,

@@ -214,7 +214,7 @@ def parameter_table(parameters: Parameters) -> str:
             q.unit,
             bounds,
             parameters.source(name),
-            q.meaning,
+            q.meaning.replace("[", r"\["),
         )
     return render(table, 200)
 

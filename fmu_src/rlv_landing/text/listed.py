@@ -7,11 +7,12 @@ from typing import Any
 
 from ..errors import LandingError
 from ..parameters import terrain_from_table
-from ..parameters.surroundings import POINTS, TERRAIN, is_terrain, written_points
+from ..parameters.surroundings import AZIMUTHS, POINTS, TERRAIN, is_terrain, written_points
 from ..quantities import Quantity
 from .files import read_text
-from .values import parse_value, to_si
+from .values import is_number, parse_value, to_si
 
+ANGLE = Quantity("rad", "", name=f"an angle of {AZIMUTHS}", display_unit="deg")
 COORDINATE = Quantity("m", "", name=f"a coordinate of {POINTS}", display_unit="mm")
 
 
@@ -20,8 +21,8 @@ def parse_parameter(q: Quantity, value: Any, folder: Path | None = None) -> floa
 
     Args:
         q: The parameter.
-        value: The number or text; the points of the body may be an array of arrays, a height field
-            the name of its file.
+        value: The number or text; the points of the body may be an array of arrays, the azimuths
+            an array, a height field the name of its file.
         folder: The folder that a file's name starts from; None: the present one.
 
     Raises:
@@ -29,6 +30,8 @@ def parse_parameter(q: Quantity, value: Any, folder: Path | None = None) -> floa
     """
     if q.name == POINTS and isinstance(value, list):
         return parse_value(q, written_points([_point(k, p) for k, p in enumerate(value, 1)]))
+    if q.name == AZIMUTHS and isinstance(value, list):
+        return parse_value(q, " ".join(repr(to_si(ANGLE, _number(AZIMUTHS, x))) for x in value))
     if q.name == TERRAIN and isinstance(value, str) and value.strip() and not is_terrain(value):
         path = (folder or Path()) / value.strip()
         missing = f"there is no height field {path}; {TERRAIN} names a table of heights"
@@ -42,7 +45,11 @@ def _point(number: int, point: Any) -> list[float]:
         raise LandingError(
             f"{POINTS}: point {number} = {point!r} is not three coordinates; write [x, y, z]"
         )
-    for x in point:
-        if isinstance(x, bool) or not isinstance(x, (int, float, str)):
-            raise LandingError(f"{POINTS}: point {number} has {x!r}, which is no number")
-    return [to_si(COORDINATE, x) for x in point]
+    return [to_si(COORDINATE, _number(f"{POINTS}: point {number}", x)) for x in point]
+
+
+def _number(where: str, value: Any) -> float | str:
+    if not is_number(value):
+        raise LandingError(f"{where} has {value!r}, which is no number")
+    number: float | str = value
+    return number

@@ -48,9 +48,7 @@ from .log import EXIT_CUT
 @click.option(
     "--view",
     type=click.Choice(["side", "3d"]),
-    default="side",
-    show_default=True,
-    help="The symmetric plane, or space.",
+    help="Along z, or in perspective.  [default: 3d in space, else side]",
 )
 @click.option(
     "--width",

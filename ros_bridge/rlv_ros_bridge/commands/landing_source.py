@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from rlv_landing.history import History
     from rlv_landing.parameters import Parameters
 
+    from ..logs.reader import LogReader
+
 DEFAULT_END = 1.0
 LONGEST_END = 60.0
 SAMPLE_STEP = 1e-3
@@ -74,7 +76,8 @@ def read_landing(
 ) -> tuple[History, Parameters, bool]:
     """Reads the landing in a log, its vehicle's parameters, and whether the log is incomplete.
 
-    Warns where the ground was moved, for it is drawn at rest.
+    Where the ground was moved, the run of the log is repeated to know where it was; where that
+    cannot be, it is drawn at rest, with a warning.
 
     Args:
         path: the log.
@@ -96,7 +99,7 @@ def read_landing(
     cut = reader.cut
     ground = resolve(reader.namespace, APPLIED_GROUND.name)
     if holds(reader, ground):
-        click.echo("warning: the ground was moved in this landing; it is drawn at rest", err=True)
+        _add_decks(history, reader)
     if history.parameters is not None:
         if vehicle.is_given:
             raise LandingError(
@@ -109,6 +112,19 @@ def read_landing(
             "name them by --parameters FILE.toml, or --preset and --mode"
         )
     return history, vehicle.parameters(), cut
+
+
+def _add_decks(history: History, reader: LogReader) -> None:
+    """Adds to a log's history where the ground was."""
+    from ..logs.verification.repeat import RepeatedRun
+
+    try:
+        history.decks = RepeatedRun(reader).decks(history.time.tolist())
+    except LandingError as e:
+        click.echo(
+            one_line(f"warning: the ground was moved in this landing; it is drawn at rest: {e}"),
+            err=True,
+        )
 
 
 def warn_incomplete(log: Path) -> None:

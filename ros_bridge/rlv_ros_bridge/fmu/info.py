@@ -9,7 +9,7 @@ from math import degrees
 from pathlib import Path
 from typing import Any
 
-from rlv_landing.errors import LandingError
+from rlv_landing.errors import LandingError, one_line
 from rlv_landing.parameters import Parameters
 from rlv_landing.quantities import SPACE
 from rlv_landing.tables.rendering import new_table, render
@@ -20,6 +20,7 @@ from .description import is_ours, open_description, vehicle_of
 # our compiled cores in the FMU
 CORE = re.compile(r"resources/[^/]+/core/(?:compiled_for/)?((?:[^/]+/)?compiled\.[^/]+)")
 BINARY = re.compile(r"binaries/([^/]+)/[^/]+\.(?:so|dll|dylib)")
+LONGEST_START = 40
 KINDS = {"coSimulation": "co-simulation", "modelExchange": "model exchange"}
 
 
@@ -90,7 +91,9 @@ class FmuInfo:
         for v in self.variables:
             name = v.name.replace("[", r"\[")
             description = v.description.replace("[", r"\[")
-            table.add_row(name, v.causality, v.type, v.unit, v.start, description)
+            # of a height field's text its ends
+            start = one_line(v.start, LONGEST_START).replace("[", r"\[")
+            table.add_row(name, v.causality, v.type, v.unit, start, description)
         return "\n".join(lines) + "\n\n" + render(table, 180)
 
 

@@ -154,7 +154,7 @@ def test_its_description_is_of_the_vehicle(stage, parameters):
     variables = {v.name: v for v in description.modelVariables}
     for name, q in parameters_of("1-2-1").items():
         start = variables[name].start
-        assert (start if q.choices else float(start)) == parameters[name]
+        assert (start if q.kind == "string" else float(start)) == parameters[name]
     binaries = [n for n in ZipFile(stage).namelist() if n.startswith("binaries/linux64/")]
     assert binaries == ["binaries/linux64/Stage25.so"]
 

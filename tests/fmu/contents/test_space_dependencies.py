@@ -21,6 +21,7 @@ SCALE = {q.name: q.nominal if q.kind == "real" else 1.0 for q in SPACE.outputs}
 TURNS = ("roll", "yaw", "tilt")
 # texts that say something else than the vehicle's own
 TEXTS = {
+    "vehicle.leg_azimuths": ["0.1 1.3 2.6 3.9 5.0"],
     "vehicle.body_points": ["0 -1.9 0; 0.3 -1.9 0.3", "0 -2.6 0"],
     "ground.terrain": [
         terrain_of((-3.0, 3.0), (-3.0, 3.0), ((0.2, 0.2), (0.25, 0.2))),

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Sequence
 from functools import partial
-from itertools import count
+from itertools import count, islice
 from pathlib import Path
 from typing import Any
 
 from rlv_landing import Landing, Parameters
+from rlv_landing.core import SpatialInputs
 from rlv_landing.errors import LandingError
+from rlv_landing.figures.ground.shape import deck_of
 from rlv_landing.text.units import parse_number
 
 from ...messages.fields import Vehicle
@@ -100,6 +102,24 @@ class RepeatedRun:
                 runner.set_inputs,
                 lambda k: runner.step(k, self.step),
             )
+
+    def decks(self, times: Sequence[float]) -> list[SpatialInputs]:
+        """Where the ground is at the samples nearest to `times` [s], which grow.
+
+        Raises:
+            LandingError: the landing cannot be repeated up to the last of them.
+        """
+        landing = Landing(self.parameters)
+        found: list[SpatialInputs] = []
+
+        def step(k: int) -> None:
+            found.append(deck_of(landing.ground_places()))
+            landing.advance_to((k + 1) * self.step)
+
+        wanted = [round(time / self.step) for time in times]
+        for _ in islice(self._samples(dict, landing.set_inputs, step), wanted[-1] + 2):
+            pass
+        return [found[k] for k in wanted]
 
     def _samples(
         self,
