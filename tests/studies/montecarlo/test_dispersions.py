@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from rlv_landing.studies.montecarlo.intervals import order_statistics, wilson
 from rlv_landing.studies.montecarlo.study import read_montecarlo
 from rlv_landing.studies.sweep.factors import read_factor
 
+ROOT = Path(__file__).resolve().parents[3]
 COVARIANCE = ((4.0, 1.0, 0.0), (1.0, 1.0, 0.3), (0.0, 0.3, 9.0))
 NAMES = ("drop.tilt", "drop.roll", "drop.lateral_velocity")
 
@@ -207,3 +209,18 @@ def test_a_table_gives_its_rows_in_order_or_at_random(tmp_path: Path):
         else:
             assert study.samples == 4
     assert found["in order"] == [0.0, 0.01, 0.02, 0.03]
+
+
+def test_the_studies_that_are_shown_can_be_read(tmp_path: Path):
+    shown = (ROOT / "docs" / "montecarlo.md").read_text(encoding="utf-8")
+    (text,) = re.findall(r"```toml\n(.*?)```", shown, re.S)
+    (tmp_path / "study.toml").write_text(text)
+    (tmp_path / "mine.toml").write_text('[drop]\nmode = "space"\n')
+    (tmp_path / "states.csv").write_text(
+        "case,drop.pitch_rate,drop.horizontal_velocity,drop.lateral_velocity,drop.roll_rate,"
+        "drop.yaw_rate\n1,0,0.1,0.2,0,0\n"
+    )
+    study = read_montecarlo(tmp_path / "study.toml")
+    assert (study.samples, study.width, study.worst, len(study.grades)) == (2000, 0.02, 3, 1)
+    assert len(study.dispersions.names) == 9
+    assert read_montecarlo(ROOT / "examples/touchdown_study/montecarlo.toml").width == 0.04
