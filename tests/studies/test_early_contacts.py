@@ -34,7 +34,7 @@ TOPPLES = {
     "ground.friction": 0.9,
 }
 # outcome and time until which they land [s]
-CASES = {"bottomed out": (SPRINGS, 0.25), "toppled": (TOPPLES, 0.4)}
+CASES = {"body strike": (SPRINGS, 0.25), "toppled": (TOPPLES, 0.4)}
 
 
 @cache
