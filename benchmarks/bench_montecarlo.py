@@ -86,13 +86,13 @@ def parts(study: Path) -> dict[str, float]:
 
 
 @click.command()
-@click.argument("count", default=400, type=click.IntRange(1))
+@click.argument("count", default=1000, type=click.IntRange(1))
 @click.option("--workers", default=default_workers(), show_default=True, help="Threads.")
 @click.option(
     "--keep/--no-keep", default=True, show_default=True, help="Append the rows to results.jsonl."
 )
 def main(count: int, workers: int, *, keep: bool) -> None:
-    """Land COUNT times [default: 400] in both ways."""
+    """Land COUNT times [default: 1000] in both ways."""
     begin()
     table = Table(title=f"{count} landings in space on {workers} threads", title_justify="left")
     columns = (

@@ -19,7 +19,7 @@ HEIGHTS = 0.05 * np.sin(1.3 * X) * np.cos(0.9 * Z[:, None])
 
 
 def test_a_moved_plane_is_turned_and_shifted_as_the_inputs_say() -> None:
-    parameters = five_legs()
+    parameters = five_legs().with_values({"ground.terrain": ""})
     deck = STILL._replace(surge=0.3, heave=-0.2, sway=0.1, yaw=0.4, roll=0.2, tilt=-0.3)
     shape = GroundShape(parameters, *PART)
     # the matrices of the turns one after the other, and the slope's line of steepest descent
@@ -53,7 +53,8 @@ def test_a_height_field_has_the_heights_of_its_nodes() -> None:
 
 @pytest.mark.parametrize("moved", [{}, DECK], ids=["still", "deck"])
 def test_feet_that_are_drawn_stand_on_the_ground_that_is_drawn(moved: dict[str, float]) -> None:
-    parameters = five_legs().with_values({"vehicle.body_points": "", "leg[2].ground.step": 0.0})
+    plane = {"vehicle.body_points": "", "leg[2].ground.step": 0.0, "ground.terrain": ""}
+    parameters = five_legs().with_values(plane)
     history = Landing(parameters, inputs=moved).run(0.5, 5e-2)
     rows = np.arange(len(history))
     lines, forces = wireframe(history, parameters, rows), contact_forces(history, parameters, rows)

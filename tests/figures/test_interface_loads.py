@@ -64,20 +64,31 @@ def test_a_peak_comes_with_the_whole_load_at_its_time(drop_test):
             assert abs(peak.load[peak.component]) == np.abs(found.load[:, peak.component]).max()
 
 
+# a leg that is longer, stands further out and has a heavier foot than the others
+OWN = {
+    "leg[2].main_strut.joint_radius": 0.5,
+    "leg[2].auxiliary_strut.length": 1.2,
+    "leg[2].vehicle.footpad_mass": 6.0,
+}
+
+
+@pytest.mark.parametrize("own", [{}, OWN], ids=["alike", "one leg of its own"])
 @pytest.mark.parametrize("at", ["footpad", "joint"])
-def test_in_space_they_are_the_acceleration_of_a_body_whose_cg_is_off_the_axis(at):
-    p = five_legs().with_values({"vehicle.transverse_load_at": at})
+def test_in_space_they_are_the_acceleration_of_a_body_whose_cg_is_off_the_axis(at, own):
+    p = five_legs().with_values({"vehicle.transverse_load_at": at, **own})
     history = Landing(p).run(0.5, 1e-3)
     force, moment = np.zeros((2, len(history), 3))
     directions = leg_directions(p)
     for found in interface_loads(history):
         if found.name != FOOTPAD:
-            sine, cosine = directions[found.leg]
+            # the ground strikes the body itself, too
+            sine, cosine = directions.get(found.leg, (0.0, 1.0))
             push, about, point = (
                 turned_to_body(v, sine, cosine) for v in (*np.split(found.load, 2, 1), found.point)
             )
             force += push
             moment += about + np.cross(point, push)
+    assert history["body.clearance"].min() < 0.0
     turn = Rotation.from_quat(np.column_stack([history[f"body.q_{c}"] for c in "xyzw"]))
     pull = np.column_stack([history[f"body.a{c}"] for c in "xyz"])
     pull[:, 1] += p.ground.gravity

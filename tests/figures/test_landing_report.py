@@ -102,7 +102,8 @@ def test_a_vehicle_that_topples_in_space_says_over_which_edge():
 
 
 def test_in_space_feet_are_drawn_where_the_landing_has_them():
-    history = Landing(five_legs()).run(0.4, 1e-2)
+    own = {"leg[2].main_strut.joint_radius": 0.5, "leg[2].auxiliary_strut.length": 1.2}
+    history = Landing(five_legs().with_values(own)).run(0.4, 1e-2)
     feet = wireframe(history, history.parameters, range(len(history)))["feet"][:, :, 0]
     for i, leg in enumerate(history.legs):
         place = np.column_stack([history[f"leg[{leg}].footpad.{axis}"] for axis in "xyz"])

@@ -85,7 +85,7 @@ def test_even_azimuths_are_those_of_legs_evenly_round_the_body() -> None:
     # and in another order: leg 1 is the second then
     turned = " ".join(repr(0.5 + 2.0 * pi * i / 3.0) for i in (1, 0, 2))
     landings = [
-        Landing(three.with_values(own), rtol=1e-8)
+        Landing(three.with_values(own), rtol=1e-10)
         for own in ({}, {"vehicle.leg_azimuths": listed}, {"vehicle.leg_azimuths": turned})
     ]
     for landing in landings:

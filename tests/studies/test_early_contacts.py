@@ -21,6 +21,7 @@ from rlv_landing.validation.first_contact import first_contact
 
 # struts that move before their footpad touches
 SPRINGS = FIVE_LEGS | {
+    "vehicle.body_points": "",
     "drop.contact_time": 0.0004,
     "main_strut.kind": "spring-damper",
     "main_strut.stiffness": 4e4,

@@ -39,7 +39,7 @@ def states(count: int) -> dict[str, np.ndarray]:
 
 
 def test_outcomes_peaks_and_margins_are_those_of_rest():
-    given = states(24)
+    given = states(16)
     stands, rests = (land_many(SPACE, given, end=end) for end in ("stands", "rests"))
     same = {("standing", "settled")}
     pairs = list(zip(stands["outcome"], rests["outcome"]))

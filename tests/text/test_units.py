@@ -345,3 +345,8 @@ def test_the_page_gives_right_reasons(text, reason):
 @pytest.mark.parametrize("text", ["0", "-0.0", "0e-400", "0.000e5 m", "1e-320 m", "4.94e-324"])
 def test_zero_and_the_smallest_numbers_are_taken(text):
     assert to_si(quantity("m"), text) == float(text.split()[0])
+
+
+def test_a_text_has_no_number():
+    with pytest.raises(LandingError, match=r"vehicle\.body_points is a text and has no number"):
+        to_si(PARAMETER_QUANTITIES["vehicle.body_points"], "0 1 2")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Sequence
+from functools import lru_cache
 from math import cos, sin
 
 from ..core import BodyPoint, HeightField
@@ -26,12 +27,17 @@ def height_field(parameters: Parameters) -> tuple[HeightField, array[float]]:
     ground = parameters.ground
     if not ground.terrain:
         return NO_FIELD, array("d", [0.0])
-    found = read_terrain(ground.terrain)
+    return _field(ground.terrain, ground.slope_direction)
+
+
+@lru_cache(maxsize=4)
+def _field(text: str, direction: float) -> tuple[HeightField, array[float]]:
+    """The field of a text on a slope in a `direction` [rad]; nobody writes to its heights."""
+    found = read_terrain(text)
     x, z = found.x, found.z
     rows = [_longer(found.heights[k * x.nodes : (k + 1) * x.nodes]) for k in range(z.nodes)]
     columns = [_longer(column) for column in zip(*rows)]
     numbers = array("d", (h for row in zip(*columns) for h in row))
-    direction = ground.slope_direction
     return (
         HeightField(
             columns=float(x.nodes),

@@ -16,6 +16,7 @@ import click
 from .. import __version__
 from ..commands.audit import audit
 from ..commands.examples import examples
+from ..commands.export import export
 from ..commands.identification.identify import identify
 from ..commands.options import HELP_NAMES, Group
 from ..commands.own_vehicle import draw, new
@@ -83,6 +84,7 @@ def cli(context: click.Context) -> None:
     rlv-landing report mine.toml -o report.html    drawing, margins, loads, curves and audit; or PDF
     rlv-landing examples copy my_examples          studies, FMUs and ROS 2 files to begin with
     rlv-landing parameters --toml > mine.toml      a parameter file to edit
+    rlv-landing export --mjcf stage.xml            the linearised vehicle for MuJoCo; SDF, URDF
     rlv-landing validate --html report.html        every printed number and figure beside ours
     rlv-landing identify --work identification     estimate parameters from landings
     rlv-landing audit                              energy, mass, momentum, rest, convergence
@@ -105,7 +107,7 @@ def cli(context: click.Context) -> None:
 
 
 OWN = (
-    *(new, draw, examples, simulate, report, parameters, validate, audit),
+    *(new, draw, examples, simulate, report, parameters, export, validate, audit),
     *(identify, sweep, sensitivity, montecarlo, envelope),
 )
 for command in OWN:

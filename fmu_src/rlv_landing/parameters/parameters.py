@@ -216,7 +216,10 @@ class Parameters:
     def _check_legs(self) -> None:
         """Check the values that single legs have for themselves."""
         legs = int(self.vehicle.legs)
-        for leg, name in sorted(((split_leg(n) or (0, ""))[0], n) for n in self.overrides):
+        first: dict[int, str] = {}
+        for name in self.overrides:
+            first.setdefault((split_leg(name) or (0, ""))[0], name)
+        for leg, name in first.items():
             if leg > legs:
                 raise LandingError(f"{name} is of a leg that is not there: vehicle.legs = {legs}")
             try:

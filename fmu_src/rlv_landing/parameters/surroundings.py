@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from math import isfinite, pi, remainder
 from typing import NamedTuple
 
@@ -113,6 +114,7 @@ def is_terrain(text: str) -> bool:
     return len(words) > 4 and (words[0], words[4]) == ("x", "z")
 
 
+@lru_cache(maxsize=4)
 def read_terrain(text: str) -> Terrain:
     """The height field of a text.
 
@@ -131,6 +133,16 @@ def read_terrain(text: str) -> Terrain:
     except (ValueError, OverflowError):
         raise LandingError(f"{TERRAIN}: {text[:60]!r} ... has what is no number") from None
     return _checked(Terrain(axes[0], axes[1], tuple(numbers[6:])))
+
+
+@lru_cache(maxsize=4)
+def canonical_terrain(text: str) -> str:
+    """A text of a height field as it is kept; an empty one is none.
+
+    Raises:
+        LandingError: As `read_terrain`.
+    """
+    return written_terrain(read_terrain(text)) if text.strip() else ""
 
 
 def terrain_from_table(text: str, name: str) -> str:

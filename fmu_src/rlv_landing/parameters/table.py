@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import fields, replace
+from functools import lru_cache
 from math import isfinite, isinf
 from typing import Any, Literal, get_args, get_type_hints
 
@@ -17,11 +18,10 @@ from .surroundings import (
     AZIMUTHS,
     POINTS,
     TERRAIN,
+    canonical_terrain,
     read_azimuths,
     read_points,
-    read_terrain,
     written_points,
-    written_terrain,
 )
 from .vehicle import AuxiliaryStrut, MainStrut, Vehicle
 
@@ -150,7 +150,12 @@ def overrides_of(text: str) -> dict[str, float | str]:
     Raises:
         LandingError: A name is none that a leg can have for itself, or a value is bad.
     """
-    return {name: _override(name, value) for name, value in read_overrides(text).items()}
+    return dict(_parsed_overrides(text))
+
+
+@lru_cache(maxsize=64)
+def _parsed_overrides(text: str) -> tuple[tuple[str, float | str], ...]:
+    return tuple((name, _override(name, value)) for name, value in read_overrides(text).items())
 
 
 def _override(name: str, text: str) -> float | str:
@@ -178,5 +183,5 @@ FORMS: dict[str, Callable[[str], str]] = {
     OVERRIDES: lambda text: written_overrides(overrides_of(text)),
     POINTS: lambda text: written_points(read_points(text)),
     AZIMUTHS: lambda text: " ".join(map(repr, read_azimuths(text))),
-    TERRAIN: lambda text: written_terrain(read_terrain(text)) if text.strip() else "",
+    TERRAIN: canonical_terrain,
 }

@@ -68,11 +68,10 @@ def joint_clearance(history: History) -> float:
     found = []
     for leg, (s, c) in leg_directions(p).items():
         strut = p.of_leg(leg).auxiliary_strut
-        radius, depth = strut.joint_radius, strut.joint_depth
         joint = np.array([
-            radius * c - p.vehicle.cg_offset_x,
-            -depth,
-            radius * s - p.vehicle.cg_offset_z,
+            strut.joint_radius * c - p.vehicle.cg_offset_x,
+            -strut.joint_depth,
+            strut.joint_radius * s - p.vehicle.cg_offset_z,
         ])  # fmt: skip
         place = body + np.tensordot(joint, turn, axes=(0, 1))
         found.append(_least(history.time, normal @ _seen_from_ground(history, place, history.time)))

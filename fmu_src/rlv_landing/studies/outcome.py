@@ -14,6 +14,7 @@ from ..core import Phase
 from ..errors import LandingError
 from ..history import History
 from ..landing import Landing
+from ..parameters import Parameters
 from ..quantities import SPACE, Quantity
 from .limits import PassedLimit, first_limit_passed, time_passed
 from .on_ground import counted_legs, crossed_edge, joint_clearance, lean, slip
@@ -119,7 +120,7 @@ def judged(
     end = float(history.time[-1])
     if toppled:
         end, history = _until_toppled(history)
-    stops = {leg: p.of_leg(leg).main_strut.stroke_max for leg in legs}
+    stops = {leg: stop_of(p, leg) for leg in legs}
     left = {leg: stops[leg] - history.extreme(_stroke(leg)).maximum for leg in legs}
     slips = [slip(history, leg) for leg in legs]
     bottomed = sorted(
@@ -167,6 +168,11 @@ def _strike(history: History) -> float | None:
     if history.extreme(CLEARANCE).minimum >= 0.0:
         return None
     return time_passed(history, CLEARANCE, 0.0, below=True)
+
+
+def stop_of(parameters: Parameters, leg: int) -> float:
+    """The stroke at which a leg's main strut meets its stop [m]."""
+    return parameters.of_leg(leg).main_strut.stroke_max
 
 
 def _stroke(leg: int) -> str:

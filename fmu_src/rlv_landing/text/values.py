@@ -66,8 +66,10 @@ def to_si(q: Quantity, value: float | str, unit: str = "") -> float:
 
     Raises:
         LandingError: No number, an unknown unit, a unit of another dimension, or beyond the largest
-            float.
+            float; or `q` is a text.
     """
+    if q.kind == "string":
+        raise LandingError(f"{q.name} is a text and has no number; give it as a fixed value")
     if isinstance(value, str):
         return _from_text(q, value, unit)
     return number_in_si(q, value, unit_of(q, unit))

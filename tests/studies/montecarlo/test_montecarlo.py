@@ -145,7 +145,10 @@ def test_a_run_that_cannot_be_made_is_lost_and_says_why(tmp_path, command):
 
 
 def test_the_frozen_baseline_is_reached(tmp_path, command):
-    """Made with --samples 16; a change of the model or of the draws shows run by run."""
+    """A change of the model, of a response or of the draws shows run by run.
+
+    Where it is meant, `montecarlo` with this study makes the folder anew (results and summary).
+    """
     study = write(tmp_path, samples=16)
     made(command, study, "now")
     done = command("montecarlo", "--diff", str(BASELINE), str(tmp_path / "now"), "--json")

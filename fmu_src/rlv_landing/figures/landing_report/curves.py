@@ -53,10 +53,11 @@ def pictures(found: Landed) -> list[Picture]:
         ("Auxiliary struts and ground", legs, (AUXILIARY_FORCE, GROUND_FORCE)),
         *([("Pressures in the dampers", "absolute", (UPPER, LOWER))] if liquid else []),
     ]
+    drawn = "struts at full length, to scale"
+    if found.parameters.vehicle.leg_overrides:
+        drawn += ", a leg without values for itself"
     return [
-        Picture(
-            "The vehicle", "struts at full length, to scale", vehicle_drawing(found.parameters, "")
-        ),
+        Picture("The vehicle", drawn, vehicle_drawing(found.parameters, "")),
         Picture("Movement", "light to dark in time", _movement(found)),
         *(Picture(title, note, _pair(found, _of_legs, *each)) for title, note, each in pairs),
         Picture("Body", "", _pair(found, _of_body, TOP_ACCELERATION, MARGIN)),

@@ -57,21 +57,25 @@ def in_leg(vector: Array, direction: tuple[float, float]) -> Array:
     return np.stack([cosine * x + sine * z, y, cosine * z - sine * x], axis=-1)
 
 
+def in_body(history: History, name: str) -> Array:
+    """The vector whose inertial components' columns begin with `name`, in body axes, (n, 3)."""
+    turn = Rotation.from_quat(np.column_stack([history[f"body.q_{part}"] for part in "xyzw"]))
+    vector: Array = turn.inv().apply(np.column_stack([history[f"{name}{axis}"] for axis in "xyz"]))
+    return vector
+
+
 class _InSpace:
     def __init__(
         self, history: History, parameters: Parameters, leg: int, direction: tuple[float, float]
     ) -> None:
         v = parameters.vehicle
-        turn = Rotation.from_quat(
-            np.column_stack([history[f"body.q_{part}"] for part in "xyzw"])
-        ).inv()
         place, foot, force = (
-            np.column_stack([history[f"{name}{axis}"] for axis in "xyz"])
+            in_body(history, name)
             for name in ("body.", f"leg[{leg}].footpad.", f"leg[{leg}].contact.force_")
         )
         self.offset = in_leg(np.array([v.cg_offset_x, 0.0, v.cg_offset_z]), direction)
-        self.foot = in_leg(turn.apply(foot - place), direction) + self.offset
-        self.contact = in_leg(turn.apply(force), direction)
+        self.foot = in_leg(foot - place, direction) + self.offset
+        self.contact = in_leg(force, direction)
         self._across = history[f"leg[{leg}].auxiliary_strut.transverse_force"]
 
     def across(self, along: list[Array], rates: list[Array]) -> Array:

@@ -15,12 +15,14 @@ from numpy.typing import NDArray
 from ...errors import LandingError
 from ...history import History
 from ...parameters import Parameters
-from .leg_axes import leg_axes
+from .leg_axes import in_body, leg_axes
 
 Array = NDArray[np.float64]
 # components of a load, in this order [N, N.m]
 COMPONENTS = ("F radial", "F axial", "F tangential", "M radial", "M axial", "M tangential")
 MAIN, AUXILIARY, FOOTPAD = "main strut's body joint", "auxiliary strut's body joint", "footpad"
+# where the ground strikes the body itself: the axes are those of a leg at azimuth 0
+STRIKE = "points of the body (radial, axial, tangential: body x, y, z; about the CG)"
 # loads below this part of the largest are rounding
 NOTHING = 1e-9
 
@@ -34,7 +36,7 @@ class Interface:
 
     Attributes:
         name: The interface.
-        leg: The leg's number.
+        leg: The leg's number; 0 for the body itself.
         point: The interface in the leg's axes, from the CG, (n, 3) [m].
         load: What acts on the body, at the footpad what the ground does to it, (n, 6): force [N]
             and moment about the interface [N.m].
@@ -74,7 +76,8 @@ def interface_loads(history: History) -> list[Interface]:
     p = history.parameters
     if p is None:
         raise LandingError("this history does not know its parameters, which its loads need")
-    return [found for leg in history.legs for found in _leg(history, p, leg)]
+    struck = [_strike(history)] if p.vehicle.body_points else []
+    return [*(found for leg in history.legs for found in _leg(history, p, leg)), *struck]
 
 
 def peaks(interface: Interface, time: Array) -> list[Peak]:
@@ -90,10 +93,18 @@ def peaks(interface: Interface, time: Array) -> list[Peak]:
     return found
 
 
+def _strike(history: History) -> Interface:
+    """The ground's loads on the points of the body, all together, about the CG."""
+    force, moment = (in_body(history, f"body.strike_{kind}_") for kind in ("force", "moment"))
+    return Interface(STRIKE, 0, np.zeros_like(force), np.concatenate([force, moment], axis=1))
+
+
 def _leg(history: History, p: Parameters, leg: int) -> list[Interface]:
     axes = leg_axes(history, p, leg)
     joints, along, rates = [], [], []
-    for strut, parameters in (("main_strut", p.main_strut), ("auxiliary_strut", p.auxiliary_strut)):
+    own = p.of_leg(leg)
+    struts = (("main_strut", own.main_strut), ("auxiliary_strut", own.auxiliary_strut))
+    for strut, parameters in struts:
         joint = np.array([parameters.joint_radius, -parameters.joint_depth, 0.0])
         reach = axes.foot - joint
         along.append(reach / np.linalg.norm(reach, axis=1)[:, None])

@@ -12,7 +12,7 @@ from ...audit.bounds import BOUNDS
 from ...history import History
 from ...parameters import PARAMETER_QUANTITIES, Parameters
 from ...quantities import ENERGY_QUANTITIES, SPACE, shown
-from ...studies.outcome import Outcome, outcome
+from ...studies.outcome import Outcome, outcome, stop_of
 from ...summary import summarise, unfinished
 from ...tables.landing import decimals, number
 from ..plots import drawn_legs
@@ -99,23 +99,26 @@ def tables_of(found: Landed) -> list[Table]:
 
 
 def _main_results(found: Landed) -> dict[str, str]:
-    s, legs = summarise(found.history), found.history.legs
+    s, legs, p = summarise(found.history), found.history.legs, found.parameters
     force = max(-leg["main_strut_force_min"] for leg in s["legs"])
-    stroke = max(leg["main_strut_stroke_max"] for leg in s["legs"])
+    # of the leg that comes nearest to its stop
+    stroke, stop = max(
+        ((leg["main_strut_stroke_max"], stop_of(p, leg["leg"])) for leg in s["legs"]),
+        key=lambda pair: pair[0] - pair[1],
+    )
     ground = max(leg["contact_force_max"] for leg in s["legs"])
     pressure = max(
         found.history.extreme(f"leg[{leg}].main_strut.pressure_{chamber}").maximum
         for leg in legs
         for chamber in ("upper", "lower")
     )
-    p = found.parameters
     missed = sum(len(a.missed) for a in found.audits)
     return {
         "outcome": f"{found.outcome.name} at {found.outcome.time:.3f} s",
         "least stability margin": f"{found.outcome.margins['stability_min']:.3f} m",
         "largest main strut force": f"{force / 1e3:.4g} kN",
         "largest force on a footpad": f"{ground / 1e3:.4g} kN",
-        "largest stroke": f"{1e3 * stroke:.4g} mm of {1e3 * p.main_strut.stroke_max:.4g} mm",
+        "largest stroke": f"{1e3 * stroke:.4g} mm of {1e3 * stop:.4g} mm",
         "highest pressure": f"{pressure / 1e6:.4g} MPa" if _has_liquid(p) else "no liquid",
         "largest acceleration at the top": f"{s['top_axial_acceleration_max']:.4g} m/s²",
         "energy balance": f"within {s['energy_balance_worst']:.1e} J",
@@ -123,6 +126,8 @@ def _main_results(found: Landed) -> dict[str, str]:
         if not found.audits
         else "all bounds are kept"
         if not missed
+        else "1 bound is missed"
+        if missed == 1
         else f"{missed} bounds are missed",
     }
 
@@ -149,6 +154,9 @@ def _margins(found: Landed) -> Table:
         over = f"the edge {end.edge}, towards" if end.edge else "towards"
         rows.append(("toppled over", f"{over} {np.degrees(end.direction):.0f} deg from x to z"))
     rows += [(MARGINS[name], f"{value:.4f} m") for name, value in end.margins.items()]
+    if found.parameters.vehicle.body_points:
+        least = found.history.extreme("body.clearance").minimum
+        rows.append(("least clearance of the body's points", f"{least:.4f} m"))
     return Table(
         "Outcome and margins", ("", ""), rows, " ".join(unfinished(summarise(found.history)))
     )
@@ -196,12 +204,12 @@ def _loads(found: Landed) -> Table:
     in_space = found.parameters.drop.mode == SPACE
     groups = drawn_legs(found.history)
     for each in interface_loads(found.history):
-        legs = next(g for g in groups if each.leg in g)
-        if each.leg != legs[0]:
+        legs = next((g for g in groups if each.leg in g), ())
+        if legs and each.leg != legs[0]:
             continue
         for peak in peaks(each, time):
             load = (f"{round(value / 1e3, 3) + 0.0:.3f}" for value in peak.load)
-            name = f"leg {'/'.join(map(str, legs))}, {each.name}"
+            name = f"leg {'/'.join(map(str, legs))}, {each.name}" if legs else each.name
             rows.append((name, COMPONENTS[peak.component], f"{peak.time:.4f}", *load))
     units = ("kN", "kN", "kN", "kN m", "kN m", "kN m")
     head = ("interface", "peak of", "at [s]", *(f"{c} [{u}]" for c, u in zip(COMPONENTS, units)))

@@ -1,0 +1,1 @@
+"""The linearised vehicle for other programs: MJCF, SDF and URDF."""
