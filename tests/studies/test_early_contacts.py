@@ -35,7 +35,7 @@ TOPPLES = {
     "ground.friction": 0.9,
 }
 # outcome and time until which they land [s]
-CASES = {"body strike": (SPRINGS, 0.25), "toppled": (TOPPLES, 0.4)}
+CASES = {"bottomed out": (SPRINGS, 0.25), "toppled": (TOPPLES, 0.4)}
 
 
 @cache
