@@ -1,10 +1,13 @@
 """The warning of what the transverse load at the joint creates, and who gives it."""
 
+from contextlib import nullcontext
 from pathlib import Path
+from warnings import catch_warnings as recorded
+from warnings import simplefilter
 
 import pytest
 
-from rlv_landing import Landing, load_preset
+from rlv_landing import Landing, land_many, load_preset
 from rlv_landing.audit.transverse import joint_warning, warning_of
 from rlv_landing.presets import preset_names
 
@@ -86,6 +89,28 @@ def test_simulate_and_identify_warn_once(command, tmp_path: Path):
         assert len(warnings(joint.err)) == 1
         assert REMEDY in joint.err
         assert not warnings(footpad.err)
+
+
+def test_a_report_warns_and_says_when_it_ends_before_the_contact(command, tmp_path: Path):
+    done = command(
+        "report", "yue2022-figures", "--until", "0.05", "-o", str(tmp_path / "r.html"), *SET
+    )
+    assert done.code == 0, done.err
+    assert len(warnings(done.err)) == 1
+    assert "s before its first contact" in done.err
+
+
+@pytest.mark.parametrize("base", [JOINT, {}])
+@pytest.mark.parametrize(("values", "warned"), [(["footpad", "joint"], True), (["footpad"], False)])
+def test_a_batch_of_landings_warns_where_any_has_the_joint(base, values, warned):
+    parameters = load_preset("yue2022-figures").with_values({"drop.contact_time": 0.0, **base})
+    columns = {"vehicle.transverse_load_at": values}
+    with recorded(record=True) as found:
+        simplefilter("always")
+        land_many(parameters, columns, until=0.01)
+        assert [REMEDY in str(one.message) for one in found] == [True] * warned
+    with pytest.warns(UserWarning, match=REMEDY) if base else nullcontext():
+        land_many(parameters, {"ground.friction": [0.3]}, until=0.01)
 
 
 @pytest.mark.parametrize(

@@ -158,6 +158,8 @@ def test_bad_inputs_are_refused_and_nothing_changes(values, message):
     ("rates", "message"),
     [
         ({"external.force_x": nan}, "rate of external.force_x = nan N/s must be finite"),
+        ({"external.force_x": "1 N/s"}, "rate of external.force_x = '1 N/s' is not a number"),
+        ({"ground.tilt": None}, "rate of ground.tilt = None is not a number; give it in rad/s"),
         ({"ground.tilt": 50.0}, "ground.tilt_rate = 50 rad/s is outside"),
         ({"ground.tillt": 0.0}, "did you mean ground.tilt"),
     ],

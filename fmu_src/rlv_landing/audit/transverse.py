@@ -45,10 +45,21 @@ def warning_of(history: History) -> str | None:
         return None
     created = float(history["energy.work_transverse"][-1])
     dissipated = float(history["energy.dissipated"][-1])
+    after = float(history.time[-1]) - own.drop.contact_time
+    until = f"{after:.3g} s after" if after >= 0.0 else f"{-after:.3g} s before"
     return _line(
         f"{created:.3g} J beside {dissipated:.3g} J dissipated in a {own.drop.mode} landing "
-        f"until {history.time[-1] - own.drop.contact_time:.3g} s after its first contact"
+        f"until {until} its first contact"
     )
+
+
+def study_warning(
+    parameters: Parameters, columns: Mapping[str, Any], inputs: Mapping[str, Any]
+) -> str | None:
+    """As `joint_warning`, for landings of a vehicle with other values in `columns` by name."""
+    varied = columns.get(NAME)
+    values = [parameters[NAME]] if varied is None else sorted(set(varied.tolist()))
+    return joint_warning([parameters.with_values({NAME: value}) for value in values], inputs)
 
 
 def _line(what: str) -> str:

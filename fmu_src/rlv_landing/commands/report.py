@@ -17,6 +17,7 @@ from .options import (
     force_option,
     set_option,
 )
+from .printing import print_warning
 
 if TYPE_CHECKING:
     from ..figures.landing_report.sections import Landed
@@ -58,11 +59,14 @@ def report(
     Exit codes: 0 written, 2 bad input or a file that cannot be written, 130 interrupted. A missed
     bound of the audit is in the report; `rlv-landing audit` has an exit code for it.
     """
+    from ..audit.transverse import warning_of
     from ..figures.landing_report.page import write
     from ..figures.landing_report.sections import side_by_side
 
     check_writable(output, ENDINGS, force=force)
     landings = [_landed(vehicle, audit=audit, **options) for vehicle in vehicles]
+    for found in landings:
+        print_warning(warning_of(found.history))
     with writing(output):
         write(landings, output)
     for found in landings:

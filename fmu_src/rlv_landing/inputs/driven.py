@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import isfinite
+from math import inf
 from typing import Any
 
 from ..core import Solver
-from ..errors import LandingError, unknown
+from ..errors import unknown
 from ..interruptible import view
 from ..parameters import check_value
-from ..quantities import MODES, SPACE, Interface, interface_of
+from ..quantities import MODES, SPACE, Interface, Quantity, interface_of
 from .ground_way import Way, next_interval, reached, ways_of
 
 # the ground's positions whose rate is an input of its own, in every landing
@@ -219,13 +219,13 @@ def changed_setting(
         new[i], new_rates[i] = float(check_value(quantities[i], value)), 0.0
     for name, rate in rates.items():
         i = _index(interface, name)
-        if not isfinite(rate):
-            raise LandingError(f"rate of {name} = {rate:g} {quantities[i].unit}/s must be finite")
+        speed = Quantity(f"{quantities[i].unit}/s", "", -inf, inf, name=f"rate of {name}")
+        rate = float(check_value(speed, rate))
         if i in own_rates:
             own = own_rates[i]
             new[own] = float(check_value(quantities[own], rate))
         else:
-            new_rates[i] = float(rate)
+            new_rates[i] = rate
     return tuple(new), tuple(new_rates)
 
 

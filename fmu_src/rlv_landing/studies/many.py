@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..audit.transverse import study_warning
 from ..errors import LandingError, unknown
 from ..parameters import Parameters, check_value
 from ..quantities import Quantity
@@ -111,6 +113,8 @@ def land_many(  # noqa: PLR0913  the options of a study, by name
 ) -> Landings:
     """Land once from each of the `states`, in threads.
 
+    With `vehicle.transverse_load_at = joint` it warns (UserWarning) of the energy that it creates.
+
     The numbers are those of `Landing`, whatever the number of threads. A landing that cannot be
     made is a row with its error, and ends none of the others. Ctrl-C raises KeyboardInterrupt when
     the landings under way are done.
@@ -151,6 +155,9 @@ def land_many(  # noqa: PLR0913  the options of a study, by name
     plan = Plan(
         parameters, {}, {}, until, every, rtol, names, checked, float(slide), end == "stands"
     )
+    joint = study_warning(parameters, design.columns, {})
+    if joint is not None:
+        warnings.warn(joint, stacklevel=2)
     rows = _landed(plan, design, count, progress)
     known = known_responses(interface)
     taken = zip(*(row[2:] for row in rows)) if rows else ([] for _ in names)

@@ -115,14 +115,11 @@ def engine_for(plan: Plan, options: RunOptions) -> Iterator[Engine]:
 
 def warn_of_joint(task: Task) -> None:
     """Print a warning where landings of the study have the transverse load at the joint."""
-    from ...audit.transverse import NAME, joint_warning
+    from ...audit.transverse import study_warning
 
-    study, varied = task.study, task.design.columns.get(NAME)
+    study = task.study
     base = study.parameters.for_mode(study.modes[0]) if study.modes else study.parameters
-    values = [base[NAME]] if varied is None else sorted(set(varied.tolist()))
-    print_warning(
-        joint_warning([base.with_values({NAME: value}) for value in values], task.plan.inputs)
-    )
+    print_warning(study_warning(base, task.design.columns, task.plan.inputs))
 
 
 def run_task(task: Task, folder: Path, options: RunOptions) -> Path:
