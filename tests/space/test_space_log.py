@@ -11,10 +11,13 @@ import numpy as np
 import pytest
 from five_legs import DECK, five_legs
 from rclpy.serialization import serialize_message
+from rerun.chunk import RrdReader
 
 from rlv_landing import Landing
 from rlv_landing.core import SpatialInputs
-from rlv_landing.figures.ground.shape import deck_of
+from rlv_landing.figures.ground.drawn import in_view
+from rlv_landing.figures.ground.shape import GroundShape, deck_of
+from rlv_landing.figures.ground.turn import deck_matrix, deck_place
 from rlv_landing.presets import to_toml
 from rlv_landing.quantities import interface_of
 from rlv_ros_bridge.fmu.builds import build_metadata
@@ -31,6 +34,7 @@ from rlv_ros_bridge.messages.qos import TELEMETRY
 from rlv_ros_bridge.messages.samples import SampleBytes
 from rlv_ros_bridge.messages.topics import APPLIED, APPLIED_GROUND, APPLIED_WRENCH, topics_of
 from rlv_ros_bridge.node.input_queue import InputChange
+from rlv_ros_bridge.viewer.rerun_scene import curves
 
 SPACE = interface_of("space", 5)
 STOP_TIME = 0.4
@@ -153,3 +157,35 @@ def test_a_film_of_it_shows_the_deck_as_it_moved(command, tmp_path: Path) -> Non
     done = command("animate", str(tmp_path / "log"), str(film), *size)
     assert (done.code, done.err) == (0, "")
     assert f"{film}: 5 frames" in done.out
+
+
+def test_the_viewer_shows_it_with_attitude_all_feet_and_the_moved_deck(
+    command, tmp_path: Path
+) -> None:
+    log_with_inputs(tmp_path / "log", [])
+    film = tmp_path / "landing.rrd"
+    done = command("view", str(tmp_path / "log"), "--save", str(film))
+    assert (done.code, done.err) == (0, "")
+    found: dict[str, int] = {}
+    for chunk in RrdReader(film).stream():
+        if chunk.is_static or "sim_time" not in chunk.timeline_names:
+            continue
+        entity, batch = str(chunk.entity_path).strip("/"), chunk.to_record_batch()
+        found[entity] = found.get(entity, 0) + batch.num_rows
+        if entity == "vehicle/footpads":
+            (places,) = [name for name in batch.schema.names if "position" in name]
+            assert {len(row) for row in batch.column(places).to_pylist()} == {5}
+    parts = ("body", "main_struts", "auxiliary_struts", "footpads", "contact_force", "ground")
+    drawn = {curve.entity for curve in curves("space", SPACE.legs)}
+    assert set(found) == {f"vehicle/{part}" for part in parts} | drawn
+    assert "body/attitude" in drawn
+    assert set(found.values()) == {round(STOP_TIME * 1e3) + 1}
+
+
+def test_the_ground_of_the_viewer_turns_as_that_of_films() -> None:
+    deck = SpatialInputs(*[0.0] * 18)._replace(surge=0.2, sway=-0.1, roll=0.1, yaw=0.5, tilt=-0.2)
+    shape = GroundShape(five_legs(), (-1.0, 1.0), (-1.0, 1.0))
+    moved = in_view(shape.area()) @ deck_matrix(deck).T + deck_place(deck)
+    assert np.allclose(moved, in_view(shape.area(deck)), atol=1e-15)
+    assert {len(line) for line in shape.lines()} == {2}
+    assert len(shape.lines()) == 18

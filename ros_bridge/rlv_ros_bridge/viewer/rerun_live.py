@@ -14,20 +14,22 @@ from rclpy.parameter_client import AsyncParameterClient
 
 from rlv_landing.errors import LandingError
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import LEGS, MODES
+from rlv_landing.quantities import LEAST_LEGS, MODES, MOST_LEGS, SPACE
 from rlv_landing.touchdown import leg_directions
 
 from ..messages.axes import to_ros
-from ..messages.columns import READINGS
+from ..messages.columns import sample_columns
 from ..messages.message_types import message_class
 from ..messages.qos import Qos
 from ..messages.rclpy_qos import qos_profile
-from ..messages.topics import CONTACTS, MARKERS, RPY, STRUTS, TWIST, Topic, resolve
+from ..messages.topics import MARKERS, RPY, STRUTS, TWIST, Topic, resolve, topics_of
 from ..messages.wire import NANOSECONDS
 from ..ros.setup import StopFlag, ros_context
 from ..ros.spinner import Spinner
 from .rerun_scene import AUXILIARY, BODY, MAIN, Scene
 
+# of a landing on any number of legs
+CONTACTS = topics_of(tuple(range(1, MOST_LEGS + 1))).contacts
 # `struts` last: a node that waits for a subscriber of it finds the others matched.
 WATCHED: tuple[Topic, ...] = (RPY, TWIST, *CONTACTS, STRUTS)
 # Reliable: what is sent before the viewer has found its sender comes all the same. Five seconds of
@@ -37,9 +39,8 @@ QOS = Qos(depth=5000)
 LONGEST_GAP = 2_000_000_000
 # Period of drawing [s], and of checking for signals [s].
 DRAW_SECONDS, POLL_SECONDS = 0.05, 0.1
-NO_CONTACT = dict.fromkeys(
-    (f"leg[{leg}].contact.force_{axis}" for leg in LEGS for axis in "xyz"), 0.0
-)
+# Parameters of the node that say how its ground lies.
+GROUND = ("ground.slope", "ground.slope_direction", "ground.terrain")
 
 
 class LiveScenes:
@@ -59,11 +60,10 @@ class LiveScenes:
         self.scene: Scene | None = None
         self.failure: LandingError | None = None
         self._on_scene, self._last_stamp = on_scene, -1
-        self._column_count = sum(len(READINGS[t.name][0]) for t in WATCHED)
-        # Columns by stamp, and markers with their stamps, that are not drawn yet.
-        self._rows: dict[int, dict[str, float]] = {}
+        # Messages by stamp and topic, and markers with their stamps, that are not drawn yet.
+        self._rows: dict[int, dict[str, Any]] = {}
         self._markers: list[tuple[int, Any]] = []
-        self._forces = NO_CONTACT
+        self._forces: dict[str, float] = {}
         for topic in (MARKERS, *WATCHED):
             callback = self._receive_markers if topic is MARKERS else self._row_callback(topic)
             node.create_subscription(
@@ -76,15 +76,8 @@ class LiveScenes:
         node.create_timer(DRAW_SECONDS, self.draw)
 
     def _row_callback(self, topic: Topic) -> Callable[[Any], None]:
-        names, reading = READINGS[topic.name]
-
         def receive(message: Any) -> None:
-            try:
-                row = zip(names, reading(message))
-            except LandingError as e:
-                self.failure = e
-                return
-            self._rows.setdefault(stamp_of(message.header), {}).update(row)
+            self._rows.setdefault(stamp_of(message.header), {})[topic.name] = message
 
         return receive
 
@@ -96,24 +89,29 @@ class LiveScenes:
                 # what is left of the landing before
                 self._rows = {t: row for t, row in self._rows.items() if t <= stamp}
             try:
-                self.scene = Scene(mode_of(message))
+                self.scene = Scene(*kind_of(message))
+                self.scene.ground(Parameters())
                 self._on_scene(self.scene)
             except LandingError as e:
                 self.failure = e
                 return
-            self._request_slope(self.scene)
+            self._request_ground(self.scene)
         self._last_stamp = stamp
         self._markers.append((stamp, message))
 
-    def _request_slope(self, scene: Scene) -> None:
-        # A replay has no such parameter, so its ground is drawn level.
+    def _request_ground(self, scene: Scene) -> None:
+        # A replay has no such parameters, so its ground is drawn level.
         if self._parameters.services_are_ready():
 
             def draw_ground(answer: Any) -> None:
-                for slope in answer.result().values:
-                    scene.ground(slope.double_value)
+                told = dict(zip(GROUND, answer.result().values))
+                # those that the node does not have are empty
+                values = {name: v.string_value or v.double_value for name, v in told.items()}
+                given = {name: value for name, value in values.items() if value}
+                own = {"drop.mode": SPACE} if scene.interface.in_space else {}
+                scene.ground(Parameters().with_values({**own, **given}))
 
-            self._parameters.get_parameters(["ground.slope"]).add_done_callback(draw_ground)
+            self._parameters.get_parameters(list(GROUND)).add_done_callback(draw_ground)
 
     def draw(self) -> None:
         """Draws what has been received since the last time."""
@@ -121,9 +119,15 @@ class LiveScenes:
         if self.scene is None:
             self._rows = {t: row for t, row in self._rows.items() if t > oldest}
             return
-        complete = {
-            t: row for t, row in sorted(self._rows.items()) if len(row) == self._column_count
-        }
+        try:
+            complete = {
+                t: self._columns(row)
+                for t, row in sorted(self._rows.items())
+                if self._is_whole(row)
+            }
+        except LandingError as e:
+            self.failure = e
+            return
         self._rows = {t: row for t, row in self._rows.items() if t not in complete and t > oldest}
         if complete:
             rows = list(complete.values())
@@ -137,6 +141,17 @@ class LiveScenes:
             self._draw_vehicle(self.scene, complete)
         self._markers = []
 
+    def _is_whole(self, row: dict[str, Any]) -> bool:
+        """Whether all topics of the landing are there."""
+        assert self.scene is not None
+        contacts = topics_of(self.scene.interface.legs).contacts
+        return all(t.name in row for t in (RPY, TWIST, *contacts, STRUTS))
+
+    def _columns(self, row: dict[str, Any]) -> dict[str, float]:
+        """The outputs that the messages of an instant carry."""
+        assert self.scene is not None
+        return sample_columns(row, self.scene.interface)
+
     def _draw_vehicle(self, scene: Scene, complete: dict[int, dict[str, float]]) -> None:
         time = np.array([stamp for stamp, _ in self._markers]) / NANOSECONDS
         body, main, auxiliary, feet = (
@@ -149,7 +164,10 @@ class LiveScenes:
         scene.footpads(time, feet)
         rows = [complete.get(stamp, self._forces) for stamp, _ in self._markers]
         forces = [
-            [to_ros(*(row[f"leg[{leg}].contact.force_{axis}"] for axis in "xyz")) for leg in LEGS]
+            [
+                to_ros(*(row.get(f"leg[{leg}].contact.force_{axis}", 0.0) for axis in "xyz"))
+                for leg in scene.interface.legs
+            ]
             for row in rows
         ]
         scene.contacts(time, feet, np.array(forces))
@@ -195,24 +213,25 @@ def stamp_of(header: Any) -> int:
     return int(header.stamp.sec) * NANOSECONDS + int(header.stamp.nanosec)
 
 
-def mode_of(markers: Any) -> str:
-    """The landing mode of a vehicle in `markers`.
+def kind_of(markers: Any) -> tuple[str, int]:
+    """The mode of the landing of a vehicle in `markers`, and its number of legs.
 
-    It follows from where the main struts are joined to the body: in its plane of symmetry or beside
-    it.
+    A landing is symmetric if its main struts are joined to the body as in a landing mode: in its
+    plane of symmetry or beside it, in their order. Any other is one in space.
 
     Raises:
-        LandingError: the joints fit no landing mode.
+        LandingError: the legs are more or fewer than a landing has.
     """
     across = [p.y for p in markers.markers[1].points[::2]]
-    radius = max(map(abs, across))
+    radius = max(map(abs, across), default=0.0)
     for mode in MODES:
         sines = [sine for sine, _ in leg_directions(Parameters().for_mode(mode)).values()]
         reach = max(map(abs, sines))
         fits = len(across) == len(sines)
         if fits and np.allclose(across, [-s * radius / reach for s in sines], atol=1e-6):
-            return mode
-    joints = ", ".join(f"{y:.3g}" for y in across)
-    raise LandingError(
-        f"the markers' struts are joined to the body at y = {joints} m, which is no landing mode"
-    )
+            return mode, len(sines)
+    if not LEAST_LEGS <= len(across) <= MOST_LEGS:
+        raise LandingError(
+            f"the markers have {len(across)} main struts; a landing has {LEAST_LEGS} to {MOST_LEGS}"
+        )
+    return SPACE, len(across)

@@ -5,7 +5,7 @@ Needs rerun-sdk.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from pathlib import Path
 from types import TracebackType
@@ -16,9 +16,14 @@ import rerun as rr
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from rlv_landing.figures.plots import DRAWN_OF_A_LEG
+from rlv_landing.core import SpatialInputs
+from rlv_landing.figures.ground.drawn import in_view
+from rlv_landing.figures.ground.shape import GroundShape
+from rlv_landing.figures.ground.turn import deck_matrix, deck_place
+from rlv_landing.figures.plots import DRAWN_OF_A_LEG, legs_together
 from rlv_landing.figures.style import COLOURS, FORCE, GRID, INK, PAPER
-from rlv_landing.quantities import LEGS, touchdown_groups
+from rlv_landing.parameters import Parameters
+from rlv_landing.quantities import LEGS, SPACE, interface_of
 from rlv_landing.text.durable import whole_file, writing
 
 Array = NDArray[np.float64]
@@ -30,8 +35,8 @@ BODY, MAIN, AUXILIARY, FOOTPADS, CONTACT, FLOOR = (
 # Radii of lines and footpads [m], and the length of an arrow [m/N].
 RADII = {BODY: 0.012, MAIN: 0.03, AUXILIARY: 0.015, FOOTPADS: 0.05, CONTACT: 0.03, FLOOR: 0.004}
 ARROW_LENGTH = 3e-4
-# Grid lines of the ground [m].
-GROUND_GRID = np.linspace(-3.0, 3.0, 13)
+# How far the ground is drawn at least in each direction [m].
+GROUND_REACH = 3.0
 # Where the view looks from and to [m].
 EYE, TARGET = (-2.0, -7.5, 2.2), (0.2, 0.0, 1.3)
 
@@ -50,10 +55,10 @@ class Curve(NamedTuple):
     colours: tuple[str, ...]
 
 
-def curves(mode: str) -> list[Curve]:
-    """The plots of a landing in `mode`."""
-    legs = touchdown_groups(mode)
-    names = {f"leg {'/'.join(map(str, group))}": group[0] for group in legs}
+def curves(mode: str, legs: Sequence[int] = LEGS) -> list[Curve]:
+    """The plots of a landing in `mode` on `legs`."""
+    together = legs_together(mode, legs)
+    names = {f"leg {'/'.join(map(str, group))}": group[0] for group in together}
 
     def strut(column: str, factor: float, title: str) -> Curve:
         return Curve(
@@ -66,39 +71,53 @@ def curves(mode: str) -> list[Curve]:
 
     return [
         *(strut(*drawn) for drawn in DRAWN_OF_A_LEG),
-        Curve("body/pitch", "pitch [deg]", {"pitch": "body.pitch"}, float(np.degrees(1.0)), (INK,)),
-        Curve(
-            "body/speed", "speed [m/s]", {"forward": "body.vx", "up": "body.vy"}, 1.0, (INK, FORCE)
-        ),
+        *(_body_in_space() if mode == SPACE else _body_in_a_plane()),
     ]
 
 
+def _body_in_a_plane() -> tuple[Curve, Curve]:
+    speeds = {"forward": "body.vx", "up": "body.vy"}
+    return (
+        Curve("body/pitch", "pitch [deg]", {"pitch": "body.pitch"}, float(np.degrees(1.0)), (INK,)),
+        Curve("body/speed", "speed [m/s]", speeds, 1.0, (INK, FORCE)),
+    )
+
+
+def _body_in_space() -> tuple[Curve, Curve]:
+    angles = {name: f"body.{name}" for name in ("pitch", "roll", "heading")}
+    speeds = {"forward": "body.vx", "up": "body.vy", "right": "body.vz"}
+    return (
+        Curve("body/attitude", "attitude [deg]", angles, float(np.degrees(1.0)), COLOURS[:3]),
+        Curve("body/speed", "speed [m/s]", speeds, 1.0, (INK, FORCE, COLOURS[0])),
+    )
+
+
 class Scene:
-    """A recording of a landing in the mode `mode`.
+    """A recording of a landing in `mode` on so many `legs`.
 
     Lengths are in m, times in s, axes as in REP-103 (x forward, y left, z up).
     """
 
-    def __init__(self, mode: str) -> None:
-        self.mode = mode
+    def __init__(self, mode: str, legs: int = len(LEGS)) -> None:
+        self.interface = interface_of(mode, legs)
         self.stream = rr.RecordingStream("rlv-landing")
         colours = {
             leg: rgb(colour)
-            for group, colour in zip(touchdown_groups(mode), COLOURS)
+            for group, colour in zip(legs_together(mode, self.interface.legs), COLOURS)
             for leg in group
         }
-        legs = [colours[leg] for leg in LEGS]
+        shades = [colours[leg] for leg in self.interface.legs]
         self._log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
-        for part, shades in (
+        for part, colour in (
             (BODY, [rgb(INK)]),
-            (MAIN, legs),
-            (AUXILIARY, legs),
+            (MAIN, shades),
+            (AUXILIARY, shades),
             (FLOOR, [rgb(GRID)]),
         ):
-            self._log(part, rr.LineStrips3D.from_fields(radii=RADII[part], colors=shades))
+            self._log(part, rr.LineStrips3D.from_fields(radii=RADII[part], colors=colour))
         self._log(FOOTPADS, rr.Points3D.from_fields(radii=RADII[FOOTPADS], colors=[rgb(INK)]))
         self._log(CONTACT, rr.Arrows3D.from_fields(radii=RADII[CONTACT], colors=[rgb(FORCE)]))
-        self._curves = curves(mode)
+        self._curves = curves(mode, self.interface.legs)
         for curve in self._curves:
             self._log(
                 curve.entity,
@@ -106,7 +125,6 @@ class Scene:
                     colors=[rgb(c) for c in curve.colours], names=list(curve.lines), widths=[1.5]
                 ),
             )
-        self.ground(0.0)
 
     def _log(self, entity: str, what: Any) -> None:
         rr.log(entity, what, static=True, recording=self.stream)
@@ -116,17 +134,32 @@ class Scene:
             entity, [rr.TimeColumn(TIMELINE, duration=time)], columns, recording=self.stream
         )
 
-    def ground(self, slope: float) -> None:
-        """Draws the ground at rest.
+    def ground(self, parameters: Parameters, reach: float = 0.0) -> None:
+        """Draws the ground of a landing, its deck at rest.
 
         Args:
-            slope: inclination [rad]; positive: it descends along +x.
+            parameters: the landing's.
+            reach: how far it goes at least in each direction [m].
         """
-        gradient = -np.tan(slope)
-        first, last = GROUND_GRID[0], GROUND_GRID[-1]
-        along = [[(x, y, gradient * x) for x in (first, last)] for y in GROUND_GRID]
-        across = [[(x, y, gradient * x) for y in (first, last)] for x in GROUND_GRID]
-        self._log(FLOOR, rr.LineStrips3D.from_fields(strips=[*along, *across]))
+        ends = (-max(reach, GROUND_REACH), max(reach, GROUND_REACH))
+        strips = [in_view(line) for line in GroundShape(parameters, ends, ends).lines()]
+        self._log(FLOOR, rr.LineStrips3D.from_fields(strips=strips))
+
+    def decks(self, time: Array, decks: Sequence[SpatialInputs]) -> None:
+        """Moves the ground with its deck.
+
+        Args:
+            time: (times,) [s].
+            decks: the deck at each time.
+        """
+        self._send(
+            FLOOR,
+            time,
+            rr.Transform3D.columns(
+                translation=np.array([deck_place(deck) for deck in decks]),
+                mat3x3=np.array([deck_matrix(deck) for deck in decks]),
+            ),
+        )
 
     def curves(self, time: Array, columns: Mapping[str, Array]) -> None:
         """Adds samples to the plots.
@@ -168,7 +201,9 @@ class Scene:
         self._send(
             FOOTPADS,
             time,
-            rr.Points3D.columns(positions=feet.reshape(-1, 3)).partition([len(LEGS)] * len(time)),
+            rr.Points3D.columns(positions=feet.reshape(-1, 3)).partition(
+                [feet.shape[1]] * len(time)
+            ),
         )
 
     def contacts(self, time: Array, feet: Array, forces: Array) -> None:
@@ -182,7 +217,11 @@ class Scene:
         arrows = rr.Arrows3D.columns(
             origins=feet.reshape(-1, 3), vectors=ARROW_LENGTH * forces.reshape(-1, 3)
         )
-        self._send(CONTACT, time, arrows.partition([len(LEGS)] * len(time)))
+        self._send(CONTACT, time, arrows.partition([feet.shape[1]] * len(time)))
+
+    @staticmethod
+    def _has_own_legend(curve: Curve) -> bool:
+        return curve.entity.startswith("body/") and len(curve.lines) > 1
 
     def blueprint(self, *, live: bool) -> Any:
         """The layout: the vehicle on the left, plots on the right.
@@ -190,12 +229,14 @@ class Scene:
         Args:
             live: follow the newest sample; otherwise play five times slower, in a loop.
         """
-        # The first plot's legend is that of all plots of legs; the last plot has its own.
+        # The first plot's legend is that of all plots of legs; the body's have their own.
         plots = [
             rrb.TimeSeriesView(
                 origin=f"/{c.entity}",
                 name=c.title,
-                plot_legend=rrb.PlotLegend("RightBottom", visible=i in (0, 4)),
+                plot_legend=rrb.PlotLegend(
+                    "RightBottom", visible=i == 0 or self._has_own_legend(c)
+                ),
             )
             for i, c in enumerate(self._curves)
         ]

@@ -80,6 +80,12 @@ class GroundShape:
         """Lines along and across, one after the other, NaN between two: (points, 3) [m]."""
         return self._placed(self._grid, deck)
 
+    def lines(self) -> list[Points]:
+        """The lines of `grid` on a deck at rest, one by one, each (points, 3) [m]."""
+        points = self.grid()
+        ends = np.flatnonzero(np.isnan(points[:, 0]))
+        return [line[~np.isnan(line[:, 0])] for line in np.split(points, ends)[:-1]]
+
     def area(self, deck: SpatialInputs = STILL) -> Points:
         """The edge of a plane: (points, 3) [m]."""
         return self._placed(self._area, deck)
