@@ -100,7 +100,7 @@ class StrutCurves:
         return self._between(a, _turning_part(*self._span(a, rate)))
 
     def extended(self, top: int, end: int) -> Point | None:
-        """Where the stroke falls to 0 between the samples `top` and `end`; None: it stays above.
+        """Where the stroke first falls to 0 between samples `top` and `end`; None: it stays above.
 
         The damper may meet a stop there, so that the curves before go on to it: the rate and the
         power as straight lines through the last two samples.
@@ -108,7 +108,8 @@ class StrutCurves:
         stroke, rate = self.stroke, self.rate
         if rate is None or stroke[top] <= 0.0 or self.turn(end).stroke >= 0.0:
             return None
-        a = top + int(np.flatnonzero(stroke[top : end + 1] > 0.0)[-1])
+        extended = np.flatnonzero(stroke[top : end + 1] <= 0.0)
+        a = top + int(extended[0]) - 1 if len(extended) else end
         if not a or rate[a] >= 0.0:
             return None
         step = float(self.time[a + 1] - self.time[a])
