@@ -21,7 +21,6 @@ from rlv_landing.validation.first_contact import first_contact
 
 # struts that move before their footpad touches
 SPRINGS = FIVE_LEGS | {
-    "vehicle.body_points": "",
     "drop.contact_time": 0.0004,
     # it bottoms out before they meet the ground, and a strike is the severer outcome
     "vehicle.body_points": "",
