@@ -96,6 +96,7 @@ torture: $(FMU) $(FMU3)
 
 bench: $(FMU)
 	$(BIN)/python benchmarks/bench_landing.py
+	$(BIN)/python benchmarks/bench_space.py
 	$(BIN)/python benchmarks/bench_fmu.py
 	$(BIN)/python benchmarks/bench_bridge.py
 	$(BIN)/python benchmarks/bench_quasi3d.py

@@ -13,7 +13,8 @@ from rlv_landing.assembly import new_solver
 from rlv_landing.quantities import INPUT_NAMES
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "benchmarks"))
-from c_landing import CLanding, disagreement
+from bench_space import SPACE
+from c_landing import CLanding, core_solver, disagreement
 from cvode_in_c import ADAMS, BDF, CvodeInC
 from problem import TIMES, Problem
 
@@ -54,6 +55,17 @@ def test_the_landing_in_c_has_the_cores_inputs_slope_and_stops(mode):
     stroke = watched.run(0.3)["leg[1].main_strut.stroke"]
     assert stroke.min() < 0.0
     assert stroke.max() > 0.03
+
+
+# a deck that moves in all directions is left out: the core's own tests have it
+@pytest.mark.parametrize("joint", ["footpad", "joint"])
+def test_the_landing_in_space_in_c_takes_the_cores_steps_to_the_same_states(joint):
+    legs = {"vehicle.legs": 5.0, "vehicle.inertia_roll": 120.0, "vehicle.inertia_yaw": 60.0}
+    tensor = {"vehicle.inertia_xy": 3.0, "vehicle.inertia_yz": -4.0, "vehicle.cg_offset_x": 0.03}
+    parameters = load_preset("yue2022-figures").with_values(
+        {**SPACE, **legs, **tensor, "vehicle.transverse_load_at": joint}
+    )
+    assert disagreement(core_solver(parameters, 1e-5), CLanding(parameters, 1e-5), 0.4) < 1e-9
 
 
 def test_a_landing_in_c_of_another_vehicle_is_told_from_the_cores(mode):
