@@ -96,6 +96,7 @@ torture: $(FMU) $(FMU3)
 
 bench: $(FMU)
 	$(BIN)/python benchmarks/bench_landing.py
+	$(BIN)/python benchmarks/bench_space.py
 	$(BIN)/python benchmarks/bench_fmu.py
 	$(BIN)/python benchmarks/bench_bridge.py
 	$(BIN)/python benchmarks/bench_quasi3d.py
@@ -116,7 +117,9 @@ coverage: $(FMU) $(FMU3)
 
 docs: $(FMU)
 	$(BIN)/rlv-landing simulate --mode 2-2 --plot docs/landing-2-2.png --force
-	$(BIN)/rlv-landing animate --mode 2-2 docs/landing-2-2.gif --view 3d \
+	$(BIN)/rlv-landing animate --set drop.mode=space --set drop.heading="20 deg" \
+	  --set drop.roll="3 deg" --set drop.lateral_velocity=0.3 --set ground.slope="4 deg" \
+	  --set ground.slope_direction="60 deg" docs/landing-space.gif \
 	  --fps 20 --end 0.6 --width 880 --force
 	$(BIN)/rlv-landing draw yue2022-figures docs/vehicle.png --force
 	rm -rf build/envelope

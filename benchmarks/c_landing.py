@@ -18,9 +18,17 @@ from typing import Any
 import numpy as np
 
 from rlv_landing import Parameters
-from rlv_landing.assembly import body_model, leg_models, leg_places, new_solver
-from rlv_landing.core import Solver
-from rlv_landing.quantities import INPUT_NAMES
+from rlv_landing.assembly import (
+    begin,
+    body_model,
+    landing_system,
+    leg_model,
+    leg_models,
+    leg_places,
+)
+from rlv_landing.assembly.spatial import spatial_model, spatial_places
+from rlv_landing.core import Exponential, Solver
+from rlv_landing.quantities import SPACE, interface_of
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent / "fmu_src"))
@@ -35,17 +43,25 @@ PARAMETERS = (
     "k_play", "c_play", "F_0", "U_0", "alpha", "Kg", "en", "Cgmax", "d_ramp", "mu", "ar", "b_strib",
     "Cr", "tau_sr", "K_t", "zone", "g",
 )  # fmt: skip
+# of a landing in space, the body's and the ground's: those of `SpatialModel`
+OF_BODY = ("m_u", "I_u", "at_joint", "alpha", "g")
+IN_SPACE = (
+    "m_u", "I_x", "I_y", "I_z", "I_xy", "I_xz", "I_yz", "cg_x", "cg_z", "at_joint", "g", "down_x",
+    "down_y", "down_z", "along_x", "along_z", "normal_x", "normal_y", "normal_z",
+    *(name for name in PARAMETERS if name not in OF_BODY),
+)  # fmt: skip
 # the core's own options, and options that may change the digits
 EXACT: tuple[str, ...] = (*COMPILE_ARGS, *GCC_ARGS)
 FAST: tuple[str, ...] = ("-O3", "-march=native", "-ffast-math")
 
 
 @cache
-def library(options: tuple[str, ...]) -> CDLL:
-    """`c_landing.c` compiled with `options`."""
+def library(options: tuple[str, ...], *, space: bool = False) -> CDLL:
+    """`c_landing.c` compiled with `options`, for symmetric landings or for those in space."""
     with tempfile.TemporaryDirectory(prefix="rlv_landing_") as folder:
         target = Path(folder) / "c_landing.so"
-        names = f"-DPARAMETERS={','.join(PARAMETERS)}"
+        names = [f"-DPARAMETERS={','.join(IN_SPACE if space else PARAMETERS)}"]
+        names += ["-DSPACE"] * space
         command = [
             "gcc",
             "-std=gnu11",
@@ -53,7 +69,7 @@ def library(options: tuple[str, ...]) -> CDLL:
             "-Wextra",
             "-Werror",
             *options,
-            names,
+            *names,
             "-shared",
             "-fPIC",
             "-o",
@@ -79,6 +95,14 @@ def doubles(values: Any) -> Any:
     return (c_double * len(values))(*values)
 
 
+def core_solver(parameters: Parameters, rtol: float) -> Solver:
+    """The core at the start of a landing, symmetric or in space."""
+    solver = Exponential(landing_system(parameters), rtol)
+    none = (0.0,) * len(interface_of(parameters.drop.mode).inputs)
+    begin(solver, parameters, none, none)
+    return solver
+
+
 class CLanding:
     """One landing in C, from the start of a landing with the same parameters.
 
@@ -102,18 +126,25 @@ class CLanding:
         inputs: Mapping[str, float] | None = None,
         rates: Mapping[str, float] | None = None,
     ) -> None:
-        solver, body, legs, places = (
-            new_solver(parameters, rtol),
-            body_model(parameters),
-            leg_models(parameters),
-            leg_places(parameters),
-        )
+        space = parameters.drop.mode == SPACE
+        solver = core_solver(parameters, rtol)
+        if space:
+            body, places = spatial_model(parameters), spatial_places(parameters)
+            legs = [leg_model(parameters)] * len(places)
+        else:
+            body, legs, places = (
+                body_model(parameters),
+                leg_models(parameters),
+                leg_places(parameters),
+            )
+        names = IN_SPACE if space else PARAMETERS
+        input_names = interface_of(parameters.drop.mode).input_names
         groups = [x for place in places for x in place]
         numbers = {**legs[0]._asdict(), **body._asdict()}
         self.n, self.controlled = solver.n, solver.system.controlled
-        self._library = library(options)
+        self._library = library(options, space=space)
         self._landing = self._library.landing(
-            doubles([numbers[name] for name in PARAMETERS]),
+            doubles([numbers[name] for name in names]),
             len(legs),
             *(
                 doubles(a)
@@ -126,7 +157,7 @@ class CLanding:
             ),
             rtol,
             *(
-                doubles([(values or {}).get(name, 0.0) for name in INPUT_NAMES])
+                doubles([(values or {}).get(name, 0.0) for name in input_names])
                 for values in (inputs, rates)
             ),
         )

@@ -41,7 +41,7 @@ def test_each_page_is_in_the_navigation_once_and_is_there(site):
 
 
 def test_what_a_page_links_to_comes_along(site):
-    assert (site / "docs" / "landing-2-2.gif").is_file()
+    assert (site / "docs" / "landing-space.gif").is_file()
     assert "(../index.md)" in (site / "docs" / "README.md").read_text(encoding="utf-8")
 
 

@@ -12,6 +12,7 @@ from test_report import Page
 from rlv_landing import Landing, load_preset
 from rlv_landing.figures.landing_report.page import page
 from rlv_landing.figures.landing_report.sections import Landed, side_by_side, tables_of
+from rlv_landing.figures.top_view import margin_of, seen_from_above
 from rlv_landing.figures.wireframe import wireframe
 from rlv_landing.studies.whole_landing import whole_landing
 from rlv_landing.summary import summarise
@@ -82,7 +83,13 @@ def test_a_landing_in_space_has_every_leg_and_its_own_touchdown(tmp_path, comman
     )
     assert (written.code, written.err) == (0, "")
     text = (tmp_path / "space.html").read_text()
-    for title in ("The vehicle", "Movement", "Loads at the interfaces", "All parameters"):
+    for title in (
+        "The vehicle",
+        "Movement",
+        "Footpads from above",
+        "Loads at the interfaces",
+        "All parameters",
+    ):
         assert title in text
     found = Landed("five", Landing(five_legs()).run(0.4, 1e-3))
     tables = {table.title: table for table in tables_of(found)}
@@ -91,6 +98,13 @@ def test_a_landing_in_space_has_every_leg_and_its_own_touchdown(tmp_path, comman
     assert [row[0] for row in tables["Legs"].rows] == ["1", "2", "3", "4", "5"]
     loads = {row[0] for row in tables["Loads at the interfaces"].rows}
     assert {f"leg {leg}, footpad" for leg in range(1, 6)} <= loads
+
+
+def test_the_view_from_above_has_the_model_s_margin():
+    history = Landing(five_legs()).run(0.4, 0.05)
+    feet, center = seen_from_above(history, np.arange(len(history)))
+    found = [margin_of(f, c) for f, c in zip(feet, center)]
+    assert np.allclose(found, history["status.stability_margin"], atol=1e-12)
 
 
 def test_a_vehicle_that_topples_in_space_says_over_which_edge():

@@ -17,6 +17,7 @@ from ..plots import (
 )
 from ..report_movement import movement_in_space, sequence
 from ..style import COLOURS, plain_axes
+from ..top_view import top_view
 from .sections import Landed
 
 if TYPE_CHECKING:
@@ -59,6 +60,7 @@ def pictures(found: Landed) -> list[Picture]:
     return [
         Picture("The vehicle", drawn, vehicle_drawing(found.parameters, "")),
         Picture("Movement", "light to dark in time", _movement(found)),
+        *([_from_above(found)] if in_space else []),
         *(Picture(title, note, _pair(found, _of_legs, *each)) for title, note, each in pairs),
         Picture("Body", "", _pair(found, _of_body, TOP_ACCELERATION, MARGIN)),
         Picture("Energies over time", "", _energies(found)),
@@ -69,6 +71,11 @@ def _movement(found: Landed) -> Figure:
     if found.parameters.drop.mode == SPACE:
         return movement_in_space(found.history, _end(found))
     return sequence(found.history, _end(found))[0]
+
+
+def _from_above(found: Landed) -> Picture:
+    note = "thick where the ground bears a footpad; polygon: dashed at the start, solid at the end"
+    return Picture("Footpads from above", note, top_view(found.history, _end(found)))
 
 
 def _end(found: Landed) -> float:
