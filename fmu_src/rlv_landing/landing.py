@@ -33,6 +33,8 @@ LOOSEST_RTOL = 1e-4
 METHODS: dict[str, type[Solver]] = {"exponential": Exponential, "dormand-prince": DormandPrince}
 # samples between two calls of `progress` in a run
 SLICE = 250
+# and the longest time between them [s]: a study looks between samples from the state at such a call
+SLICE_TIME = 0.05
 
 
 class Landing:
@@ -333,7 +335,7 @@ class Landing:
         Args:
             until: Time to land to [s].
             every: Time between two samples [s].
-            progress: Called with the time reached [s], every SLICE samples.
+            progress: Called with the time reached [s], every 250 samples or 0.05 s.
 
         Returns:
             The outputs every `every` [s], the present time included.
@@ -400,9 +402,10 @@ class Landing:
         progress: Callable[[float], object] | None,
     ) -> None:
         """Write the outputs at so many `samples` from `start` [s] on, `every` [s], to `rows`."""
+        most = max(1, min(SLICE, round(SLICE_TIME / every)))
         reached = 0
         while reached < samples:
-            goal = min(reached + SLICE, samples)
+            goal = min(reached + most, samples)
             if self._inputs.pending:
                 goal = reached + 1
                 sample = start + reached * every
