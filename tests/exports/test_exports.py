@@ -28,8 +28,10 @@ from rlv_landing.exports.urdf import urdf
 from rlv_landing.parameters import terrain_of
 from rlv_landing.touchdown import footpad_at_rest
 
+PLANE = {"ground.terrain": ""}
 # struts and ground exactly linear, no friction; the rest has no symmetry
 LINEAR = {
+    **PLANE,
     "vehicle.body_points": "",
     "leg[2].ground.step": 0.0,
     "main_strut.kind": "spring-damper",
@@ -117,7 +119,7 @@ def test_mujoco_holds_the_exported_prototype_at_full_length_and_stops_it() -> No
 
 
 @pytest.mark.parametrize(
-    "parameters", [five_legs(), load_preset("yue2022-figures").for_mode("2-2")]
+    "parameters", [five_legs().with_values(PLANE), load_preset("yue2022-figures").for_mode("2-2")]
 )
 def test_urdf_places_joints_and_footpads_where_the_model_has_them(parameters: Parameters) -> None:
     robot = yourdfpy.URDF.load(_file(urdf(parameters)), load_meshes=False)
@@ -138,7 +140,7 @@ def test_urdf_places_joints_and_footpads_where_the_model_has_them(parameters: Pa
 
 
 def test_sdf_and_mjcf_have_the_same_inertia_joints_and_laws() -> None:
-    parameters = five_legs()
+    parameters = five_legs().with_values(PLANE)
     world = ET.fromstring(sdf(parameters)).find("world")
     assert world is not None
     model = world.find("model[@name='rlv_landing']")
