@@ -26,7 +26,17 @@ PICTURES = (".png", ".svg", ".pdf")
 
 
 class Group(click.Group):
-    """A group of commands that names the nearest where there is no such command."""
+    """A group of commands that names the nearest where there is no such command.
+
+    Without a command it prints its help, whichever version of click is installed.
+    """
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """The arguments that are left; without any, the help and the end."""
+        if not args and self.no_args_is_help and not ctx.resilient_parsing:
+            click.echo(ctx.get_help())
+            ctx.exit()
+        return super().parse_args(ctx, args)
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
         """The command that the arguments name, as click expects it.
