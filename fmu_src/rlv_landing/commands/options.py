@@ -238,17 +238,3 @@ def check_writable(path: Path | None, ending: str | tuple[str, ...], *, force: b
         raise LandingError(f"{path} exists; --force overwrites it")
     if not folder:
         raise LandingError(f"there is no folder {path.parent} to write {path.name} to")
-
-
-def new_folder(folder: Path) -> None:
-    """Make a folder, or take one that is empty.
-
-    Raises:
-        LandingError: It is neither new nor empty.
-    """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        if any(folder.iterdir()):
-            raise LandingError(f"{folder} is there and is not empty; name a new folder")
-    except (FileExistsError, NotADirectoryError):
-        raise LandingError(f"{folder} is a file; name a new folder") from None
