@@ -182,15 +182,18 @@ def test_the_module_runs_as_the_command_does():
     assert done.stdout == run("--version").stdout.replace("-c,", "python -m rlv_landing.cli,")
 
 
-def _commands(group: click.Group) -> Iterator[click.Command]:
+def _all(group: click.Group) -> Iterator[click.Command]:
     context = click.Context(group)
     for name in group.list_commands(context):
         command = group.get_command(context, name)
         assert command is not None
+        yield command
         if isinstance(command, click.Group):
-            yield from _commands(command)
-        else:
-            yield command
+            yield from _all(command)
+
+
+def _commands(group: click.Group) -> Iterator[click.Command]:
+    return (c for c in _all(group) if not isinstance(c, click.Group))
 
 
 def test_output_has_its_short_form_in_every_command():
@@ -211,3 +214,12 @@ def test_without_a_command_three_lines_lead_on(command):
     assert len(done.out.splitlines()) == 3
     for words in ("simulate --plot", "new my_vehicle", "--help"):
         assert words in done.out
+
+
+def test_a_group_without_a_command_prints_its_help(command):
+    groups = [c.name for c in _all(cli) if isinstance(c, click.Group)]
+    assert {"fmu", "log", "examples"} <= set(groups)
+    for name in groups:
+        done = command(name)
+        assert (done.code, done.err) == (0, ""), name
+        assert done.out == command(name, "--help").out

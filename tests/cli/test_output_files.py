@@ -112,6 +112,23 @@ def test_a_disk_that_fills_leaves_no_new_file(folder):
     assert sorted(p.name for p in folder.iterdir()) == ["s.toml"]
 
 
+@pytest.mark.parametrize("filling", [("new", "a/b"), ("examples", "copy", "a/b")])
+def test_a_disk_that_fills_leaves_no_new_folder(folder, filling):
+    done = run(folder, *filling, largest=2000)
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: a/b")
+    assert "cannot be written: File too large; make room, or name a new folder" in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert sorted(p.name for p in folder.iterdir()) == ["s.toml"]
+
+
+def test_a_disk_that_fills_empties_the_folder_that_was_there(folder):
+    (folder / "empty").mkdir()
+    assert run(folder, "examples", "copy", "empty", largest=2000).returncode == 2
+    assert list((folder / "empty").iterdir()) == []
+    assert run(folder, "new", "empty").returncode == 0
+
+
 def test_a_disk_that_fills_ends_an_identification_with_a_code_of_its_own(folder):
     done = run(folder, "identify", *ONE, "--work", "i", largest=8192)
     assert done.returncode == 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import random
 import signal
@@ -133,6 +134,11 @@ def lost_by_others() -> None:
         signal.raise_signal(signal.SIGINT)
 
 
+def lost_where_it_is_printed() -> None:
+    # PyErr_Print, as in functions of Cython that cannot raise; sys.last_value keeps the exception
+    ctypes.pythonapi.PyRun_SimpleString(b"__import__('signal').raise_signal(2)")
+
+
 @pytest.fixture
 def open_interrupts() -> Iterator[Interrupts]:
     with interrupts() as come:
@@ -140,7 +146,7 @@ def open_interrupts() -> Iterator[Interrupts]:
         yield come
 
 
-@pytest.mark.parametrize("lose", [lost_in_a_destructor, lost_by_others])
+@pytest.mark.parametrize("lose", [lost_in_a_destructor, lost_by_others, lost_where_it_is_printed])
 def test_an_interrupt_that_is_lost_is_raised_again_and_nothing_is_printed(
     open_interrupts: Interrupts, lose: Callable[[], None], capfd: pytest.CaptureFixture[str]
 ) -> None:

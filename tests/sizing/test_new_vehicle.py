@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
@@ -49,6 +50,17 @@ def test_the_commands_of_the_readme_run(vehicle, command, monkeypatch):
         assert (done.code, done.err) == (0, ""), arguments
     readme = (vehicle / "README.md").read_text()
     assert "fmu build --parameters vehicle.toml --name my_hopper -o my_hopper.fmu" in readme
+
+
+@pytest.mark.parametrize("like", ["hopper", "stage", "prototype"])
+def test_each_touchdown_of_a_new_study_lands(like, tmp_path, command, monkeypatch):
+    assert command("new", str(tmp_path / like), "--like", like).code == 0
+    monkeypatch.chdir(tmp_path / like)
+    study = Path("study.toml")
+    study.write_text(study.read_text().replace("[set]", "until = 0.05\n\n[set]"))
+    done = command("sweep", "study.toml", "--workers", "1")
+    assert (done.code, done.err) == (0, "")
+    assert "failed" not in done.out
 
 
 @pytest.mark.parametrize(

@@ -96,6 +96,7 @@ def test_a_level_landing_stays_within_force_and_stroke(mass, sink, factor, slend
 @pytest.mark.parametrize(
     ("values", "words"),
     [
+        ({"mass": 1e5, "footpad_mass": 0.9}, "footpad_mass = 0.9 kg is below 1e-05 mass = 1 kg"),
         ({"mass": -1.0}, "mass = -1 kg"),
         ({"load_factor": 1.5}, "load_factor = 1.5 leaves a damper of efficiency 0.65 nothing"),
         ({"sink_speed": 10.0}, "sink_speed = 10 m/s at load_factor = 4 takes the footpads"),

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import click
 
-from .options import HELP_NAMES, Group, new_folder
+from ..text.new_folder import new_folder
+from .options import HELP_NAMES, Group
 
 PACKAGE = Path(__file__).resolve().parent.parent
 # an installed package has them, a checkout beside the package
@@ -50,18 +51,21 @@ def copy(folder: Path) -> None:
     Commands in their pages are for that folder. ros2 has the launch file, a parameter file, and
     layouts for RViz and Foxglove.
     """
-    new_folder(folder)
-    ignored = shutil.ignore_patterns("__pycache__")
-    for name, path in example_folders().items():
-        target = folder / name
-        target.parent.mkdir(parents=True, exist_ok=True)
-        if path.is_dir():
-            shutil.copytree(path, target, ignore=ignored)
-        elif path.is_file():
-            shutil.copyfile(path, target)
-    for page in folder.rglob("*.md"):
-        page.write_text(standing_alone(page.read_text()))
+    with new_folder(folder):
+        for name, path in example_folders().items():
+            for source in [path] if path.is_file() else sorted(path.rglob("*")):
+                place = source.relative_to(path)
+                if source.is_file() and "__pycache__" not in place.parts:
+                    _copy(source, folder / name / place)
     click.echo(f"{folder}: {', '.join(sorted(path.name for path in folder.iterdir()))}")
+
+
+def _copy(source: Path, target: Path) -> None:
+    target.parent.mkdir(parents=True, exist_ok=True)
+    if source.suffix == ".md":
+        target.write_bytes(standing_alone(source.read_text("utf-8")).encode())
+    else:
+        shutil.copyfile(source, target)
 
 
 def standing_alone(text: str) -> str:

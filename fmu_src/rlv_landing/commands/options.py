@@ -26,7 +26,17 @@ PICTURES = (".png", ".svg", ".pdf")
 
 
 class Group(click.Group):
-    """A group of commands that names the nearest where there is no such command."""
+    """A group of commands that names the nearest where there is no such command.
+
+    Without a command it prints its help, whichever version of click is installed.
+    """
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """The arguments that are left; without any, the help and the end."""
+        if not args and self.no_args_is_help and not ctx.resilient_parsing:
+            click.echo(ctx.get_help())
+            ctx.exit()
+        return super().parse_args(ctx, args)
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
         """The command that the arguments name, as click expects it.
@@ -228,17 +238,3 @@ def check_writable(path: Path | None, ending: str | tuple[str, ...], *, force: b
         raise LandingError(f"{path} exists; --force overwrites it")
     if not folder:
         raise LandingError(f"there is no folder {path.parent} to write {path.name} to")
-
-
-def new_folder(folder: Path) -> None:
-    """Make a folder, or take one that is empty.
-
-    Raises:
-        LandingError: It is neither new nor empty.
-    """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        if any(folder.iterdir()):
-            raise LandingError(f"{folder} is there and is not empty; name a new folder")
-    except (FileExistsError, NotADirectoryError):
-        raise LandingError(f"{folder} is a file; name a new folder") from None

@@ -8,14 +8,14 @@ from typing import Any
 import click
 
 from ..errors import LandingError, one_line
-from ..text.durable import whole_file, writing
+from ..text.durable import writing
+from ..text.new_folder import new_folder
 from .options import (
     HELP_NAMES,
     PICTURES,
     check_writable,
     chosen_parameters,
     force_option,
-    new_folder,
 )
 
 
@@ -75,10 +75,9 @@ def new(folder: Path, like: str, pairs: tuple[str, ...], *, listed: bool) -> Non
 
 def _write(folder: Path, files: dict[str, str]) -> None:
     """Write the files to a folder that is new or empty."""
-    new_folder(folder)
-    for name, text in files.items():
-        with whole_file(folder / name) as file:
-            file.write(text.encode())
+    with new_folder(folder):
+        for name, text in files.items():
+            (folder / name).write_bytes(text.encode())
 
 
 @click.command(context_settings=HELP_NAMES)

@@ -69,11 +69,10 @@ def report(
         print_warning(warning_of(found.history))
     with writing(output):
         write(landings, output)
-    for found in landings:
-        click.echo(f"{found.title}: {found.outcome.name} at {found.outcome.time:.3f} s")
-    if audit:
-        (verdicts,) = [row[1:] for row in side_by_side(landings).rows if row[0] == "audit"]
-        click.echo(f"audit: {'; '.join(verdicts)}")
+    (verdicts,) = [row[1:] for row in side_by_side(landings).rows if row[0] == "audit"]
+    for found, verdict in zip(landings, verdicts, strict=True):
+        audited = f"; audit: {verdict}" if audit else ""
+        click.echo(f"{found.title}: {found.outcome.name} at {found.outcome.time:.3f} s{audited}")
     click.echo(f"report: {output}")
 
 

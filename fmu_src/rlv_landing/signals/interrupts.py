@@ -127,20 +127,27 @@ def interrupts() -> Iterator[Interrupts]:
     """The signals that end a command raise KeyboardInterrupt in the body."""
     global _current
     here = Interrupts()
-    before, hook = _current, sys.unraisablehook
+    before, hook, printing = _current, sys.unraisablehook, sys.excepthook
 
     def keep_silent(lost: Any) -> None:
         # it is raised again
         if not isinstance(lost.exc_value, Interrupt):
             hook(lost)
 
-    _current, sys.unraisablehook = here, keep_silent
+    def print_others(kind: Any, lost: BaseException, trace: Any) -> None:
+        # functions of Cython that cannot raise print what they lose; sys.last_value then keeps it
+        if isinstance(lost, Interrupt):
+            here.raise_soon()
+        else:
+            printing(kind, lost, trace)
+
+    _current, sys.unraisablehook, sys.excepthook = here, keep_silent, print_others
     here.set_handlers()
     try:
         yield here
     finally:
         here.restore_handlers()
-        _current, sys.unraisablehook = before, hook
+        _current, sys.unraisablehook, sys.excepthook = before, hook, printing
 
 
 @contextmanager

@@ -10,6 +10,8 @@ from ..errors import LandingError, unknown
 from ..parameters import check_value
 from ..quantities import Quantity
 
+# the least footpad_mass over mass: lighter footpads swing faster than the integrator may step
+LEAST_FOOTPAD = 1e-5
 # unit, meaning, least and largest value by name
 NEEDS: dict[str, Quantity] = {
     name: Quantity(unit, meaning, lo, hi, name=name)
@@ -77,6 +79,11 @@ class Needs:
             raise LandingError(
                 f"cg_height = {self.cg_height:g} m is not within the body, which reaches from "
                 f"clearance = {self.clearance:g} m to {self.clearance + self.body_length:g} m"
+            )
+        if self.footpad_mass < LEAST_FOOTPAD * self.mass:
+            raise LandingError(
+                f"footpad_mass = {self.footpad_mass:g} kg is below {LEAST_FOOTPAD:g} mass = "
+                f"{LEAST_FOOTPAD * self.mass:g} kg; what moves with a footpad must be heavier"
             )
 
 
