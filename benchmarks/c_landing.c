@@ -412,6 +412,9 @@ static void try_step(Landing *s, double h)
         replace_linear_growth(c, end + j, growth,
                               (end[j + Z2] - end[j + Z1]) - (y[j + Z2] - y[j + Z1]));
     }
+#ifdef SPACE
+    normalise(end);
+#endif
     nonlinear_rate(s, t + h, 4, end, k5);
     for (int i = 0; i < m; i++)
         e[i] = h * (1.0 / 6.0) * (k4[i] - k5[i]);
@@ -590,9 +593,6 @@ static void accept(Landing *s, double h)
         s->y[i] = s->y_new[i];
         s->k1[i] = s->k5[i];
     }
-#ifdef SPACE
-    normalise(s->y);
-#endif
     s->t_old = s->t;
     s->t += h;
     s->steps += 1.0;

@@ -89,9 +89,9 @@ def random_state(rng: np.random.Generator, model: Vehicle3D) -> Array:
 
 
 def ours_of(y: Array, legs: int) -> Array:
-    """The same state in the kernels' order: leg by leg, then the accounts."""
+    """The same state in the kernels' order: leg by leg, then the accounts and each strut's work."""
     own = y[LEGS:].reshape(8, legs).T
-    return np.concatenate((y[:LEGS], own.ravel(), np.zeros(access.ACCOUNTS)))
+    return np.concatenate((y[:LEGS], own.ravel(), np.zeros(access.ACCOUNTS + legs)))
 
 
 @pytest.mark.parametrize("at", ["footpad", "joint"])

@@ -184,7 +184,8 @@ def test_the_viewer_shows_it_with_attitude_all_feet_and_the_moved_deck(
 
 def test_the_ground_of_the_viewer_turns_as_that_of_films() -> None:
     deck = SpatialInputs(*[0.0] * 18)._replace(surge=0.2, sway=-0.1, roll=0.1, yaw=0.5, tilt=-0.2)
-    shape = GroundShape(five_legs(), (-1.0, 1.0), (-1.0, 1.0))
+    plane = five_legs().with_values({"ground.terrain": ""})
+    shape = GroundShape(plane, (-1.0, 1.0), (-1.0, 1.0))
     moved = in_view(shape.area()) @ deck_matrix(deck).T + deck_place(deck)
     assert np.allclose(moved, in_view(shape.area(deck)), atol=1e-15)
     assert {len(line) for line in shape.lines()} == {2}
