@@ -24,7 +24,7 @@ from .outcome import SLIDE
 from .study_effort import check_landings
 from .sweep.design import Design
 from .sweep.factors import column
-from .sweep.responses import expand, known_responses
+from .sweep.responses import JUDGED, LEGS_PEAKS, expand, known_responses
 from .sweep.study import ENDS, NUMBERS, UNTIL
 from .sweep.sweep import threads
 from .sweep.sweep_row import MODE, Plan
@@ -35,13 +35,8 @@ if TYPE_CHECKING:
 
 # the columns of a batch where none are asked for: outcome, margins and peaks
 PEAKS = (
-    "outcome",
-    "outcome.*",
-    "margin.*",
-    "legs.main_strut.force.min",
-    "legs.main_strut.stroke.max",
-    "legs.auxiliary_strut.force.abs_max",
-    "legs.contact.force_y.max",
+    *JUDGED,
+    *LEGS_PEAKS,
     "leg[*].main_strut.force.min",
     "leg[*].main_strut.stroke.max",
     "leg[*].auxiliary_strut.force.abs_max",

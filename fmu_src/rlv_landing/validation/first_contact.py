@@ -19,7 +19,7 @@ BEFORE = 3
 # a contact that comes before so long [s], or with fewer samples before it, is looked for in the
 # landing itself, where that can be repeated: some microseconds are much of its time then
 EARLY = 0.02
-# between between this long before the integrator's first step in contact, and that step [s]
+# the contact is between two looks at the landing that are this near to each other [s]
 NEAR = 2e-5
 # a footpad that is no further above the ground at the start touches it [m]
 TOUCHING = 1e-9

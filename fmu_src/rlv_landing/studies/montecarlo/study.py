@@ -22,7 +22,7 @@ from ..landed import interface_for
 from ..limits import LIMITS
 from ..outcome import SLIDE
 from ..sweep.factors import LARGEST, read_factor
-from ..sweep.responses import expand, known_responses
+from ..sweep.responses import LEGS_PEAKS, expand, known_responses
 from ..sweep.states_table import read_states
 from ..sweep.study import UNTIL, Study, read_end
 from ..variables import VARIABLES, check_variables
@@ -62,10 +62,7 @@ KEYS = (
 ALWAYS = ("outcome", "outcome.*", "margin.*")
 # what is ranked and has percentiles where the study names nothing
 LOADS = (
-    "legs.main_strut.force.min",
-    "legs.main_strut.stroke.max",
-    "legs.auxiliary_strut.force.abs_max",
-    "legs.contact.force_y.max",
+    *LEGS_PEAKS,
     "body.top_axial_acceleration.max",
     "margin.stability_min",
     "margin.stroke_left",

@@ -72,14 +72,17 @@ OUTCOME_IN_SPACE = (
 RHS_CALLS = Quantity(
     "", "calls of the right-hand side that the landing took", name="rhs_calls", kind="integer"
 )
-DEFAULT = (
-    "outcome",
-    "outcome.*",
-    "margin.*",
+# outcome and margins, and the peaks over all legs: what each kind of study tells first
+JUDGED = ("outcome", "outcome.*", "margin.*")
+LEGS_PEAKS = (
     "legs.main_strut.force.min",
     "legs.main_strut.stroke.max",
     "legs.auxiliary_strut.force.abs_max",
     "legs.contact.force_y.max",
+)
+DEFAULT = (
+    *JUDGED,
+    *LEGS_PEAKS,
     "legs.main_strut.absorbed",
     "legs.main_strut.dissipated",
     "leg[*].contact.time",
