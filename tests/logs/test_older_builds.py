@@ -74,7 +74,16 @@ def test_an_older_fmu_takes_no_parameter_and_no_input_that_it_lacks(
 
 
 @pytest.mark.parametrize(
-    "file", ["core/leg.py", "core/struts/kinds.py", "quantities.py", "parameters.py", "landing.py"]
+    "file",
+    [
+        "core/leg.py",
+        "core/struts/kinds.py",
+        "assembly/start.py",
+        "events/search.py",
+        "quantities.py",
+        "parameters.py",
+        "landing.py",
+    ],
 )
 def test_the_digest_of_a_build_is_of_all_its_model_files_also_of_older_ones(
     tmp_path: Path, file: str

@@ -14,9 +14,9 @@ from pathlib import Path
 import rlv_landing
 
 # The source files that decide the computed bits. The FMU carries the same files. Those that older
-# builds had are among them, so that the digest of such a build is the one that its logs hold.
+# builds had as files are among them, so that such a build has the digest that its logs hold.
 MODEL_FILE = re.compile(
-    r"(?:^|/)rlv_landing[^/]*/((?:(?:core|inputs|parameters|quantities)/(?:\w+/)*\w+"
+    r"(?:^|/)rlv_landing[^/]*/((?:(?:assembly|core|events|inputs|parameters|quantities)/(?:\w+/)*\w+"
     r"|assembly|outputs|state|landing|touchdown"
     r"|parameters|quantities|driven|driven_inputs|extremes|ground_way)\.py)$"
 )
