@@ -74,7 +74,7 @@ class Vehicle:
     def of(cls, parameters: Parameters, frame_prefix: str = "") -> Vehicle:
         """That of the model's `parameters`."""
         vehicle = parameters.vehicle
-        interface = interface_of(parameters.drop.mode, int(vehicle.legs))
+        interface = parameters.interface
         return cls(parameters.ground.gravity, vehicle.top_height, frame_prefix, interface)
 
 

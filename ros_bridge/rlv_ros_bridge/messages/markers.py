@@ -15,7 +15,6 @@ from visualization_msgs.msg import Marker, MarkerArray
 from rlv_landing.core.records import Vector
 from rlv_landing.core.vectors import rotation, to_inertial
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import interface_of
 
 from .axes import from_ros, to_ros
 from .fields import PLACE, QUATERNION
@@ -52,7 +51,7 @@ class Wireframe:
             *leg_points(parameters, auxiliary_joint).values(),
         ]
         self._own = [from_ros(*point) for point in own]
-        interface = interface_of(parameters.drop.mode, int(vehicle.legs))
+        interface = parameters.interface
         self._legs, self._in_space = len(interface.legs), interface.in_space
         table = table_of(interface)
         names = (*PLACE, *QUATERNION) if self._in_space else ("body.x", "body.y", "body.pitch")

@@ -8,7 +8,7 @@ from math import acos, atan2, dist
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from rlv_landing.parameters import Parameters, parameters_of
-from rlv_landing.quantities import STATISTIC_QUANTITIES, interface_of
+from rlv_landing.quantities import STATISTIC_QUANTITIES
 from rlv_landing.touchdown import footpad_at_rest, leg_directions
 
 from .axes import to_ros
@@ -24,10 +24,9 @@ ORIGIN: Point = (0.0, 0.0, 0.0)
 
 def variables(parameters: Parameters) -> str:
     """The variables of the FMU that lands `parameters`: name, causality, unit and meaning."""
-    mode = parameters.drop.mode
-    interface = interface_of(mode, int(parameters.vehicle.legs))
+    interface = parameters.interface
     groups = (
-        ("parameter", parameters_of(mode).values()),
+        ("parameter", parameters_of(parameters.drop.mode).values()),
         ("input", interface.inputs),
         ("output", interface.outputs),
         ("local", (*STATISTIC_QUANTITIES, *interface.peak_quantities)),

@@ -30,6 +30,11 @@ def about_across(place: LegPlace, point: Vector) -> Vector:
     return Vector(place.cos_g * point.y, -radial_part(place, point), place.sin_g * point.y)
 
 
+def along_across(place: LegPlace, t: float) -> Vector:
+    """The vector t across the leg's plane in body axes."""
+    return Vector(-t * place.sin_g, 0.0, t * place.cos_g)
+
+
 def in_leg(place: LegPlace, r: float, h: float) -> Vector:
     """The vector r, h of the leg's plane in body axes."""
     return Vector(r * place.cos_g, h, r * place.sin_g)
