@@ -56,7 +56,7 @@ class Transforms:
         self._in_space = interface.in_space
         own = (*PLACE, *QUATERNION) if self._in_space else ("body.x", "body.y", "body.pitch")
         self._body = table.indices(*own)
-        self._strokes = table.indices(*strut_outputs("stroke", legs))
+        self._strokes = table.indices(*strut_outputs("stroke", legs, interface.leg_kind))
         self._lengths = [
             _vector(j, "xyz")[2] for name in names for j in joints if j.get("name") == name
         ]

@@ -42,7 +42,7 @@ QOS_OVERRIDES = "qos_overrides."
 # The setting `mode` stands for this quantity: it also chooses the values that depend on the mode.
 MODE = "drop.mode"
 # with these the outputs change, and with them the topics
-AT_START = (MODE, "vehicle.legs")
+AT_START = (MODE, "vehicle.legs", "leg.kind")
 
 
 class NodeParameters:

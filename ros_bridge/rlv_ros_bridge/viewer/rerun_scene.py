@@ -23,7 +23,7 @@ from rlv_landing.figures.ground.turn import deck_matrix, deck_place
 from rlv_landing.figures.plots import DRAWN_OF_A_LEG, legs_together
 from rlv_landing.figures.style import COLOURS, FORCE, GRID, INK, PAPER
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import LEGS, SPACE, interface_of
+from rlv_landing.quantities import LEGS, RADIAL, SPACE, interface_of
 from rlv_landing.text.durable import whole_file, writing
 
 Array = NDArray[np.float64]
@@ -93,13 +93,13 @@ def _body_in_space() -> tuple[Curve, Curve]:
 
 
 class Scene:
-    """A recording of a landing in `mode` on so many `legs`.
+    """A recording of a landing in `mode` on so many `legs` of a `kind`.
 
     Lengths are in m, times in s, axes as in REP-103 (x forward, y left, z up).
     """
 
-    def __init__(self, mode: str, legs: int = len(LEGS)) -> None:
-        self.interface = interface_of(mode, legs)
+    def __init__(self, mode: str, legs: int = len(LEGS), kind: str = RADIAL) -> None:
+        self.interface = interface_of(mode, legs, kind)
         self.stream = rr.RecordingStream("rlv-landing")
         colours = {
             leg: rgb(colour)
