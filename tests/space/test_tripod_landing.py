@@ -12,6 +12,7 @@ from test_invariance import SCENE, mirrored, turned, vectors
 
 from rlv_landing import Landing, LandingError
 from rlv_landing.audit.spatial_momentum import spatial_impulse, spatial_momentum
+from rlv_landing.figures.wireframe import wireframe
 from rlv_landing.quantities import interface_of
 from rlv_landing.touchdown import footpad_at_rest, tripod_footpad
 
@@ -67,6 +68,27 @@ def test_the_footpad_is_where_its_struts_meet() -> None:
         place = r * np.array(out) + t * np.array(across) + [0.0, h, 0.0]
         assert seen == pytest.approx(place, abs=1e-9)
     assert abs(t) > 1e-4
+
+
+def test_lines_of_struts_end_at_their_joints_and_at_the_footpads() -> None:
+    parameters = vehicle(TURNING | UNEVEN)
+    history = Landing(parameters).run(0.2, 1e-2)
+    parts = wireframe(history, parameters, np.arange(len(history)))
+    main, both, feet = (parts[name] for name in ("main", "auxiliary", "feet"))
+    assert both.shape == (21, 4, 3, 3)
+    for i, leg in enumerate(history.legs):
+        places = np.column_stack([history[f"leg[{leg}].footpad.{axis}"] for axis in "xyz"])
+        for ends in (feet[:, i, 0], main[:, i, 1], both[:, i, 1]):
+            assert ends == pytest.approx(places, abs=1e-9)
+        for line, strut in (
+            (main[:, i], "main_strut"),
+            (both[:, i, :2], "auxiliary_strut"),
+            (both[:, i, 1:], "auxiliary_strut_2"),
+        ):
+            whole = 1.426 if strut == "main_strut" else 1.145
+            lengths = np.linalg.norm(line[:, 0] - line[:, 1], axis=1)
+            stroke = history[f"leg[{leg}].{strut}.stroke"]
+            assert lengths == pytest.approx(whole - stroke, abs=1e-9)
 
 
 @pytest.mark.parametrize("method", ["exponential", "dormand-prince"])

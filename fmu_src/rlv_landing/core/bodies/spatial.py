@@ -26,7 +26,7 @@ from ..access import (
 from ..memory import Doubles
 from ..records import LegLoadOutputs, Rotation, SpatialOutputs, StatusOutputs, Vector
 from ..vectors import added, cross, dot, length_of, less, to_body
-from .spatial_legs import cg_of, foot_place
+from .spatial_legs import cg_of, foot_place, moved_across
 from .spatial_motion import SpatialMotion
 from .status import phase_of
 
@@ -158,9 +158,11 @@ class Spatial(SpatialMotion):
         twice = p.m_u * dot(velocity, velocity) + dot(spin, turning)
         for i in range(self.groups):
             leg = leg_state(y, self._first_leg + LEG * i)
-            foot = foot_place(leg, leg_place(self._places, i), p)
+            place = leg_place(self._places, i)
+            foot = foot_place(leg, place, p)
             if self._tripod:
-                foot = self._across_place(i, y, foot)
+                across = across_state(y, self._first_across + ACROSS * i)
+                foot = moved_across(foot, across, place)
             moved = added(added(velocity, cross(spin, foot.from_cg)), foot.rate)
             twice += leg_model(self._legs, i).m_d * dot(moved, moved)
         return 0.5 * twice

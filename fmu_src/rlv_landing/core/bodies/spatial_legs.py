@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..records import (
+    AcrossState,
     FootPlace,
     LegForces,
     LegModel,
@@ -48,6 +49,14 @@ def cg_of(p: SpatialModel) -> Vector:
 def foot_place(leg: LegState, place: LegPlace, p: SpatialModel) -> FootPlace:
     """The footpad from the CG, and its rate."""
     return FootPlace(less(in_leg(place, leg.r, leg.h), cg_of(p)), in_leg(place, leg.vr, leg.vh))
+
+
+def moved_across(foot: FootPlace, across: AcrossState, place: LegPlace) -> FootPlace:
+    """A footpad that is free, from where it would be in its leg's plane."""
+    return FootPlace(
+        added(foot.from_cg, along_across(place, across.t)),
+        added(foot.rate, along_across(place, across.vt)),
+    )
 
 
 def joint_place(place: LegPlace, leg: LegModel, p: SpatialModel) -> Vector:

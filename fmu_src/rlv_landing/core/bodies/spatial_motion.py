@@ -6,8 +6,10 @@ from array import array
 from collections.abc import Sequence
 
 from ..access import (
+    ACROSS,
     LEG,
     SPATIAL_ATTITUDE,
+    across_state,
     deck_turn_of,
     foot_motion_of,
     keep,
@@ -57,6 +59,7 @@ from .spatial_legs import (
     foot_place,
     force_on_body,
     joint_place,
+    moved_across,
     spatial_leg_rates,
     spatial_loads,
     transverse_part,
@@ -210,7 +213,8 @@ class SpatialMotion(TripodMotion):
         spin = Vector(s.spin_x, s.spin_y, s.spin_z)
         foot = foot_place(leg, place, p)
         if self._tripod:
-            foot = self._across_place(i, y, foot)
+            across = across_state(y, self._first_across + ACROSS * i)
+            foot = moved_across(foot, across, place)
         moved = added(cross(spin, foot.from_cg), foot.rate)
         point = added(Vector(s.x, s.y, s.z), to_inertial(turn, foot.from_cg))
         above = from_origin(now, point)

@@ -27,7 +27,6 @@ from ..records import (
     AcrossForces,
     AcrossState,
     BodyPoint,
-    FootPlace,
     HeightField,
     LegModel,
     LegPlace,
@@ -68,15 +67,6 @@ class TripodMotion(SpatialGround):
         self._tripod = body.tripod > 0.0
         self._across = room(len(legs), ACROSS_FORCES)
         self._loads = room(len(legs), SPATIAL_LOADS)
-
-    def _across_place(self, i: int, y: Doubles, foot: FootPlace) -> FootPlace:
-        """The footpad of leg `i` where it is, from the `foot` where it would be in its plane."""
-        place = leg_place(self._places, i)
-        across = across_state(y, self._first_across + ACROSS * i)
-        return FootPlace(
-            added(foot.from_cg, along_across(place, across.t)),
-            added(foot.rate, along_across(place, across.vt)),
-        )
 
     def _keep_tripod_forces(self, i: int, y: Doubles, steep: float) -> None:
         """Keep the forces of leg `i`, on ground of this steepness."""
