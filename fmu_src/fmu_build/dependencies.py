@@ -14,7 +14,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from rlv_landing.quantities import Interface
+from rlv_landing.quantities import TRIPOD, Interface
 
 from . import in_space
 
@@ -134,11 +134,14 @@ class Dependencies:
 
 IN_A_PLANE = Dependencies(INPUTS, START_INPUTS, PARAMETERS)
 IN_SPACE = Dependencies(in_space.INPUTS, in_space.START_INPUTS, in_space.PARAMETERS)
+ON_TRIPODS = Dependencies(in_space.INPUTS, in_space.START_INPUTS, in_space.OF_TRIPODS)
 
 
 def dependencies_of(interface: Interface) -> Dependencies:
     """What the outputs of an interface depend on."""
-    return IN_SPACE if interface.in_space else IN_A_PLANE
+    if not interface.in_space:
+        return IN_A_PLANE
+    return ON_TRIPODS if interface.leg_kind == TRIPOD else IN_SPACE
 
 
 def _of_any_leg(output: str) -> str:

@@ -111,3 +111,12 @@ PARAMETERS: dict[str, frozenset[str]] = {
     "footpad.z": VZ | FEET,
     "contact.penetration": VX | VZ | HEIGHT,
 }
+
+# on three struts a leg the joints' spread counts where the struts' length does, and no force across
+# the leg's plane has a place
+OF_TRIPODS: dict[str, frozenset[str]] = {
+    name: (found | {"auxiliary_strut.joint_spread"}) - {"vehicle.transverse_load_at"}
+    if "auxiliary_strut.length" in found
+    else found
+    for name, found in PARAMETERS.items()
+}

@@ -33,6 +33,7 @@ TERMINALS = {
 PARTS = {
     "main_strut": "axial force, stroke and pressures of the main struts",
     "auxiliary_strut": "axial force and stroke of the auxiliary struts",
+    "auxiliary_strut_2": "axial force and stroke of the second auxiliary struts",
     "footpad": "positions of the footpads",
     "contact": "forces of the ground on the footpads",
 }
@@ -71,7 +72,12 @@ def terminals_and_icons(description: Element) -> Element:
         _terminal(terminals, name, rule, meaning, named(prefix), connected)
     legs = _terminal(terminals, "legs", "bus", "the legs; element k is leg k", "", [])
     for part, meaning in PARTS.items():
-        _terminal(legs, part, "bus", meaning, named(f"leg.{part}."), connected)
+        prefix = named(f"leg.{part}.")
+        # where names are flat, those of another part may begin alike
+        longer = [p for p in map(named, (f"leg.{p}." for p in PARTS)) if len(p) > len(prefix)]
+        own = [v for v in connected if v.startswith(prefix) and not any(map(v.startswith, longer))]
+        if own:
+            _terminal(legs, part, "bus", meaning, prefix, own)
     return root
 
 

@@ -9,7 +9,7 @@ from math import ceil
 from rlv_landing import MODEL_NAME
 from rlv_landing.errors import LandingError
 from rlv_landing.parameters import Parameters, parameters_of
-from rlv_landing.quantities import STATISTIC_QUANTITIES, Interface, Quantity, interface_of
+from rlv_landing.quantities import STATISTIC_QUANTITIES, Interface, Quantity
 
 from .targets import OWN, TARGETS, Target, own_machine
 
@@ -81,7 +81,7 @@ class Wanted:
     @property
     def interface(self) -> Interface:
         """Its inputs and outputs."""
-        return interface_of(self.parameters.drop.mode, int(self.parameters.vehicle.legs))
+        return self.parameters.interface
 
     @property
     def quantities(self) -> dict[str, Quantity]:

@@ -19,7 +19,7 @@ from .core import SpatialInputs
 from .errors import LandingError, unknown
 from .outputs import Extreme
 from .parameters import Parameters
-from .quantities import MOST_LEGS, OUTPUT_QUANTITIES, SPACE, interface_of
+from .quantities import widest_interfaces
 from .text.durable import text_of, whole_file
 from .touchdown import AT_REST, GroundMotion
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-UNITS = {q.name: q.unit for q in (*OUTPUT_QUANTITIES, *interface_of(SPACE, MOST_LEGS).outputs)} | {
+UNITS = {q.name: q.unit for interface in widest_interfaces() for q in interface.outputs} | {
     "time": "s"
 }
 LEG_COLUMN = re.compile(r"leg\[(\d+)\]\.")

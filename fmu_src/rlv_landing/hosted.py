@@ -11,7 +11,7 @@ from typing import Any
 from .errors import LandingError
 from .landing import DEFAULT_RTOL, Landing
 from .parameters import Parameters, check_value, parameters_of
-from .quantities import SPACE, Interface, interface_of
+from .quantities import SPACE, Interface
 from .state import LATEST
 
 # beyond it a host's time, a double, is rounded to more than 1 us [s]
@@ -36,7 +36,7 @@ class HostedLanding:
 
     def __init__(self, starts: Mapping[str, Any] | None = None) -> None:
         self._vehicle = Parameters().with_values(starts or {})
-        self.interface: Interface = _interface(self._vehicle)
+        self.interface: Interface = self._vehicle.interface
         self.start_time = 0.0
         self.failure = ""
         self._rtol = DEFAULT_RTOL
@@ -268,10 +268,6 @@ def new_landing(
     return Landing(vehicle.with_values(checked), rtol=rtol, inputs=inputs, rates=rates)
 
 
-def _interface(parameters: Parameters) -> Interface:
-    return interface_of(parameters.drop.mode, int(parameters.vehicle.legs))
-
-
 def _check_same_interface(vehicle: Parameters, values: Mapping[str, Any]) -> None:
     """Check that a landing with these `values` has the inputs and outputs of the `vehicle`'s.
 
@@ -284,6 +280,11 @@ def _check_same_interface(vehicle: Parameters, values: Mapping[str, Any]) -> Non
         raise LandingError(
             f"drop.mode = {other} has other inputs and outputs than this FMU, which is of "
             f"drop.mode = {mode}; build one for it by `rlv-landing fmu build`"
+        )
+    if values.get("leg.kind", vehicle.leg.kind) != vehicle.leg.kind:
+        raise LandingError(
+            f"leg.kind = {values['leg.kind']} has other outputs than this FMU, which is of "
+            f"leg.kind = {vehicle.leg.kind}; build one for it by `rlv-landing fmu build`"
         )
     if values.get("vehicle.legs", legs) != legs:
         raise LandingError(

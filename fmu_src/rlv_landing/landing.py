@@ -16,7 +16,7 @@ from .inputs.driven import DrivenInputs, Setting, changed_setting
 from .interruptible import advance, check_going, record, view
 from .outputs import Extreme, OutputReader, output_order
 from .parameters import Parameters
-from .quantities import SPACE, Interface, interface_of
+from .quantities import SPACE, Interface
 from .state import LATEST, load_state, state_of
 from .touchdown import AT_REST, GroundMotion, each_leg
 
@@ -79,8 +79,8 @@ class Landing:
         if method not in METHODS:
             raise unknown("integration method", method, METHODS)
         self._rtol, self._method = rtol, method
-        mode, legs = self.parameters.drop.mode, int(self.parameters.vehicle.legs)
-        self.interface: Interface = interface_of(mode, legs)
+        mode = self.parameters.drop.mode
+        self.interface: Interface = self.parameters.interface
         self._system = landing_system(self.parameters)
         self._solver: Solver = METHODS[method](self._system, rtol)
         self._solver.limit = self.parameters.solver.max_steps_per_second
@@ -435,7 +435,7 @@ def _revived(
     state: array[float],
 ) -> Landing:
     """The landing that was pickled."""
-    interface = interface_of(parameters.drop.mode, int(parameters.vehicle.legs))
+    interface = parameters.interface
     inputs, rates = (dict(zip(interface.input_names, numbers)) for numbers in first)
     for i in interface.positions:
         del rates[interface.input_names[i]]

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from .history import History
+from .outputs import Extreme
 from .validation.first_contact import first_contact
 from .validation.measures import DamperWork, leg_work
 
@@ -64,7 +65,7 @@ def _leg_summary(history: History, leg: int, work: DamperWork | None) -> dict[st
     """The items of a leg; `work` is None for one that was not compressed."""
     force = history.extreme(f"leg[{leg}].main_strut.force")
     stroke = history.extreme(f"leg[{leg}].main_strut.stroke")
-    auxiliary = history.extreme(f"leg[{leg}].auxiliary_strut.force")
+    auxiliary = _auxiliary_force(history, leg)
     contact = first_contact(history, leg)
     return {
         "leg": leg,
@@ -83,6 +84,17 @@ def _leg_summary(history: History, leg: int, work: DamperWork | None) -> dict[st
         "main_strut_dissipated": None if work is None else work.dissipated,
         "main_strut_efficiency": None if work is None else work.efficiency,
     }
+
+
+def _auxiliary_force(history: History, leg: int) -> Extreme:
+    """The extremes of the auxiliary struts' force; of a tripod's two the farther ones."""
+    one = history.extreme(f"leg[{leg}].auxiliary_strut.force")
+    second = f"leg[{leg}].auxiliary_strut_2.force"
+    if not _has(history, second):
+        return one
+    two = history.extreme(second)
+    low, high = min(one, two), max((one, two), key=lambda found: found.maximum)
+    return Extreme(*low[:2], *high[2:])
 
 
 def _clearance(history: History) -> dict[str, float | None]:

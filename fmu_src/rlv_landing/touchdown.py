@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from .errors import LandingError
 from .parameters import Parameters
+from .parameters.leg import in_plane_length
 from .parameters.surroundings import read_azimuths
 from .quantities import SPACE, azimuth, groups_of
 
@@ -74,13 +75,31 @@ def footpad_at_rest(parameters: Parameters) -> tuple[float, float]:
 
     Body axes, from the CG; of the two points the outer one.
     """
-    return footpad_between(
-        parameters, parameters.main_strut.length, parameters.auxiliary_strut.length
-    )
+    length = in_plane_length(parameters.auxiliary_strut, parameters.leg.kind)
+    return footpad_between(parameters, parameters.main_strut.length, length)
+
+
+def tripod_footpad(
+    parameters: Parameters, main: float, first: float, second: float
+) -> tuple[float, float, float]:
+    """Radius, height, and place across the leg's plane [m] of a footpad on three struts.
+
+    As `footpad_between`; the place is along e_t, towards the first auxiliary strut.
+
+    Args:
+        parameters: The vehicle.
+        main: Length of the main strut [m].
+        first: Length of the first auxiliary strut [m].
+        second: Length of the second auxiliary strut [m].
+    """
+    spread = parameters.auxiliary_strut.joint_spread
+    t = (second**2 - first**2) / (4.0 * spread)
+    seen = ((main**2 - t**2) ** 0.5, (first**2 - (spread - t) ** 2) ** 0.5)
+    return (*footpad_between(parameters, *seen), t)
 
 
 def footpad_between(parameters: Parameters, main: float, auxiliary: float) -> tuple[float, float]:
-    """Radius and height [m] of a footpad whose struts have the given lengths.
+    """Radius and height [m] of a footpad whose struts have the given lengths in the leg's plane.
 
     Body axes, from the CG; of the two points the outer one.
 

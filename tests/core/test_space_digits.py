@@ -22,6 +22,7 @@ values = {
     "vehicle.body_points": "0.2 -2.12 0.1; -0.3 -2.12 0.0",
     "ground.terrain": "x -3 3 3 z -3 2 4 h 0 0.1 0 0.02 0 0.03 0 0 0.05 0.01 0 0",
     "leg[1].main_strut.kind": "spring-damper", "leg[2].ground.step": 0.01,
+    "leg.kind": sys.argv[4],
 }
 landing = Landing(load_preset("yue2022-figures").with_values(values), "space", 1e-3, sys.argv[3])
 landing.set_inputs(
@@ -29,17 +30,17 @@ landing.set_inputs(
      "ground.tilt": 0.01, "ground.roll_rate": 0.05, "ground.yaw_rate": 0.1},
     {"ground.sway_rate": 0.3, "ground.tilt_rate": -0.2},
 )
-landing.advance_to(0.012)
+landing.advance_to(0.012 if sys.argv[4] == "radial" else 0.004)
 print(*(float(v).hex() for v in (*landing.state(), *landing.values())), sep="\\n")
 """
 
 
-def landed(core: str, at: str, method: str) -> list[str]:
+def landed(core: str, at: str, method: str, kind: str) -> list[str]:
     """The numbers of a landing on the `core` of this name."""
     pure = {"RLV_LANDING_PURE": "1"} if core == "pure" else {}
     kept = {k: v for k, v in os.environ.items() if k != "RLV_LANDING_PURE"}
     run = subprocess.run(
-        [sys.executable, "-c", LAND, core, at, method],
+        [sys.executable, "-c", LAND, core, at, method, kind],
         env={**kept, **pure}, capture_output=True, text=True, check=True,
     )  # fmt: skip
     return run.stdout.splitlines()
@@ -47,9 +48,14 @@ def landed(core: str, at: str, method: str) -> list[str]:
 
 @pytest.mark.skipif(not COMPILED, reason="needs the compiled core")
 @pytest.mark.parametrize(
-    ("at", "method"), [("footpad", "exponential"), ("joint", "dormand-prince")]
+    ("at", "method", "kind"),
+    [
+        ("footpad", "exponential", "radial"),
+        ("joint", "dormand-prince", "radial"),
+        ("footpad", "exponential", "tripod"),
+    ],
 )
-def test_pure_and_compiled_land_in_space_with_the_same_digits(at, method):
-    compiled, pure = (landed(core, at, method) for core in ("compiled", "pure"))
+def test_pure_and_compiled_land_in_space_with_the_same_digits(at, method, kind):
+    compiled, pure = (landed(core, at, method, kind) for core in ("compiled", "pure"))
     assert len(compiled) > 200
     assert compiled == pure

@@ -96,6 +96,29 @@ def test_mujoco_lands_the_exported_vehicle_as_we_do() -> None:
             assert theirs[:, leg].max() == pytest.approx(found.maximum, abs=near * size)
 
 
+def test_mujoco_lands_the_exported_tripod_as_we_do() -> None:
+    parameters = linear_vehicle().with_values({"leg.kind": "tripod"})
+    model = mujoco.MjModel.from_xml_string(mjcf(parameters))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    landing, struts = Landing(parameters, rtol=1e-7), ("auxiliary", "auxiliary", "main")
+    lengths = np.array([getattr(parameters, f"{strut}_strut").length for strut in struts] * 5)
+    names = ("auxiliary_strut", "auxiliary_strut_2", "main_strut")
+    largest = 0.0
+    for k in range(1, 13):
+        while data.time < k * 0.01 - 0.5 * model.opt.timestep:
+            mujoco.mj_step(model, data)
+        mujoco.mj_fwdPosition(model, data)
+        landing.advance_to(k * 0.01)
+        now = landing.outputs()
+        place = [now["body.x"], -now["body.z"], now["body.y"]]
+        assert data.qpos[:3] == pytest.approx(place, abs=1e-5)
+        ours = [now[f"leg[{leg}].{name}.stroke"] for leg in range(1, 6) for name in names]
+        assert lengths - data.ten_length == pytest.approx(ours, abs=2e-5)
+        largest = max(largest, *np.abs(ours))
+    assert largest > 0.01
+
+
 def test_mujoco_holds_the_exported_prototype_at_full_length_and_stops_it() -> None:
     parameters = load_preset("yue2022-figures").for_mode("1-2-1")
     model = mujoco.MjModel.from_xml_string(mjcf(parameters))
@@ -221,6 +244,9 @@ def test_what_cannot_be_exported_is_refused(command, tmp_path) -> None:
     field = terrain_of([-9.0, 9.0], [-9.0, 9.0], [[0.0, 0.0], [0.0, 0.0]])
     with pytest.raises(LandingError, match=r"ground\.terrain cannot be exported"):
         mjcf(five_legs().with_values({"ground.terrain": field}))
+    for kind in (sdf, urdf):
+        with pytest.raises(LandingError, match=r"tripod is exported as MJCF alone: .*write --mjcf"):
+            kind(linear_vehicle().with_values({"leg.kind": "tripod"}))
     file = tmp_path / "stage.xml"
     none = command("export")
     assert (none.code, none.err.count("\n")) == (2, 1)

@@ -73,9 +73,18 @@ OWN = {
 
 
 @pytest.mark.parametrize("own", [{}, OWN], ids=["alike", "one leg of its own"])
-@pytest.mark.parametrize("at", ["footpad", "joint"])
-def test_in_space_they_are_the_acceleration_of_a_body_whose_cg_is_off_the_axis(at, own):
-    p = five_legs().with_values({"vehicle.transverse_load_at": at, **own})
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"vehicle.transverse_load_at": "footpad"},
+        {"vehicle.transverse_load_at": "joint"},
+        # whose footpads are lower, and so are the points that strike
+        {"leg.kind": "tripod", "vehicle.body_points": "0.25 -2.21 0; -0.12 -2.21 0.22"},
+    ],
+    ids=["footpad", "joint", "tripod"],
+)
+def test_in_space_they_are_the_acceleration_of_a_body_whose_cg_is_off_the_axis(values, own):
+    p = five_legs().with_values({**values, **own})
     history = Landing(p).run(0.5, 1e-3)
     force, moment = np.zeros((2, len(history), 3))
     directions = leg_directions(p)

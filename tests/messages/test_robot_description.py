@@ -7,10 +7,13 @@ import io
 import numpy as np
 import pytest
 import yourdfpy
+from scipy.spatial.transform import Rotation
 
 from rlv_landing import Landing, load_preset
+from rlv_ros_bridge.messages.markers import Wireframe
 from rlv_ros_bridge.messages.robot_description import robot_description
-from rlv_ros_bridge.messages.topics import BODY_FRAME, JOINTS, TOP_FRAME
+from rlv_ros_bridge.messages.topics import BODY_FRAME, JOINTS, TOP_FRAME, topics_of
+from rlv_ros_bridge.viewer.rerun_live import kind_of
 
 
 def parsed(text: str) -> yourdfpy.URDF:
@@ -56,3 +59,31 @@ def test_a_stroke_shortens_its_strut() -> None:
     assert np.linalg.norm(rod - mount) == pytest.approx(
         load_preset("yue2022-figures").main_strut.length - 0.03, abs=1e-9
     )
+
+
+def test_a_tripod_has_three_struts_that_meet_at_its_footpad() -> None:
+    values = {"drop.mode": "space", "leg.kind": "tripod", "vehicle.cg_offset_x": 0.1}
+    parameters = load_preset("yue2022-figures").with_values(values)
+    robot, landing = parsed(robot_description(parameters)), Landing(parameters)
+    joints = topics_of((1, 2, 3, 4), "tripod").joints
+    assert len(joints) == 12
+    assert set(robot.actuated_joint_names) == set(joints)
+    now = landing.outputs()
+    seen = Rotation.from_quat([now[f"body.q_{part}"] for part in "xyzw"]).inv()
+    for leg in (1, 2, 3, 4):
+        way = [now[f"leg[{leg}].footpad.{axis}"] - now[f"body.{axis}"] for axis in "xyz"]
+        x, y, z = seen.apply(way)
+        places = []
+        for strut in ("main_strut", "auxiliary_strut", "auxiliary_strut_2"):
+            name = f"leg_{leg}_{strut}"
+            foot = robot.get_transform(f"{name}_rod", BODY_FRAME)[:3, 3]
+            assert foot == pytest.approx([x, -z, y], abs=1e-9), name
+            places.append(robot.get_transform(f"{name}_cylinder", BODY_FRAME)[:3, 3])
+        spread = parameters.auxiliary_strut.joint_spread
+        assert np.linalg.norm(places[1] - places[2]) == pytest.approx(2.0 * spread)
+    markers = Wireframe(parameters).fill(0, landing.values()).markers
+    assert [len(marker.points) for marker in markers] == [2, 8, 16, 4]
+    # leg 1 looks backwards, and the side of e_t, that of its first auxiliary strut, is the left
+    first, second = (markers[2].points[k].y for k in (0, 2))
+    assert first - second == pytest.approx(2.0 * spread)
+    assert kind_of(Wireframe(parameters).message) == ("space", 4, "tripod")

@@ -92,12 +92,12 @@ def test_the_planar_fmu_does_not_repeat_it(recorded: Path, fmu: Path, command) -
     assert done.err.count("\n") == 1
 
 
-def log_with_inputs(folder: Path, decks: list[SpatialInputs]) -> LogReader:
+def log_with_inputs(folder: Path, decks: list[SpatialInputs], kind: str = "radial") -> LogReader:
     """A log as the node writes it, of a landing on a deck and in gusts, in all directions.
 
-    `decks` gets where the deck is at each sample.
+    `decks` gets where the deck is at each sample; the legs are of a `kind`.
     """
-    parameters, random = five_legs(), Random(7)
+    parameters, random = five_legs().with_values({"leg.kind": kind}), Random(7)
     table, names = input_table_of(SPACE), topics_of(SPACE.legs)
     packer, landing = SampleBytes(Vehicle.of(parameters)), Landing(parameters)
     entries = [
@@ -145,6 +145,15 @@ def test_a_run_with_all_inputs_is_repeated_bit_for_bit(space_fmu: Path, tmp_path
         assert (found.first, found.other_bits) == (None, 0)
         assert found.inputs > 40
         assert found.peaks == len(SPACE.peaks)
+
+
+def test_a_run_on_tripods_is_repeated_bit_for_bit(tmp_path: Path) -> None:
+    reader = log_with_inputs(tmp_path / "log", [], "tripod")
+    found = verify(reader, None)
+    assert (found.first, found.other_bits) == (None, 0)
+    assert found.peaks == len(interface_of("space", 5, "tripod").peaks)
+    history = log_history(tmp_path / "log")
+    assert history["leg[5].auxiliary_strut_2.force"].max() > 100.0
 
 
 def test_a_film_of_it_shows_the_deck_as_it_moved(command, tmp_path: Path) -> None:

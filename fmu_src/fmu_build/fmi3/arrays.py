@@ -13,20 +13,17 @@ from itertools import pairwise
 
 from rlv_landing.parameters import PARAMETER_QUANTITIES
 from rlv_landing.quantities import (
-    MODES,
-    MOST_LEGS,
-    SPACE,
     STATISTIC_QUANTITIES,
     flat_name,
-    interface_of,
     whole_name,
+    widest_interfaces,
 )
 
 TIME = "time"
 # the quantities of all interfaces that have other names where names are flat
 STRUCTURED = {
     flat_name(name): name
-    for interface in (interface_of(min(MODES)), interface_of(SPACE, MOST_LEGS))
+    for interface in widest_interfaces()
     for name in (
         *PARAMETER_QUANTITIES,
         *interface.input_names,

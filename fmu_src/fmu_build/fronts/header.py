@@ -10,17 +10,19 @@ import sys
 from xml.etree.ElementTree import Element
 
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import MOST_LEGS, SPACE
+from rlv_landing.quantities import MOST_LEGS, SPACE, TRIPOD
 
 from ..fmi3.arrays import variables
 from ..sources import source
 from ..wanted import Wanted
 
 FRONT = source("fmu_src/fmu_front")
-# those of a landing in space on as many legs as there may be
+# those of a landing in space on as many legs as there may be, of the kind that has more
 MOST_VARIABLES = len(
     Wanted(
-        Parameters().with_values({"drop.mode": SPACE, "vehicle.legs": float(MOST_LEGS)})
+        Parameters().with_values(
+            {"drop.mode": SPACE, "vehicle.legs": float(MOST_LEGS), "leg.kind": TRIPOD}
+        )
     ).quantities
 )
 CAUSALITIES = {"parameter": "p", "input": "i", "output": "o"}

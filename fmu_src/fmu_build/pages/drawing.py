@@ -17,6 +17,7 @@ from rlv_landing.figures.style import (
     SOLID_TOP,
 )
 from rlv_landing.parameters import Parameters
+from rlv_landing.quantities import TRIPOD
 from rlv_landing.touchdown import footpad_at_rest, leg_directions
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ def vehicle_figure(parameters: Parameters, *, named: bool = False) -> Figure:
 
     v, m, a = parameters.vehicle, parameters.main_strut, parameters.auxiliary_strut
     radius, height = footpad_at_rest(parameters)
+    sides = (a.joint_spread, -a.joint_spread) if parameters.leg.kind == TRIPOD else (0.0,)
     figure = Figure(figsize=(6.4, 5.4) if named else (4.0, 4.0))
     ax = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     ax.set_aspect("equal")
@@ -50,7 +52,10 @@ def vehicle_figure(parameters: Parameters, *, named: bool = False) -> Figure:
         near = 4 if sin(azimuth + VIEW_AZIMUTH) > 0.0 else 1
         for joint, colour, width in (
             (_project(m.joint_radius, -m.joint_depth, azimuth), MAIN, 4.0),
-            (_project(a.joint_radius, -a.joint_depth, azimuth), AUXILIARY, 2.2),
+            *(
+                (_project(a.joint_radius, -a.joint_depth, azimuth, side), AUXILIARY, 2.2)
+                for side in sides
+            ),
         ):
             ax.plot(
                 *zip(joint, foot),
@@ -73,16 +78,18 @@ def _azimuths(parameters: Parameters) -> dict[int, float]:
     return {leg: atan2(sine, cosine) for leg, (sine, cosine) in leg_directions(parameters).items()}
 
 
-def _project(r: float, h: float, azimuth: float) -> tuple[float, float]:
+def _project(r: float, h: float, azimuth: float, across: float = 0.0) -> tuple[float, float]:
     """Drawing coordinates [m] of a point of the body, in parallel projection.
 
     Args:
         r: Radius about the body's axis [m].
         h: Height above the CG [m].
         azimuth: Azimuth [rad]; z points towards the viewer.
+        across: Place across the plane of that azimuth [m].
     """
     angle = azimuth + VIEW_AZIMUTH
-    return r * cos(angle), h * cos(VIEW_ELEVATION) - r * sin(angle) * sin(VIEW_ELEVATION)
+    x, z = r * cos(angle) - across * sin(angle), r * sin(angle) + across * cos(angle)
+    return x, h * cos(VIEW_ELEVATION) - z * sin(VIEW_ELEVATION)
 
 
 def _ring(

@@ -10,6 +10,7 @@ from ..core import (
     FRICTION_LAWS,
     MAIN_STRUTS,
     Accounts,
+    AcrossState,
     LegModel,
     LegState,
     PointState,
@@ -17,6 +18,7 @@ from ..core import (
 from ..core.struts.fluid import fluid
 from ..core.struts.kinds import auxiliary_strut, auxiliary_strut_energy
 from ..parameters import PARAMETER_QUANTITIES, Parameters
+from ..quantities import TRIPOD
 
 # Typical size of each state: the absolute part of the error that is allowed is rtol times this.
 # Accounts count in no error; theirs is what the energy balance is measured by.
@@ -25,6 +27,8 @@ LEG_SCALE = LegState(r=0.1, h=0.1, vr=1.0, vh=1.0, z1=1e5, z2=1e5, q1=1e-3, q2=1
 LEG_RELATIVE = LegState(r=0.0, h=0.0, vr=0.0, vh=0.0, z1=1.0, z2=1.0, q1=0.0, q2=0.0)
 POINT_SCALE = PointState(q1=1e-3, q2=1e-3)
 AT_REST = PointState(q1=0.0, q2=0.0)
+ACROSS_SCALE = AcrossState(t=0.1, vt=1.0)
+IN_PLANE = AcrossState(t=0.0, vt=0.0)
 # [J], of a vehicle that has none
 LEAST_ENERGY = 1e-3
 # [m/s2], so that a footpad's stiffness does not depend on where the vehicle lands
@@ -42,14 +46,16 @@ def flat_state(
     legs: Sequence[LegState],
     accounts: Accounts,
     points: Iterable[PointState] = (),
+    across: Iterable[AcrossState] = (),
     work: float = 0.0,
 ) -> array[float]:
     """The numbers of a state.
 
-    They are the body's, each leg group's, each point's, the accounts, and each main strut's `work`.
+    They are the body's, each leg group's, those `across` each leg on three struts, each point's,
+    the accounts, and each main strut's `work`.
     """
-    of_legs, of_points = ((n for one in all_ for n in one) for all_ in (legs, points))
-    return array("d", [*body, *of_legs, *of_points, *accounts, *([work] * len(legs))])
+    records = (n for all_ in (legs, across, points) for one in all_ for n in one)
+    return array("d", [*body, *records, *accounts, *([work] * len(legs))])
 
 
 def state_sizes(
@@ -66,9 +72,18 @@ def state_sizes(
     body = list(body_scale)
     energy = touchdown_energy(parameters)
     accounts = Accounts(*(energy for _ in Accounts._fields))
-    scale = flat_state(body, [LEG_SCALE] * groups, accounts, [POINT_SCALE] * points, energy)
-    relative = [LEG_RELATIVE] * groups
-    return scale, flat_state([0.0] * len(body), relative, NO_ENERGY, [AT_REST] * points)
+    tripods = groups if parameters.leg.kind == TRIPOD else 0
+    scale = flat_state(
+        body,
+        [LEG_SCALE] * groups,
+        accounts,
+        [POINT_SCALE] * points,
+        [ACROSS_SCALE] * tripods,
+        energy,
+    )
+    none = [0.0] * len(body), [IN_PLANE] * tripods, [AT_REST] * points
+    relative = flat_state(none[0], [LEG_RELATIVE] * groups, NO_ENERGY, none[2], none[1])
+    return scale, relative
 
 
 def leg_model(whole: Parameters, leg: int = 0) -> LegModel:

@@ -8,8 +8,9 @@ from math import cos, sin
 
 from ..core import LegPlace, LegState, Spatial, SpatialInputs, SpatialModel, SpatialState
 from ..parameters import Parameters
+from ..quantities import TRIPOD
 from ..touchdown import each_leg, leg_directions
-from .legs import AT_REST, NO_ENERGY, flat_state, leg_model, state_sizes
+from .legs import AT_REST, IN_PLANE, NO_ENERGY, flat_state, leg_model, state_sizes
 from .spatial_flight import DeckMotion, SpatialFlight
 from .surroundings import body_points, height_field
 
@@ -38,6 +39,7 @@ def spatial_model(parameters: Parameters) -> SpatialModel:
         cg_x=v.cg_offset_x,
         cg_z=v.cg_offset_z,
         H=v.top_height,
+        tripod=1.0 if parameters.leg.kind == TRIPOD else 0.0,
         at_joint=1.0 if v.transverse_load_at == "joint" else 0.0,
         g=ground.gravity,
         heading=parameters.drop.heading,
@@ -99,4 +101,5 @@ def spatial_start(
         for charge in [own.main_strut.charge_pressure]
     ]
     points = [AT_REST] * len(body_points(parameters))
-    return flat_state(flight.start(), legs, NO_ENERGY, points)
+    across = [IN_PLANE] * len(legs) if parameters.leg.kind == TRIPOD else []
+    return flat_state(flight.start(), legs, NO_ENERGY, points, across)

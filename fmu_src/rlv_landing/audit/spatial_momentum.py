@@ -15,6 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from ..history import History
 from ..parameters import Parameters
+from ..quantities import TRIPOD
 from ..touchdown import leg_directions
 
 Array = NDArray[np.float64]
@@ -61,7 +62,7 @@ def spatial_momentum(history: History, parameters: Parameters) -> SpatialMomentu
     for leg, azimuth in leg_directions(parameters).items():
         foot = _columns(history, f"leg[{leg}].footpad.")
         from_cg = turn.inv().apply(foot - place)
-        own = _in_plane(history, parameters, leg, azimuth, from_cg) + np.cross(spin, from_cg)
+        own = _in_body(history, parameters, leg, azimuth, from_cg) + np.cross(spin, from_cg)
         mass = parameters.of_leg(leg).vehicle.footpad_mass
         points.append((mass, foot, speed + turn.apply(own)))
     linear: Array = np.sum([m * u for m, _, u in points], axis=0)
@@ -107,20 +108,42 @@ def _attitude(history: History) -> Rotation:
     return Rotation.from_quat(np.column_stack([history[f"body.q_{part}"] for part in "xyzw"]))
 
 
-def _in_plane(
+def _in_body(
     history: History,
     parameters: Parameters,
     leg: int,
     azimuth: tuple[float, float],
     from_cg: Array,
 ) -> Array:
-    """Velocity of a footpad in the leg's plane from both struts' rates, body axes, (n, 3)."""
+    """Velocity of a footpad in the body from its struts' rates, body axes, (n, 3)."""
     own = parameters.vehicle
     sine, cosine = azimuth
-    r = (from_cg[:, 0] + own.cg_offset_x) * cosine + (from_cg[:, 2] + own.cg_offset_z) * sine
-    h = from_cg[:, 1]
+    x, z = from_cg[:, 0] + own.cg_offset_x, from_cg[:, 2] + own.cg_offset_z
+    r, h, t = x * cosine + z * sine, from_cg[:, 1], z * cosine - x * sine
+    if parameters.leg.kind == TRIPOD:
+        vr, vh, vt = _rates_of_tripod(history, parameters, leg, np.column_stack([r, h, t])).T
+        return np.column_stack([vr * cosine - vt * sine, vh, vr * sine + vt * cosine])
     vr, vh = rates_in_plane(history, parameters, leg, r, h)
     return np.column_stack([vr * cosine, vh, vr * sine])
+
+
+def _rates_of_tripod(history: History, parameters: Parameters, leg: int, foot: Array) -> Array:
+    """Velocity of a free footpad, outward, up and across [m/s], from three struts' rates, (n, 3).
+
+    `foot` is its place in these axes from the legs' axis at the height of the CG [m].
+    """
+    own = parameters.of_leg(leg)
+    m, a = own.main_strut, own.auxiliary_strut
+    struts = {
+        "main_strut": (m.joint_radius, -m.joint_depth, 0.0),
+        "auxiliary_strut": (a.joint_radius, -a.joint_depth, a.joint_spread),
+        "auxiliary_strut_2": (a.joint_radius, -a.joint_depth, -a.joint_spread),
+    }
+    ways = np.stack([foot - np.array(joint) for joint in struts.values()], axis=1)
+    rates = np.column_stack([-history[f"leg[{leg}].{strut}.stroke_rate"] for strut in struts])
+    lengths = np.linalg.norm(ways, axis=2)
+    solved: Array = np.linalg.solve(ways, (rates * lengths)[..., None])[..., 0]
+    return solved
 
 
 def rates_in_plane(

@@ -45,8 +45,9 @@ def export(*, force: bool, **options: Any) -> None:
     for name, path in wanted.items():
         check_writable(path, FORMATS[name], force=force)
     parameters = chosen_parameters(**options)
+    texts = {name: makers[name](parameters) for name in wanted}
     for name, path in wanted.items():
-        text = makers[name](parameters)
+        text = texts[name]
         with writing(path), whole_file(path) as file:
             file.write(text.encode())
         click.echo(f"{name.upper()}: {path}")

@@ -65,10 +65,9 @@ def parameters(*, origin: bool, toml: bool, as_json: bool, what: str | None, **c
 
 
 def _print_quantities(what: str, chosen: Parameters, *, as_json: bool) -> None:
-    from ..quantities import interface_of
     from ..tables.landing import quantity_table
 
-    interface = interface_of(chosen.drop.mode, int(chosen.vehicle.legs))
+    interface = chosen.interface
     quantities = interface.inputs if what == "inputs" else interface.outputs
     if as_json:
         print_json([{"name": q.name, "unit": q.unit, "meaning": q.meaning} for q in quantities])

@@ -95,11 +95,10 @@ def _check_comparison(landing: Landing, *, as_json: bool) -> None:
 def _landing(options: dict[str, Any]) -> Landing:
     """The landing that the options choose, at its start."""
     from ..choices import parse_pairs
-    from ..quantities import interface_of
 
     parameters = chosen_parameters(
         options["preset"], options["file"], options["mode"], options["pairs"]
     )
-    interface = interface_of(parameters.drop.mode, int(parameters.vehicle.legs))
+    interface = parameters.interface
     inputs = parse_pairs(options["inputs"], interface.inputs_by_name, "input")
     return Landing(parameters, rtol=options["rtol"], method=options["method"], inputs=inputs)

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 from .ground.kinds import FRICTION_LAWS
 from .records import (
     Accounts,
+    AcrossState,
     BodyModel,
     BodyPoint,
     BodyState,
@@ -94,6 +95,7 @@ __all__ = [
     "MAIN_STRUTS",
     "WHY_NOT_COMPILED",
     "Accounts",
+    "AcrossState",
     "BodyModel",
     "BodyPoint",
     "BodyState",

@@ -1,9 +1,10 @@
 """Records from and to arrays of numbers: nothing else knows where a field stands.
 
-A state is the body's, then each leg's, then each body point's, then the accounts, then each main
-strut's work. What is kept between two kernels is an array of records of one kind. Compiled, each of
-these functions is an access through an address (see `core_declarations`): a record that was read is
-that in the array, so a kernel must not go on reading it after it has written there.
+A state is the body's, then each leg's, then of legs on three struts what each has across its
+plane, then each body point's, then the accounts, then each main strut's work. What is kept between
+two kernels is an array of records of one kind. Compiled, each of these functions is an access
+through an address (see `core_declarations`): a record that was read is that in the array, so a
+kernel must not go on reading it after it has written there.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ from typing import Any
 from .memory import Doubles, Records
 from .records import (
     Accounts,
+    AcrossForces,
+    AcrossState,
     Attitude,
     BodyAcceleration,
     BodyModel,
@@ -37,6 +40,7 @@ from .records import (
     PlanarLoads,
     PointState,
     Rotation,
+    SecondStrutOutputs,
     SpatialAttitude,
     SpatialInputs,
     SpatialLoads,
@@ -51,6 +55,7 @@ from .records import (
 # how many numbers a record takes
 BODY = len(BodyState._fields)
 LEG = len(LegState._fields)
+ACROSS = len(AcrossState._fields)
 ACCOUNTS = len(Accounts._fields)
 INPUTS = len(Inputs._fields)
 FOOT_LOADS = len(FootLoads._fields)
@@ -58,6 +63,7 @@ FOOT_MOTION = len(FootMotion._fields)
 GROUND_FORCE = len(GroundForce._fields)
 POINT_STATE = len(PointState._fields)
 LEG_FORCES = len(LegForces._fields)
+ACROSS_FORCES = len(AcrossForces._fields)
 LEG_STATUS = len(LegStatus._fields)
 PLANAR_LOADS = len(PlanarLoads._fields)
 ATTITUDE = len(Attitude._fields)
@@ -74,6 +80,7 @@ PHI_WEIGHTS = len(PhiWeights._fields)
 BODY_OUTPUTS = len(BodyOutputs._fields)
 SPATIAL_OUTPUTS = len(SpatialOutputs._fields)
 LEG_LOAD_OUTPUTS = len(LegLoadOutputs._fields)
+SECOND_STRUT_OUTPUTS = len(SecondStrutOutputs._fields)
 ENERGY_OUTPUTS = len(EnergyOutputs._fields)
 STATUS_OUTPUTS = len(StatusOutputs._fields)
 LEG_OUTPUTS = len(LegOutputs._fields)
@@ -85,7 +92,8 @@ BALANCE = EnergyOutputs._fields.index("balance")
 
 # where the accounts have what friction has dissipated, the last of what is dissipated
 FRICTION = Accounts._fields.index("friction")
-# and what the ground's normal damping has, and the work of the ground
+# what the auxiliary struts have, the ground's normal damping, and the work of the ground
+AUXILIARY_ACCOUNT = Accounts._fields.index("auxiliary")
 CONTACT_ACCOUNT = Accounts._fields.index("contact")
 GROUND_ACCOUNT = Accounts._fields.index("ground")
 
@@ -107,6 +115,11 @@ def spatial_state(y: Doubles, at: int) -> SpatialState:
 def leg_state(y: Doubles, at: int) -> LegState:
     """The leg's state that stands at `y[at:]`."""
     return LegState(*y[at : at + LEG])
+
+
+def across_state(y: Doubles, at: int) -> AcrossState:
+    """The state of a footpad across its leg's plane that stands at `y[at:]`."""
+    return AcrossState(*y[at : at + ACROSS])
 
 
 def point_state(y: Doubles, at: int) -> PointState:
@@ -156,6 +169,11 @@ def leg_place(kept: Records[LegPlace], i: int) -> LegPlace:
 
 
 def leg_forces_of(kept: Records[LegForces], i: int) -> LegForces:
+    """The `i`-th record of those kept."""
+    return kept[i]
+
+
+def across_forces_of(kept: Records[AcrossForces], i: int) -> AcrossForces:
     """The `i`-th record of those kept."""
     return kept[i]
 

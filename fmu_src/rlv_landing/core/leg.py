@@ -45,6 +45,13 @@ def leg_forces_on(leg: LegState, foot: FootMotion, steep: float, p: LegModel) ->
     """As `leg_forces`, on ground whose normal force is `steep` times that of the normal law."""
     main = strut_motion(leg, p.La, p.Lb, p.Lm0)
     aux = strut_motion(leg, p.Lc, p.Ld, p.Ls0)
+    return forces_between(leg, foot, steep, main, aux, p)
+
+
+def forces_between(
+    leg: LegState, foot: FootMotion, steep: float, main: StrutMotion, aux: StrutMotion, p: LegModel
+) -> LegForces:
+    """The forces of a main strut and an auxiliary strut that move so, and of the ground."""
     strut = main_strut(main.stroke, main.rate, leg.z1, leg.z2, p)
     link = auxiliary_strut(aux.stroke, aux.rate, p)
     ground = ground_force_on(foot, steep, leg.q1, leg.q2, p)

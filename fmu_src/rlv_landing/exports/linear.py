@@ -68,7 +68,10 @@ def ground(parameters: Parameters) -> Linear:
 
 
 def stroke_rate(parameters: Parameters) -> float:
-    """The main strut's stroke rate at touchdown [m/s]: see `RULES`."""
+    """The main strut's stroke rate at touchdown [m/s]: see `RULES`.
+
+    A tripod's footpad turns about the line through both auxiliary joints.
+    """
     m, a = parameters.main_strut, parameters.auxiliary_strut
     r, h = footpad_at_rest(parameters)
     arm_r, arm_h = r - a.joint_radius, h + a.joint_depth

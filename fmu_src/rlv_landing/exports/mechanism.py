@@ -12,7 +12,7 @@ from ..assembly.spatial import spatial_model
 from ..errors import LandingError
 from ..landing import Landing
 from ..parameters import Parameters
-from ..quantities import SPACE
+from ..quantities import SPACE, TRIPOD
 from ..touchdown import footpad_at_rest, leg_directions
 from .linear import Linear, auxiliary_strut, ground, main_strut
 
@@ -25,12 +25,13 @@ class LegMechanism(NamedTuple):
     """A leg; points and directions are in the body's axes from its CG [m].
 
     The footpad turns about the hinge `axis` at the auxiliary strut's joint, and slides along that
-    strut. The main strut is a line from its joint to the footpad.
+    strut. The main strut is a line from its joint to the footpad. The footpad of a tripod is free,
+    and its struts are such lines, all three.
     """
 
     number: int
     main_joint: Vector
-    auxiliary_joint: Vector
+    auxiliary_joints: Sequence[Vector]  # one, of a tripod two
     foot: Vector
     axis: Vector
     mass: float  # of the footpad [kg]
@@ -38,6 +39,7 @@ class LegMechanism(NamedTuple):
     main_length: float  # [m]
     stroke_max: float  # [m]
     auxiliary: Linear
+    auxiliary_length: float  # [m]
     ground: Linear
     friction: float
     inverse_mass: float  # of the footpad to a force, the mean of three directions [1/kg]
@@ -117,15 +119,17 @@ def _leg(whole: Parameters, leg: int, direction: tuple[float, float], cg: Vector
     own = whole.of_leg(leg) if whole.drop.mode == SPACE else whole
     sine, cosine = direction
 
-    def at(radius: float, height: float) -> Vector:
-        point: Vector = UP @ (np.array([radius * cosine, height, radius * sine]) - cg)
+    def at(radius: float, height: float, across: float = 0.0) -> Vector:
+        x, z = radius * cosine - across * sine, radius * sine + across * cosine
+        point: Vector = UP @ (np.array([x, height, z]) - cg)
         return point
 
     m, a = own.main_strut, own.auxiliary_strut
+    sides = (a.joint_spread, -a.joint_spread) if own.leg.kind == TRIPOD else (0.0,)
     return LegMechanism(
         number=leg,
         main_joint=at(m.joint_radius, -m.joint_depth),
-        auxiliary_joint=at(a.joint_radius, -a.joint_depth),
+        auxiliary_joints=[at(a.joint_radius, -a.joint_depth, side) for side in sides],
         foot=at(*footpad_at_rest(own)),
         axis=UP @ np.array([-sine, 0.0, cosine]),
         mass=own.vehicle.footpad_mass,
@@ -133,6 +137,7 @@ def _leg(whole: Parameters, leg: int, direction: tuple[float, float], cg: Vector
         main_length=m.length,
         stroke_max=m.stroke_max,
         auxiliary=auxiliary_strut(own),
+        auxiliary_length=a.length,
         ground=ground(own),
         friction=own.ground.friction,
         inverse_mass=0.0,
@@ -144,8 +149,11 @@ def _with_inverse_masses(
 ) -> list[LegMechanism]:
     """The legs with the footpads' inverse masses.
 
-    A force in a leg's plane accelerates its footpad alone; one across it, the body and all feet.
+    A force in a leg's plane accelerates its footpad alone; one across it, the body and all feet. A
+    tripod's footpad is free in all directions.
     """
+    if any(len(leg.auxiliary_joints) > 1 for leg in legs):
+        return [leg._replace(inverse_mass=1.0 / leg.mass) for leg in legs]
     matrix = np.zeros((6, 6))
     matrix[:3, :3], matrix[3:, 3:] = mass * np.eye(3), inertia
     ways = [np.concatenate([leg.axis, np.cross(leg.foot, leg.axis)]) for leg in legs]

@@ -21,6 +21,10 @@ NOTES = (
     "MuJoCo's soft contact with the same two numbers, which also answers accelerations. The start",
     "of the landing is the keyframe touchdown: mj_resetDataKeyframe(model, data, 0).",
 )
+TRIPOD_NOTES = (
+    "Legs are tripods: the footpads are free in the body, slides along its axes, and the auxiliary",
+    "struts are tendons, too, from legN_auxiliary1_joint and legN_auxiliary2_joint.",
+)
 
 
 def mjcf(parameters: Parameters) -> str:
@@ -53,28 +57,46 @@ def mjcf(parameters: Parameters) -> str:
             name=f"leg{leg.number}_main_length",
             tendon=f"leg{leg.number}_main",
         )
-        child(
-            sensors,
-            "jointpos",
-            name=f"leg{leg.number}_auxiliary_stroke",
-            joint=f"leg{leg.number}_auxiliary",
-        )
-    _start(root, made)
-    return document(root, made, NOTES)
+        _sense_auxiliary(sensors, leg)
+    tripod = any(len(leg.auxiliary_joints) > 1 for leg in made.legs)
+    _start(root, made, 3 if tripod else 2)
+    return document(root, made, (*NOTES, *TRIPOD_NOTES) if tripod else NOTES)
+
+
+def _sense_auxiliary(sensors: Element, leg: LegMechanism) -> None:
+    name = f"leg{leg.number}_auxiliary"
+    if len(leg.auxiliary_joints) == 1:
+        child(sensors, "jointpos", name=f"{name}_stroke", joint=name)
+        return
+    for k, _ in enumerate(leg.auxiliary_joints, 1):
+        child(sensors, "tendonpos", name=f"{name}{k}_length", tendon=f"{name}{k}")
 
 
 def _leg(body: Element, tendons: Element, leg: LegMechanism) -> None:
     name = f"leg{leg.number}"
-    to_joint = leg.auxiliary_joint - leg.foot
-    length = float((to_joint @ to_joint) ** 0.5)
     child(body, "site", name=f"{name}_main_joint", pos=leg.main_joint)
     foot = child(body, "body", name=f"{name}_footpad", pos=leg.foot)
     child(foot, "inertial", pos="0 0 0", mass=leg.mass, diaginertia=TINY)
-    child(foot, "joint", name=f"{name}_hinge", type="hinge", axis=leg.axis, pos=to_joint)
-    child(foot, "joint", name=f"{name}_auxiliary", type="slide", axis=to_joint / length,
-          stiffness=leg.auxiliary.stiffness, damping=leg.auxiliary.damping)  # fmt: skip
+    if len(leg.auxiliary_joints) == 1:
+        to_joint = leg.auxiliary_joints[0] - leg.foot
+        length = float((to_joint @ to_joint) ** 0.5)
+        child(foot, "joint", name=f"{name}_hinge", type="hinge", axis=leg.axis, pos=to_joint)
+        child(foot, "joint", name=f"{name}_auxiliary", type="slide", axis=to_joint / length,
+              stiffness=leg.auxiliary.stiffness, damping=leg.auxiliary.damping)  # fmt: skip
+    else:
+        for axis, along in zip("xyz", ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))):
+            child(foot, "joint", name=f"{name}_{axis}", type="slide", axis=along)
+        for k, joint in enumerate(leg.auxiliary_joints, 1):
+            child(body, "site", name=f"{name}_auxiliary{k}_joint", pos=joint)
     child(foot, "site", name=f"{name}_footpad")
     _contact(foot, leg)
+    if len(leg.auxiliary_joints) > 1:
+        for k, _ in enumerate(leg.auxiliary_joints, 1):
+            strut = child(tendons, "spatial", name=f"{name}_auxiliary{k}",
+                          stiffness=leg.auxiliary.stiffness, damping=leg.auxiliary.damping,
+                          springlength=leg.auxiliary_length)  # fmt: skip
+            child(strut, "site", site=f"{name}_auxiliary{k}_joint")
+            child(strut, "site", site=f"{name}_footpad")
     strut = child(tendons, "spatial", name=f"{name}_main", stiffness=leg.main.stiffness,
                   damping=leg.main.damping, limited="true",
                   springlength=leg.main_length + leg.main.preload / leg.main.stiffness,
@@ -97,8 +119,9 @@ def _contact(foot: Element, leg: LegMechanism) -> None:
     )  # fmt: skip
 
 
-def _start(root: Element, made: Mechanism) -> None:
-    feet = [0.0] * (2 * len(made.legs))
+def _start(root: Element, made: Mechanism, coordinates: int) -> None:
+    """The start as a keyframe; a leg has so many coordinates in the body."""
+    feet = [0.0] * (coordinates * len(made.legs))
     child(
         child(root, "keyframe"),
         "key",

@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..errors import LandingError
+from ..quantities import RADIAL, TRIPOD
 from .linear import Linear
 from .mechanism import LegMechanism, Vector
 
@@ -45,10 +47,19 @@ class Rod(NamedTuple):
 
 
 def rods(leg: LegMechanism) -> tuple[Rod, Rod]:
-    """The main and the auxiliary strut of a leg."""
+    """The main and the auxiliary strut of a leg.
+
+    Raises:
+        LandingError: It is a tripod, whose rods turn about no one axis.
+    """
+    if len(leg.auxiliary_joints) > 1:
+        raise LandingError(
+            f"leg.kind = {TRIPOD} is exported as MJCF alone: rods of SDF and URDF turn about one "
+            f"axis; write --mjcf, or leg.kind = {RADIAL}"
+        )
     return (
         _rod(leg, "main", leg.main_joint, leg.main, leg.stroke_max),
-        _rod(leg, "auxiliary", leg.auxiliary_joint, leg.auxiliary, FAR),
+        _rod(leg, "auxiliary", leg.auxiliary_joints[0], leg.auxiliary, FAR),
     )
 
 

@@ -7,7 +7,7 @@ from string import ascii_uppercase
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..parameters import PARAMETER_QUANTITIES, Parameters
-from ..quantities import DISPLAY_UNITS
+from ..quantities import DISPLAY_UNITS, TRIPOD
 from ..touchdown import footpad_at_rest
 from .plots import save_whole
 from .style import AREA, AUXILIARY, BODY, INK, MAIN
@@ -35,19 +35,21 @@ class Dimension(NamedTuple):
         end: Where it ends [m].
         column: 0 where its line joins the points; else it is measured along x (above 0) or y
             (below 0), and the number counts the lines outward.
+        across: How far the ends are apart across the drawing [m].
     """
 
     name: str
     start: Point
     end: Point
     column: int
+    across: float = 0.0
 
     @property
     def length(self) -> float:
         """The length that is named [m]."""
         (x1, y1), (x2, y2) = self.start, self.end
         if self.column == 0:
-            return float(((x2 - x1) ** 2 + (y2 - y1) ** 2) ** 0.5)
+            return float(((x2 - x1) ** 2 + (y2 - y1) ** 2 + self.across**2) ** 0.5)
         return abs(x2 - x1) if self.column > 0 else abs(y2 - y1)
 
 
@@ -56,11 +58,12 @@ def dimensions(parameters: Parameters) -> list[Dimension]:
     main, auxiliary, foot = _leg(parameters)
     cg, top = (0.0, 0.0), (0.0, parameters.vehicle.top_height)
     opposite = (-foot[0], foot[1])
+    spread = parameters.auxiliary_strut.joint_spread if parameters.leg.kind == TRIPOD else 0.0
     odd = int(parameters.vehicle.legs) % 2 == 1
     across = "diameter of the footpads' circle" if odd else "distance of opposite footpads"
     return [
         Dimension("main_strut.length", main, foot, 0),
-        Dimension("auxiliary_strut.length", auxiliary, foot, 0),
+        Dimension("auxiliary_strut.length", auxiliary, foot, 0, spread),
         Dimension("main_strut.joint_depth", cg, main, -1),
         Dimension("auxiliary_strut.joint_depth", cg, auxiliary, -2),
         Dimension("footpads below the CG", cg, foot, -3),
@@ -123,11 +126,14 @@ def _table(parameters: Parameters) -> str:
         (letter, d.name, f"{d.length:.4g} m")
         for letter, d in zip(ascii_uppercase, dimensions(parameters))
     ]
-    for name in UNDRAWN:
+    spread = ("leg.kind", "auxiliary_strut.joint_spread")
+    for name in (*UNDRAWN, *(spread if parameters.leg.kind == TRIPOD else ())):
         q = PARAMETER_QUANTITIES[name]
         unit = q.display_unit or q.unit
         _, factor = DISPLAY_UNITS.get(unit, (q.unit, 1.0))
-        rows.append(("", name, f"{float(parameters[name]) / factor:.4g} {unit}"))
+        value = parameters[name]
+        told = value if isinstance(value, str) else f"{value / factor:.4g} {unit}"
+        rows.append(("", name, told))
     width = max(len(name) for _, name, _ in rows)
     lines = (f"{letter:1s}  {name:{width}s}  {value}" for letter, name, value in rows)
     # pages join spaces of an SVG, but not these

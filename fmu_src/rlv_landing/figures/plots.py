@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 MAIN_FORCE = ("main_strut.force", 1e-3, "main strut force [kN]")
 MAIN_STROKE = ("main_strut.stroke", 1e3, "main strut stroke [mm]")
 AUXILIARY_FORCE = ("auxiliary_strut.force", 1e-3, "auxiliary strut force [kN]")
+# of a tripod
+SECOND_FORCE = ("auxiliary_strut_2.force", 1e-3, "second auxiliary strut force [kN]")
 DRAWN_OF_A_LEG = (MAIN_FORCE, MAIN_STROKE, AUXILIARY_FORCE)
 TOP_ACCELERATION = ("body.top_axial_acceleration", 1.0, "axial acceleration\nat the top [m/s²]")
 
@@ -33,6 +35,7 @@ COLUMNS = frozenset(
     (
         *(f"leg[{leg}].{column}" for leg in ANY_LEGS for column, _, _ in DRAWN_OF_A_LEG),
         *(f"leg[{leg}].contact.force_y" for leg in ANY_LEGS),
+        *(f"leg[{leg}].{SECOND_FORCE[0]}" for leg in ANY_LEGS),
         TOP_ACCELERATION[0],
     )
 )
@@ -58,7 +61,7 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
     """Write a picture of main strut forces, strokes, auxiliary strut forces and top acceleration.
 
     Legs that are mirror images share a curve. Dotted lines mark each leg's first contact, triangles
-    true peaks.
+    true peaks; a tripod's second auxiliary strut is dashed.
 
     Raises:
         OSError: The disk refuses.
@@ -75,6 +78,10 @@ def save_overview(history: History, path: str | Path, title: str) -> None:
             column = f"leg[{leg}].{what}"
             ax.plot(history.time, factor * history[column], color=colour, label=label)
             draw_peaks(ax, history, column, factor, colour)
+        what, factor, _ = SECOND_FORCE
+        if (column := f"leg[{leg}].{what}") in history:
+            axes[2].plot(history.time, factor * history[column], color=colour, linestyle="--")
+            draw_peaks(axes[2], history, column, factor, colour)
         touching = np.flatnonzero(history[f"leg[{leg}].contact.force_y"] > 0.0)
         if len(touching):
             for ax in axes:

@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 from ..history import History
 from ..parameters import Parameters
 from ..parameters.surroundings import read_points
-from ..quantities import SPACE
-from ..touchdown import footpad_between, leg_directions
+from ..quantities import SPACE, TRIPOD
+from ..touchdown import footpad_between, leg_directions, tripod_footpad
 
 Lines = NDArray[np.float64]
 RING = 24
@@ -34,8 +34,8 @@ def wireframe(
     Returns:
         Arrays (rows, lines, points, 3) [m] by part: `outline`, the body's rectangle in the
         symmetric plane; `hull`, its rings and the rectangle across; `main` and `auxiliary`, the
-        struts from joint to footpad by leg; `feet`, the footpads; `points`, the body's that meet
-        the ground, where it has such.
+        struts from joint to footpad by leg, of a tripod both auxiliary struts as one line over the
+        footpad; `feet`, the footpads; `points`, the body's that meet the ground, where it has such.
     """
     m, a = parameters.main_strut, parameters.auxiliary_strut
     half, bottom, top = (
@@ -56,22 +56,11 @@ def wireframe(
     outline = np.stack([corners[:, 0], corners[:, 1], np.zeros(5)], axis=-1)
     in_space = parameters.drop.mode == SPACE
     directions = leg_directions(parameters)
-    main, auxiliary = np.empty((2, len(rows), len(directions), 2, 3))
-    for i, (leg, (sine, cosine)) in enumerate(directions.items()):
-        own = parameters.of_leg(leg) if in_space else parameters
-        out = np.array([cosine, 0.0, sine])
-        up = np.array([0.0, 1.0, 0.0])
-        lengths = [
-            length - history[f"leg[{leg}].{name}.stroke"][rows]
-            for name, length in (
-                ("main_strut", own.main_strut.length),
-                ("auxiliary_strut", own.auxiliary_strut.length),
-            )
-        ]
-        feet = np.array([footpad_between(own, *map(float, pair)) for pair in zip(*lengths)])
-        for lines, strut in ((main, own.main_strut), (auxiliary, own.auxiliary_strut)):
-            lines[:, i, 0] = strut.joint_radius * out - strut.joint_depth * up
-            lines[:, i, 1] = feet[:, :1] * out + feet[:, 1:] * up
+    legs = [
+        _leg(history, parameters.of_leg(leg) if in_space else parameters, leg, direction, rows)
+        for leg, direction in directions.items()
+    ]
+    main, auxiliary = (np.stack(lines, axis=1) for lines in zip(*legs))
     parts = {
         "outline": outline[None, None],
         "hull": np.stack([*rings, across])[None],
@@ -86,6 +75,46 @@ def wireframe(
         cg = np.array([v.cg_offset_x, 0.0, v.cg_offset_z])
         return {name: _turned(history, rows, lines - cg) for name, lines in parts.items()}
     return {name: _in_inertial_axes(history, rows, points) for name, points in parts.items()}
+
+
+def _leg(
+    history: History,
+    own: Parameters,
+    leg: int,
+    direction: tuple[float, float],
+    rows: Sequence[int] | NDArray[np.intp],
+) -> tuple[Lines, Lines]:
+    """The main strut (rows, 2, 3) and the auxiliary struts (rows, points, 3), body axes [m].
+
+    Args:
+        history: The landing's columns over time.
+        own: The parameters as the leg has them.
+        leg: Its number.
+        direction: Sine and cosine of its azimuth.
+        rows: The samples' indices.
+    """
+    sine, cosine = direction
+    m, a = own.main_strut, own.auxiliary_strut
+    axes = np.array([[cosine, 0.0, sine], [0.0, 1.0, 0.0], [-sine, 0.0, cosine]])
+    tripod = own.leg.kind == TRIPOD
+    strokes = {"main_strut": m.length, "auxiliary_strut": a.length}
+    strokes |= {"auxiliary_strut_2": a.length} if tripod else {}
+    lengths = [
+        length - history[f"leg[{leg}].{strut}.stroke"][rows] for strut, length in strokes.items()
+    ]
+    found = [tuple(map(float, row)) for row in zip(*lengths)]
+    if tripod:
+        feet = np.array([tripod_footpad(own, *row) for row in found])
+    else:
+        feet = np.array([(*footpad_between(own, *row), 0.0) for row in found])
+
+    def line(radius: float, depth: float, *sides: float) -> Lines:
+        joints = [np.tile((radius, -depth, side), (len(feet), 1)) for side in sides]
+        ends: Lines = np.stack([joints[0], feet, *joints[1:]], axis=1) @ axes
+        return ends
+
+    sides = (a.joint_spread, -a.joint_spread) if tripod else (0.0,)
+    return line(m.joint_radius, m.joint_depth, 0.0), line(a.joint_radius, a.joint_depth, *sides)
 
 
 def contact_forces(

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ..errors import LandingError, unknown
-from ..quantities import MODES, SPACE
+from ..quantities import MODES, SPACE, TRIPOD, Interface, interface_of
 from .drop import Drop, Integration
 from .ground import Ground
+from .leg import Leg, check_triangle, check_tripod
 from .one_leg import LEG_NAME, OVERRIDES, split_leg, written_overrides
 from .space import check_space
 from .table import FIELDS, GROUPS, PARAMETER_QUANTITIES, check_value, overrides_of
@@ -25,6 +26,7 @@ class Parameters:
 
     Attributes:
         vehicle: The body and its footpads.
+        leg: What all legs have alike.
         main_strut: The main strut.
         auxiliary_strut: The auxiliary strut.
         ground: The ground and its contact.
@@ -36,6 +38,7 @@ class Parameters:
     """
 
     vehicle: Vehicle = field(default_factory=Vehicle)
+    leg: Leg = field(default_factory=Leg)
     main_strut: MainStrut = field(default_factory=MainStrut)
     auxiliary_strut: AuxiliaryStrut = field(default_factory=AuxiliaryStrut)
     ground: Ground = field(default_factory=Ground)
@@ -69,6 +72,11 @@ class Parameters:
     def overrides(self) -> dict[str, float | str]:
         """The values that single legs have for themselves, by name: `leg[2].ground.friction`."""
         return overrides_of(self.vehicle.leg_overrides) if self.vehicle.leg_overrides else {}
+
+    @property
+    def interface(self) -> Interface:
+        """The inputs and outputs of a landing with them."""
+        return interface_of(self.drop.mode, int(self.vehicle.legs), self.leg.kind)
 
     @property
     def whole_mass(self) -> float:
@@ -228,7 +236,7 @@ class Parameters:
                 raise LandingError(f"leg[{leg}]: {e}") from None
 
     def _check_together(self) -> None:
-        check_space(self.vehicle, self.drop, self.ground)
+        check_space(self.vehicle, self.leg, self.drop, self.ground)
         self._check_legs()
         m, a = self.main_strut, self.auxiliary_strut
         swept = m.area_lower * m.stroke_max
@@ -250,15 +258,9 @@ class Parameters:
                 f"main_strut.area_upper = {m.area_upper:g} m2 (annulus) is above "
                 f"main_strut.area_lower = {m.area_lower:g} m2 (bore)"
             )
-        apart = (
-            (m.joint_radius - a.joint_radius) ** 2 + (m.joint_depth - a.joint_depth) ** 2
-        ) ** 0.5
-        if not abs(m.length - a.length) < apart < m.length + a.length:
-            raise LandingError(
-                f"main_strut.length = {m.length:g} m and auxiliary_strut.length = {a.length:g} m "
-                f"do not meet at a footpad: their joints are {apart:g} m apart; "
-                "check lengths, joint radii and depths"
-            )
+        if self.leg.kind == TRIPOD:
+            check_tripod(self.vehicle, m, a)
+        check_triangle(m, a, self.leg.kind)
 
 
 def _source(name: str, source: str | Mapping[str, str]) -> str:

@@ -8,6 +8,7 @@ from ..errors import LandingError
 from ..quantities import SPACE
 from .drop import Drop
 from .ground import Ground
+from .leg import Leg
 from .surroundings import check_azimuths
 from .vehicle import Vehicle
 
@@ -17,14 +18,18 @@ ONLY_IN_SPACE = {
         *("legs", "leg_azimuths", "leg_overrides", "body_points", "cg_offset_x", "cg_offset_z"),
         *("inertia_xy", "inertia_xz", "inertia_yz"),
     ),
+    Leg: ("kind",),
     Drop: ("heading", "roll", "roll_rate", "yaw_rate", "lateral_velocity"),
     Ground: ("slope_direction", "step", "terrain"),
 }
 # a symmetric landing may have them, and does not depend on them
-NO_EFFECT_IN_A_PLANE = ("vehicle.leg_azimuth", "vehicle.inertia_roll", "vehicle.inertia_yaw")
+NO_EFFECT_IN_A_PLANE = (
+    *("vehicle.leg_azimuth", "vehicle.inertia_roll", "vehicle.inertia_yaw"),
+    "auxiliary_strut.joint_spread",
+)
 
 
-def check_space(vehicle: Vehicle, drop: Drop, ground: Ground) -> None:
+def check_space(vehicle: Vehicle, leg: Leg, drop: Drop, ground: Ground) -> None:
     """Check what belongs together in a landing in space, and that no other landing has it.
 
     Raises:
@@ -37,16 +42,22 @@ def check_space(vehicle: Vehicle, drop: Drop, ground: Ground) -> None:
         check_azimuths(vehicle.leg_azimuths, int(vehicle.legs))
         _check_inertia(vehicle)
         return
-    for name, group in (("vehicle", vehicle), ("drop", drop), ("ground", ground)):
+    groups: dict[str, Vehicle | Leg | Drop | Ground] = {
+        "vehicle": vehicle,
+        "leg": leg,
+        "drop": drop,
+        "ground": ground,
+    }
+    for name, group in groups.items():
         defaults = {f.name: f.default for f in fields(group)}
         for what in ONLY_IN_SPACE[type(group)]:
             value, default = getattr(group, what), defaults[what]
             if value != default:
                 told = value if isinstance(value, str) else f"{value:g}"
-                usual = f"{default:g}" if default != "" else "none"
+                usual = default if isinstance(default, str) else f"{default:g}"
                 raise LandingError(
                     f"{name}.{what} = {told} needs drop.mode = {SPACE}; drop.mode = {drop.mode} "
-                    f"is a symmetric landing, which has {usual}"
+                    f"is a symmetric landing, which has {usual or 'none'}"
                 )
 
 

@@ -12,6 +12,7 @@ from ..errors import LandingError
 from ..quantities import MODES, SPACE, Quantity
 from .drop import Drop, Integration
 from .ground import Ground
+from .leg import Leg
 from .one_leg import OVERRIDES, read_overrides, split_leg, written_overrides
 from .space import NO_EFFECT_IN_A_PLANE, ONLY_IN_SPACE
 from .surroundings import (
@@ -27,6 +28,7 @@ from .vehicle import AuxiliaryStrut, MainStrut, Vehicle
 
 GROUPS: dict[str, type] = {
     "vehicle": Vehicle,
+    "leg": Leg,
     "main_strut": MainStrut,
     "auxiliary_strut": AuxiliaryStrut,
     "ground": Ground,

@@ -240,6 +240,12 @@ class AuxiliaryStrut:
         float, "CG to body joint, downward", real("m", -50.0, 50.0, "Ld", "paper")
     ] = 1.513
     length: Annotated[float, "length, unloaded", real("m", 0.05, 100.0, "Ls0", "paper")] = 1.145
+    joint_spread: Annotated[
+        float,
+        "distance of the body joint from the leg's plane, one strut on each side; leg.kind = "
+        "tripod, mode = space",
+        real("m", 1e-3, 50.0, "Lt"),
+    ] = 0.25
     stiffness: Annotated[
         float, "axial stiffness Ka (N/m^ek)", real("N/m", 1e3, 1e11, "Ka", "identified")
     ] = 4000000.0

@@ -19,9 +19,12 @@ DEFAULT_PRESET = "yue2022-figures"
 NOT_OF_A_VEHICLE = {
     *(name for name in PARAMETER_QUANTITIES if name.startswith("solver.")),
     *(name for name, q in PARAMETER_QUANTITIES.items() if q.kind == "string" and not q.choices),
-    "ground.step",
+    *("ground.step", "leg.kind", "auxiliary_strut.joint_spread"),
 }
 OVERRIDES = "vehicle.leg_overrides"
+# the table of what all legs have alike, and of single legs' tables by number
+LEG = "leg"
+ALIKE = {name.split(".")[1] for name in PARAMETER_QUANTITIES if name.startswith(f"{LEG}.")}
 
 
 def preset_names() -> list[str]:
@@ -44,11 +47,12 @@ def load_preset(name: str, mode: str | None = None) -> Parameters:
 def read_toml(path: str | Path) -> Parameters:
     """Parameters from a TOML file.
 
-    Its tables are `vehicle`, `main_strut`, `auxiliary_strut`, `ground` and `drop`, `mode.X.drop`
-    for one mode only, and `leg.N.main_strut`, `leg.N.ground` ... for one leg only. A value is a
-    number in SI units, a text with a unit ("-2 deg"), or `{ value = ..., source = "..." }`. Other
-    values come from `preset = "..."` (default yue2022-figures). With `complete = true` there may be
-    none: every parameter of the vehicle, the ground and the drop must be in the file.
+    Its tables are `vehicle`, `leg`, `main_strut`, `auxiliary_strut`, `ground` and `drop`,
+    `mode.X.drop` for one mode only, and `leg.N.main_strut`, `leg.N.ground` ... for one leg only. A
+    value is a number in SI units, a text with a unit ("-2 deg"), or
+    `{ value = ..., source = "..." }`. Other values come from `preset = "..."` (default
+    yue2022-figures). With `complete = true` there may be none: every parameter of the vehicle, the
+    ground and the drop must be in the file.
 
     Raises:
         LandingError: The file is missing, its TOML syntax is wrong (with line), or names or values
@@ -72,13 +76,13 @@ def parse_toml(text: str, name: str, folder: Path | None = None) -> Parameters:
 
 
 def _from_document(document: dict[str, Any], folder: Path | None) -> Parameters:
-    known = ("preset", "complete", "mode", "leg", *GROUPS)
+    known = ("preset", "complete", "mode", *GROUPS)
     for key in document:
         if key not in known:
             raise unknown("table", key, known)
     base = document.get("preset")
     parameters = load_preset(base) if base is not None else Parameters()
-    values, sources = _flat({k: v for k, v in document.items() if k in GROUPS}, folder=folder)
+    values, sources = _flat(_of_all(document), folder=folder)
     _check_complete(document, values)
     own_values, own_sources = _of_legs(document)
     parameters = parameters.with_values({**values, **own_values}, {**sources, **own_sources})
@@ -108,11 +112,22 @@ def _check_complete(document: Mapping[str, Any], values: Mapping[str, Any]) -> N
         )
 
 
+def _of_all(document: Mapping[str, Any]) -> dict[str, Any]:
+    """The tables by group, without what single legs have for themselves."""
+    tables = {group: table for group, table in document.items() if group in GROUPS}
+    if LEG in tables:
+        leg = toml_table(tables[LEG], LEG)
+        tables[LEG] = {what: entry for what, entry in leg.items() if what in ALIKE}
+    return tables
+
+
 def _of_legs(document: Mapping[str, Any]) -> tuple[dict[str, float | str], dict[str, str]]:
     """What single legs have for themselves, from the tables `leg.N.GROUP`."""
     values: dict[str, float | str] = {}
     sources: dict[str, str] = {}
-    for number, tables in toml_table(document.get("leg", {}), "leg").items():
+    for number, tables in toml_table(document.get(LEG, {}), LEG).items():
+        if number in ALIKE:
+            continue
         own = toml_table(tables, f"leg.{number}")
         if not number.isdecimal():
             raise LandingError(
@@ -182,10 +197,10 @@ def origins(path: str | Path | None, preset: str | None, mode: str) -> dict[str,
         )
     for tables, origin in layers:
         folder = Path(path).parent if path is not None else None
-        plain, _ = _flat({k: v for k, v in tables.items() if k in GROUPS}, folder=folder)
+        plain, _ = _flat(_of_all(tables), folder=folder)
         of_mode, _ = _flat(tables.get("mode", {}).get(mode, {}))
         found.update(dict.fromkeys(plain, origin))
-        if "leg" in tables:
+        if any(what not in ALIKE for what in tables.get(LEG, {})):
             found[OVERRIDES] = origin
         found.update(dict.fromkeys(of_mode, f"{origin}, mode {mode}"))
     return found

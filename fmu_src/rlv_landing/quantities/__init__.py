@@ -6,14 +6,16 @@ reference pages.
 """
 
 from .inputs import INPUT_NAMES, INPUT_QUANTITIES, INPUTS_BY_NAME
-from .interface import Interface, interface_of
+from .interface import Interface, interface_of, widest_interfaces
 from .legs import (
     LEAST_LEGS,
     LEGS,
     MIRRORED,
     MODES,
     MOST_LEGS,
+    RADIAL,
     SPACE,
+    TRIPOD,
     LegGroup,
     azimuth,
     groups_of,
@@ -31,7 +33,7 @@ from .outputs import (
 )
 from .peaks import PEAK_QUANTITIES, PEAKS, Peak
 from .quantity import BASE_UNITS, DISPLAY_UNITS, NOMINALS, Quantity, flat_name, shown, whole_name
-from .space import SPACE_INPUTS, SPACE_LEG_QUANTITIES
+from .space import SPACE_INPUTS, leg_quantities_in_space
 from .statistics import STATISTIC_QUANTITIES
 
 __all__ = [
@@ -54,12 +56,13 @@ __all__ = [
     "OUTPUT_QUANTITIES",
     "PEAKS",
     "PEAK_QUANTITIES",
+    "RADIAL",
     "SHARED_QUANTITIES",
     "SPACE",
     "SPACE_INPUTS",
-    "SPACE_LEG_QUANTITIES",
     "STATISTIC_QUANTITIES",
     "STATUS_QUANTITIES",
+    "TRIPOD",
     "Interface",
     "LegGroup",
     "Peak",
@@ -68,7 +71,9 @@ __all__ = [
     "flat_name",
     "groups_of",
     "interface_of",
+    "leg_quantities_in_space",
     "shown",
     "touchdown_groups",
     "whole_name",
+    "widest_interfaces",
 ]

@@ -11,6 +11,9 @@ from ..errors import LandingError
 LEGS = (1, 2, 3, 4)
 # of a landing in space
 LEAST_LEGS, MOST_LEGS = 3, 8
+# kinds of legs: main and auxiliary strut in a plane that keeps the footpad, or a main strut between
+# two auxiliary struts, whose footpad is free
+RADIAL, TRIPOD = "radial", "tripod"
 # quantities of a leg whose sign changes in its mirror image
 MIRRORED = ("footpad.z", "contact.force_z")
 

@@ -48,6 +48,7 @@ PEAKS_OF_A_LEG: tuple[tuple[str, tuple[Literal["min", "max"], ...]], ...] = (
     ("main_strut.stroke", ("max",)),
     ("main_strut.pressure_lower", ("max",)),
     ("auxiliary_strut.force", ("min", "max")),
+    ("auxiliary_strut_2.force", ("min", "max")),
     ("contact.force", ("max",)),
 )
 
@@ -63,6 +64,7 @@ def peaks_of(outputs: Sequence[Quantity], legs: Sequence[int]) -> tuple[Peak, ..
             _peak(by_name[f"leg[{leg}].{name}"], side)
             for leg in legs
             for name, sides in PEAKS_OF_A_LEG
+            if f"leg[{leg}].{name}" in by_name
             for side in sides
         ),
     )

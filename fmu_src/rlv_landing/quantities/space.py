@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from .inputs import INPUTS_BY_NAME
+from .legs import TRIPOD
 from .outputs import (
     BODY_QUANTITIES,
     ENERGY_QUANTITIES,
@@ -149,12 +150,31 @@ SPACE_LEG_QUANTITIES: tuple[Quantity, ...] = (
     ),
 )
 
+# of legs on three struts; the first auxiliary strut is on the side of e_t, the second on the other
+TRIPOD_LEG_QUANTITIES: tuple[Quantity, ...] = (
+    *LEG_QUANTITIES,
+    *(
+        replace(q, name=q.name.replace("auxiliary_strut.", "auxiliary_strut_2."))
+        for q in LEG_QUANTITIES
+        if q.name.startswith("auxiliary_strut.")
+    ),
+)
 
-def space_outputs(legs: int) -> tuple[Quantity, ...]:
-    """The outputs of a landing in space on so many legs."""
+
+def leg_quantities_in_space(kind: str) -> tuple[Quantity, ...]:
+    """The quantities of a leg of this kind in a landing in space."""
+    return TRIPOD_LEG_QUANTITIES if kind == TRIPOD else SPACE_LEG_QUANTITIES
+
+
+def space_outputs(legs: int, kind: str) -> tuple[Quantity, ...]:
+    """The outputs of a landing in space on so many legs of this kind."""
     return (
         *SPACE_BODY_QUANTITIES,
         *ENERGY_QUANTITIES,
         *SPACE_STATUS_QUANTITIES,
-        *(leg_quantity(leg, q) for leg in range(1, legs + 1) for q in SPACE_LEG_QUANTITIES),
+        *(
+            leg_quantity(leg, q)
+            for leg in range(1, legs + 1)
+            for q in leg_quantities_in_space(kind)
+        ),
     )

@@ -47,4 +47,5 @@ def interface_for(
 ) -> Interface:
     """The outputs of landings, on as many legs as one of them may have; else as `landed_modes`."""
     legs = [parameters.vehicle.legs, *(v for v in varied.get(LEGS, ()) if isinstance(v, float))]
-    return interface_of(min(modes), int(max(v for v in legs if v <= MOST_LEGS)))
+    most = int(max(v for v in legs if v <= MOST_LEGS))
+    return interface_of(min(modes), most, parameters.leg.kind)

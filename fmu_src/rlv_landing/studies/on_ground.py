@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..assembly import DeckMotion
 from ..history import History
 from ..parameters import Parameters
-from ..quantities import SPACE, azimuth, groups_of
+from ..quantities import SPACE, TRIPOD, azimuth, groups_of
 from ..touchdown import AT_REST, GroundMotion, leg_directions
 from ..validation.first_contact import first_contact
 
@@ -68,13 +68,16 @@ def joint_clearance(history: History) -> float:
     found = []
     for leg, (s, c) in leg_directions(p).items():
         strut = p.of_leg(leg).auxiliary_strut
-        joint = np.array([
-            strut.joint_radius * c - p.vehicle.cg_offset_x,
-            -strut.joint_depth,
-            strut.joint_radius * s - p.vehicle.cg_offset_z,
-        ])  # fmt: skip
-        place = body + np.tensordot(joint, turn, axes=(0, 1))
-        found.append(_least(history.time, normal @ _seen_from_ground(history, place, history.time)))
+        spread = strut.joint_spread
+        for t in (spread, -spread) if p.leg.kind == TRIPOD else (0.0,):
+            joint = np.array([
+                strut.joint_radius * c - t * s - p.vehicle.cg_offset_x,
+                -strut.joint_depth,
+                strut.joint_radius * s + t * c - p.vehicle.cg_offset_z,
+            ])  # fmt: skip
+            place = body + np.tensordot(joint, turn, axes=(0, 1))
+            height = normal @ _seen_from_ground(history, place, history.time)
+            found.append(_least(history.time, height))
     return min(found)
 
 

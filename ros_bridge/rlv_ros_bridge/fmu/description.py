@@ -17,6 +17,7 @@ from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters, parameters_
 from rlv_landing.quantities import (
     LEGS,
     MODES,
+    RADIAL,
     SPACE,
     STATISTIC_QUANTITIES,
     Interface,
@@ -143,7 +144,10 @@ def interface_in(description: Any) -> Interface:
     names = {v.name for v in description.modelVariables}
     if OF_SPACE not in names and flat_name(OF_SPACE) not in names:
         return interface_of(min(MODES))
-    return interface_of(SPACE, int(start_values(description).get("vehicle.legs", len(LEGS))))
+    values = start_values(description)
+    return interface_of(
+        SPACE, int(values.get("vehicle.legs", len(LEGS))), str(values.get("leg.kind", RADIAL))
+    )
 
 
 def names_of(interface: Interface) -> tuple[str, ...]:

@@ -11,7 +11,6 @@ import numpy as np
 from rlv_landing.effort import check_duration
 from rlv_landing.history import History
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import interface_of
 from rlv_landing.sampling import sample_count
 
 from .input_table import Setting, in_steps, sloped
@@ -49,7 +48,7 @@ def land_fmu(
     Raises:
         LandingError: A time is out of bounds, or the FMU does not load, or refuses with its reason.
     """
-    names = interface_of(parameters.drop.mode, int(parameters.vehicle.legs)).output_names
+    names = parameters.interface.output_names
     count = sample_count(0.0, until, every, len(names), costs=(0.0, SECONDS_PER_SAMPLE))
     times = [k * every for k in range(count)]
     rows = np.empty((len(times), len(names)))

@@ -7,10 +7,10 @@ from math import nan
 
 from rlv_landing.history import History
 from rlv_landing.outputs import Extreme
-from rlv_landing.quantities import MOST_LEGS, SPACE, interface_of
+from rlv_landing.quantities import widest_interfaces
 
-# the outputs that an FMU gives peaks of, with the most legs
-OUTPUTS = tuple(dict.fromkeys(p.output for p in interface_of(SPACE, MOST_LEGS).peaks))
+# the outputs that an FMU may give peaks of
+OUTPUTS = tuple(dict.fromkeys(p.output for i in widest_interfaces() for p in i.peaks))
 # value [SI] and time [s]
 Found = tuple[float, float]
 

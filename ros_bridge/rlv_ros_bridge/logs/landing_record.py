@@ -18,7 +18,7 @@ from rlv_landing.core import Phase
 from rlv_landing.errors import LandingError
 from rlv_landing.history import History
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import LEGS, interface_of
+from rlv_landing.quantities import LEGS
 from rlv_landing.summary import OUTCOMES, summarise
 from rlv_landing.validation.first_stroke import State
 from rlv_landing.validation.paper import reading_of
@@ -84,7 +84,7 @@ class LandingRows:
 
     def __init__(self, parameters: Parameters) -> None:
         self._parameters = parameters
-        interface = interface_of(parameters.drop.mode, int(parameters.vehicle.legs))
+        interface = parameters.interface
         self._columns = (
             *(f"leg[{leg}].{name}" for leg in interface.legs for name in OF_A_LEG),
             "body.top_axial_acceleration",

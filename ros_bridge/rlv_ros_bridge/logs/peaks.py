@@ -13,16 +13,17 @@ from math import isfinite
 
 from rlv_landing import Landing
 from rlv_landing.errors import LandingError
-from rlv_landing.quantities import MOST_LEGS, SPACE, interface_of
+from rlv_landing.quantities import widest_interfaces
 
 from ..fmu.peaks import Found
 
 RECORD = "rlv_landing_peaks"
 UNTIL = "until"
-# name of a peak's variable -> `OUTPUT.SIDE` and unit, of the most legs
+# name of a peak's variable -> `OUTPUT.SIDE` and unit, of any landing
 KNOWN = {
     p.value.name: (f"{p.output}.{p.side}", p.value.unit)
-    for p in interface_of(SPACE, MOST_LEGS).peaks
+    for interface in widest_interfaces()
+    for p in interface.peaks
 }
 
 

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from rlv_landing.errors import LandingError, reason_of, unknown
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import Interface, interface_of
+from rlv_landing.quantities import Interface
 
 from ..messages.fields import IN_A_PLANE
 from ..messages.topics import STRUTS
@@ -248,7 +248,7 @@ class LogReader:
         own = self.parameters()
         if own is None:
             return IN_A_PLANE
-        return interface_of(own.drop.mode, int(own.vehicle.legs))
+        return own.interface
 
 
 class Definitions:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import LEGS, MODES, Interface, interface_of
+from rlv_landing.quantities import LEGS, MODES, RADIAL, Interface, interface_of
 
 from .axes import (
     about_pitch,
@@ -37,6 +37,7 @@ from .topics import (
     POSE,
     RPY,
     STRUTS,
+    STRUTS_OF,
     TOP_ACCEL,
     TOP_IMU,
     TWIST,
@@ -74,7 +75,7 @@ class Vehicle:
     def of(cls, parameters: Parameters, frame_prefix: str = "") -> Vehicle:
         """That of the model's `parameters`."""
         vehicle = parameters.vehicle
-        interface = interface_of(parameters.drop.mode, int(vehicle.legs))
+        interface = parameters.interface
         return cls(parameters.ground.gravity, vehicle.top_height, frame_prefix, interface)
 
 
@@ -108,10 +109,9 @@ class Field:
         return lambda *values: self.write(*values, *constants)
 
 
-def strut_outputs(quantity: str, legs: Sequence[int] = LEGS) -> tuple[str, ...]:
+def strut_outputs(quantity: str, legs: Sequence[int] = LEGS, kind: str = RADIAL) -> tuple[str, ...]:
     """The outputs that are the struts' `quantity`, in the order of `LegTopics.joints`."""
-    struts = ("main_strut", "auxiliary_strut")
-    return tuple(f"leg[{leg}].{strut}.{quantity}" for leg in legs for strut in struts)
+    return tuple(f"leg[{leg}].{strut}.{quantity}" for leg in legs for strut in STRUTS_OF[kind])
 
 
 def elements(path: str, count: int) -> tuple[str, ...]:
@@ -119,12 +119,15 @@ def elements(path: str, count: int) -> tuple[str, ...]:
     return tuple(f"{path}[{i}]" for i in range(count))
 
 
-def _struts(legs: Sequence[int]) -> tuple[Field, ...]:
-    count = 2 * len(legs)
-    return (
-        Field(STRUTS, elements("position", count), strut_outputs("stroke", legs)),
-        Field(STRUTS, elements("velocity", count), strut_outputs("stroke_rate", legs)),
-        Field(STRUTS, elements("effort", count), strut_outputs("force", legs)),
+def _struts(legs: Sequence[int], kind: str = RADIAL) -> tuple[Field, ...]:
+    count = len(STRUTS_OF[kind]) * len(legs)
+    return tuple(
+        Field(STRUTS, elements(what, count), strut_outputs(quantity, legs, kind))
+        for what, quantity in (
+            ("position", "stroke"),
+            ("velocity", "stroke_rate"),
+            ("effort", "force"),
+        )
     )
 
 
@@ -206,8 +209,8 @@ def _spatial_imu(
     )
 
 
-def in_space(legs: tuple[int, ...]) -> tuple[Field, ...]:
-    """The table of a landing in space on these `legs`.
+def in_space(legs: tuple[int, ...], kind: str = RADIAL) -> tuple[Field, ...]:
+    """The table of a landing in space on these `legs` of a kind.
 
     `rpy` has the landing's own angles, which need not be those that REP-103 makes of the attitude.
     The spin is read back from odometry, whose twist is in the body's frame, as the model has it.
@@ -215,7 +218,7 @@ def in_space(legs: tuple[int, ...]) -> tuple[Field, ...]:
     turned_pose, turned_odom = xyzw("pose.orientation"), xyzw("pose.pose.orientation")
     linear, angular = xyz("twist.twist.linear"), xyz("twist.twist.angular")
     return (
-        *_struts(legs),
+        *_struts(legs, kind),
         Field(POSE, xyz("pose.position"), PLACE, write=to_ros, read=from_ros),
         Field(POSE, turned_pose, QUATERNION, write=ros_quaternion, read=paper_quaternion),
         Field(RPY, xyz("vector"), ("body.roll", "body.pitch", "body.heading")),

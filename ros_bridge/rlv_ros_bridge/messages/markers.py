@@ -15,11 +15,10 @@ from visualization_msgs.msg import Marker, MarkerArray
 from rlv_landing.core.records import Vector
 from rlv_landing.core.vectors import rotation, to_inertial
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import interface_of
 
 from .axes import from_ros, to_ros
 from .fields import PLACE, QUATERNION
-from .robot_description import auxiliary_joint, axis_point, leg_points, main_joint
+from .robot_description import auxiliary_joints, axis_point, leg_points, main_joint
 from .samples import set_stamp, set_vector
 from .tables import table_of
 from .topics import WORLD_FRAME
@@ -38,21 +37,20 @@ class Wireframe:
     """The vehicle's lines and footpads, made once and moved with each sample."""
 
     def __init__(self, parameters: Parameters) -> None:
-        vehicle, main, auxiliary = (
-            parameters.vehicle,
-            parameters.main_strut,
-            parameters.auxiliary_strut,
-        )
-        depth = max(main.joint_depth, auxiliary.joint_depth)
+        vehicle = parameters.vehicle
+        depth = max(parameters.main_strut.joint_depth, parameters.auxiliary_strut.joint_depth)
+        joints = auxiliary_joints(parameters).values()
+        auxiliary = list(zip(*(leg_points(parameters, joint).values() for joint in joints)))
+        self._auxiliary_of_a_leg = len(joints)
         # The paper's axes, as the sample's: the body's ends, the struts' joints.
         own: list[tuple[float, float, float]] = [
             axis_point(parameters, -depth),
             axis_point(parameters, vehicle.top_height),
             *leg_points(parameters, main_joint).values(),
-            *leg_points(parameters, auxiliary_joint).values(),
+            *(joint for places in auxiliary for joint in places),
         ]
         self._own = [from_ros(*point) for point in own]
-        interface = interface_of(parameters.drop.mode, int(vehicle.legs))
+        interface = parameters.interface
         self._legs, self._in_space = len(interface.legs), interface.in_space
         table = table_of(interface)
         names = (*PLACE, *QUATERNION) if self._in_space else ("body.x", "body.y", "body.pitch")
@@ -83,8 +81,12 @@ class Wireframe:
         set_vector(
             marker.scale, (width, width, width) if kind == Marker.SPHERE_LIST else (width, 0.0, 0.0)
         )
-        of_legs = self._legs if kind == Marker.SPHERE_LIST else 2 * self._legs
-        count = 2 if name == "body" else of_legs
+        of_a_leg = {
+            "main_struts": 2,
+            "auxiliary_struts": 2 * self._auxiliary_of_a_leg,
+            "footpads": 1,
+        }
+        count = 2 if name == "body" else of_a_leg[name] * self._legs
         points = [Point() for _ in range(count)]
         marker.points = points
         self._points.append(points)
@@ -98,7 +100,8 @@ class Wireframe:
 
         Returns:
             x, y, z [m], ROS axes, one point after the other: the body's lower and upper end, the
-            main struts' joints, the auxiliary struts' joints, the footpads; each by leg.
+            main struts' joints, the auxiliary struts' joints, all of one leg side by side, the
+            footpads; each by leg.
         """
         found: list[float] = []
         if self._in_space:
@@ -128,16 +131,18 @@ class Wireframe:
     def _put(self, nanoseconds: int, numbers: Sequence[float]) -> MarkerArray:
         set_stamp(self._stamp, nanoseconds)
         points = list(zip(numbers[::3], numbers[1::3], numbers[2::3]))
-        legs = self._legs
+        legs, struts = self._legs, self._auxiliary_of_a_leg
         body, main, auxiliary, feet = self._points
         joints, footpads = points[len(body) :], points[-legs:]
         for point, end in zip(body, points):
             set_vector(point, end)
         for leg, foot in enumerate(footpads):
             set_vector(main[2 * leg], joints[leg])
-            set_vector(auxiliary[2 * leg], joints[legs + leg])
-            for point in (main[2 * leg + 1], auxiliary[2 * leg + 1], feet[leg]):
+            for point in (main[2 * leg + 1], feet[leg]):
                 set_vector(point, foot)
+        for k in range(struts * legs):
+            set_vector(auxiliary[2 * k], joints[legs + k])
+            set_vector(auxiliary[2 * k + 1], footpads[k // struts])
         return self.message
 
     def pack(self, nanoseconds: int, values: Sequence[float]) -> bytes:

@@ -8,11 +8,11 @@ from math import acos, atan2, dist
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from rlv_landing.parameters import Parameters, parameters_of
-from rlv_landing.quantities import STATISTIC_QUANTITIES, interface_of
+from rlv_landing.quantities import STATISTIC_QUANTITIES
 from rlv_landing.touchdown import footpad_at_rest, leg_directions
 
 from .axes import to_ros
-from .topics import BODY_FRAME, TOP_FRAME
+from .topics import BODY_FRAME, STRUTS_OF, TOP_FRAME
 
 Point = tuple[float, float, float]
 
@@ -24,10 +24,9 @@ ORIGIN: Point = (0.0, 0.0, 0.0)
 
 def variables(parameters: Parameters) -> str:
     """The variables of the FMU that lands `parameters`: name, causality, unit and meaning."""
-    mode = parameters.drop.mode
-    interface = interface_of(mode, int(parameters.vehicle.legs))
+    interface = parameters.interface
     groups = (
-        ("parameter", parameters_of(mode).values()),
+        ("parameter", parameters_of(parameters.drop.mode).values()),
         ("input", interface.inputs),
         ("output", interface.outputs),
         ("local", (*STATISTIC_QUANTITIES, *interface.peak_quantities)),
@@ -41,24 +40,36 @@ def variables(parameters: Parameters) -> str:
     )
 
 
-def main_joint(leg: Parameters) -> tuple[float, float]:
-    """Radius and height [m] of a main strut's joint on the body, of a leg's parameters."""
-    return leg.main_strut.joint_radius, -leg.main_strut.joint_depth
+def footpad(leg: Parameters) -> Point:
+    """Radius, height, and place across the leg's plane [m] of a footpad at rest."""
+    return (*footpad_at_rest(leg), 0.0)
 
 
-def auxiliary_joint(leg: Parameters) -> tuple[float, float]:
-    """Radius and height [m] of an auxiliary strut's joint on the body, of a leg's parameters."""
-    return leg.auxiliary_strut.joint_radius, -leg.auxiliary_strut.joint_depth
+def main_joint(leg: Parameters) -> Point:
+    """Radius, height and place across [m] of a main strut's joint on the body."""
+    return leg.main_strut.joint_radius, -leg.main_strut.joint_depth, 0.0
 
 
-def leg_points(
-    parameters: Parameters, point: Callable[[Parameters], tuple[float, float]]
-) -> dict[int, Point]:
+def auxiliary_joints(parameters: Parameters) -> dict[str, Callable[[Parameters], Point]]:
+    """Each auxiliary strut of a leg, and what gives its joint on the body as `main_joint`."""
+
+    def on(side: float) -> Callable[[Parameters], Point]:
+        def joint(leg: Parameters) -> Point:
+            a = leg.auxiliary_strut
+            return a.joint_radius, -a.joint_depth, side * a.joint_spread
+
+        return joint
+
+    _, *struts = STRUTS_OF[parameters.leg.kind]
+    return dict(zip(struts, (on(1.0), on(-1.0)) if len(struts) > 1 else (on(0.0),)))
+
+
+def leg_points(parameters: Parameters, point: Callable[[Parameters], Point]) -> dict[int, Point]:
     """A point of each leg in the body's frame, whose origin is the CG, by the leg's number.
 
     Args:
         parameters: the vehicle.
-        point: gives radius and height [m] of the point of a leg's parameters.
+        point: gives radius, height and place across [m] of the point of a leg's parameters.
 
     Returns:
         x forward, y left, z up [m] for each leg.
@@ -66,8 +77,9 @@ def leg_points(
     own = parameters.vehicle
     found = {}
     for leg, (sine, cosine) in leg_directions(parameters).items():
-        radius, height = point(parameters.of_leg(leg))
-        x, z = radius * cosine - own.cg_offset_x, radius * sine - own.cg_offset_z
+        radius, height, across = point(parameters.of_leg(leg))
+        x = radius * cosine - across * sine - own.cg_offset_x
+        z = radius * sine + across * cosine - own.cg_offset_z
         found[leg] = to_ros(x, height, z)
     return found
 
@@ -78,7 +90,7 @@ def axis_point(parameters: Parameters, height: float) -> Point:
 
 
 def robot_description(parameters: Parameters) -> str:
-    """The vehicle as URDF: body, top sensor, and two struts for each leg.
+    """The vehicle as URDF: body, top sensor, and the struts of each leg.
 
     Its root is `base_link`, at the CG. A strut is a prismatic joint of the name that it has in
     `struts`, at 0 fully extended (auxiliary: unloaded), positive in compression. Struts keep the
@@ -95,14 +107,15 @@ def robot_description(parameters: Parameters) -> str:
     SubElement(robot, "link", name=TOP_FRAME)
     mount = _joint(robot, f"{TOP_FRAME}_mount", "fixed", BODY_FRAME, TOP_FRAME)
     _origin(mount, (0.0, 0.0, top))
-    feet = leg_points(p, footpad_at_rest)
+    feet = leg_points(p, footpad)
     for leg, joint in leg_points(p, main_joint).items():
         travel = (0.0, p.of_leg(leg).main_strut.stroke_max)
         _strut(robot, f"leg_{leg}_main_strut", joint, feet[leg], MAIN_RADIUS, travel)
-    for leg, joint in leg_points(p, auxiliary_joint).items():
-        half = 0.5 * p.of_leg(leg).auxiliary_strut.length
-        name = f"leg_{leg}_auxiliary_strut"
-        _strut(robot, name, joint, feet[leg], AUXILIARY_RADIUS, (-half, half))
+    for strut, place in auxiliary_joints(p).items():
+        for leg, joint in leg_points(p, place).items():
+            half = 0.5 * p.of_leg(leg).auxiliary_strut.length
+            name = f"leg_{leg}_{strut}"
+            _strut(robot, name, joint, feet[leg], AUXILIARY_RADIUS, (-half, half))
     indent(robot)
     return '<?xml version="1.0"?>\n' + tostring(robot, encoding="unicode") + "\n"
 

@@ -67,8 +67,10 @@ class Table:
 @cache
 def table_of(interface: Interface) -> Table:
     """What the messages of a landing with this interface carry."""
-    topics = topics_of(interface.legs)
-    fields = in_space(interface.legs) if interface.in_space else FIELDS
+    topics = topics_of(interface.legs, interface.leg_kind)
+    fields = FIELDS
+    if interface.in_space:
+        fields = in_space(interface.legs, interface.leg_kind)
     joints = dict(zip(elements("name", len(topics.joints)), topics.joints))
     return Table(
         fields=fields,

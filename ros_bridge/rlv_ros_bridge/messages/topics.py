@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cache
 
 from rlv_landing.errors import LandingError
-from rlv_landing.quantities import LEGS
+from rlv_landing.quantities import LEGS, RADIAL, TRIPOD
 
 WORLD_FRAME = "map"
 # Of REP-105, in which the vehicle moves without jumps; here it is the map.
@@ -61,9 +61,16 @@ APPLIED: tuple[Topic, ...] = (APPLIED_WRENCH, APPLIED_GROUND)
 LATCHED: tuple[Topic, ...] = (ROBOT_DESCRIPTION, VARIABLES)
 
 
+# of each kind of leg
+STRUTS_OF: dict[str, tuple[str, ...]] = {
+    RADIAL: ("main_strut", "auxiliary_strut"),
+    TRIPOD: ("main_strut", "auxiliary_strut", "auxiliary_strut_2"),
+}
+
+
 @dataclass(frozen=True)
 class LegTopics:
-    """What depends on a vehicle's number of legs.
+    """What depends on a vehicle's legs.
 
     Attributes:
         footpad_frames: the frames at the footpads, with the axes of the map.
@@ -82,13 +89,16 @@ class LegTopics:
 
 
 @cache
-def topics_of(legs: tuple[int, ...]) -> LegTopics:
-    """What depends on the `legs`, given by their numbers."""
+def topics_of(legs: tuple[int, ...], kind: str = RADIAL) -> LegTopics:
+    """What depends on the `legs`, given by their numbers, and their kind.
+
+    The kind has its own struts; the topics are the same.
+    """
     contacts = tuple(Topic(f"leg_{leg}/contact", "geometry_msgs/msg/WrenchStamped") for leg in legs)
     sampled = (STRUTS, POSE, RPY, TWIST, ACCEL, TOP_ACCEL, *contacts, ODOM, IMU, TOP_IMU)
     return LegTopics(
         footpad_frames=tuple(f"leg_{leg}_footpad" for leg in legs),
-        joints=tuple(f"leg_{leg}_{s}" for leg in legs for s in ("main_strut", "auxiliary_strut")),
+        joints=tuple(f"leg_{leg}_{strut}" for leg in legs for strut in STRUTS_OF[kind]),
         contacts=contacts,
         sampled=sampled,
         recorded=(*sampled, *OCCASIONAL, *APPLIED, ROBOT_DESCRIPTION),

@@ -12,7 +12,6 @@ from math import cos, sin
 from xml.etree import ElementTree
 
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import interface_of
 
 from .axes import IN_PLANE, pitch_quaternion, ros_quaternion, to_ros
 from .fields import PLACE, QUATERNION, strut_outputs
@@ -51,13 +50,13 @@ class Transforms:
 
     def __init__(self, parameters: Parameters, frame_prefix: str = "") -> None:
         joints = list(ElementTree.fromstring(robot_description(parameters)).iter("joint"))
-        interface = interface_of(parameters.drop.mode, int(parameters.vehicle.legs))
+        interface = parameters.interface
         table, legs = table_of(interface), interface.legs
         names, pads = table.topics.joints, table.topics.footpad_frames
         self._in_space = interface.in_space
         own = (*PLACE, *QUATERNION) if self._in_space else ("body.x", "body.y", "body.pitch")
         self._body = table.indices(*own)
-        self._strokes = table.indices(*strut_outputs("stroke", legs))
+        self._strokes = table.indices(*strut_outputs("stroke", legs, interface.leg_kind))
         self._lengths = [
             _vector(j, "xyz")[2] for name in names for j in joints if j.get("name") == name
         ]

@@ -18,7 +18,6 @@ from sensor_msgs.msg import JointState
 from rlv_landing.audit.transverse import joint_warning
 from rlv_landing.errors import LandingError, first_of
 from rlv_landing.parameters import parameters_of
-from rlv_landing.quantities import interface_of
 
 from ..messages import topics
 from ..messages.inputs import input_table_of
@@ -82,7 +81,7 @@ class LandingNode(LifecycleNode):
         self._last_warning: dict[str, float] = {}
         qos = PROFILES[self.values["qos"]]
         own = self.values.parameters
-        interface = interface_of(own.drop.mode, int(own.vehicle.legs))
+        interface = own.interface
         self._publishing = create_publishing(self, qos, interface.legs, clock=self.values["clock"])
         inputs = input_table_of(interface)
         self._inputs = InputQueue(self.values["input_timeout"], self._warn, inputs)

@@ -22,7 +22,6 @@ from rlv_landing import Parameters
 from rlv_landing.choices import choose_parameters
 from rlv_landing.errors import LandingError, unknown
 from rlv_landing.parameters import PARAMETER_QUANTITIES, parameters_of
-from rlv_landing.quantities import interface_of
 from rlv_landing.text.listed import parse_parameter
 
 from ..fmu.description import own_vehicle
@@ -43,7 +42,7 @@ QOS_OVERRIDES = "qos_overrides."
 # The setting `mode` stands for this quantity: it also chooses the values that depend on the mode.
 MODE = "drop.mode"
 # with these the outputs change, and with them the topics
-AT_START = (MODE, "vehicle.legs")
+AT_START = (MODE, "vehicle.legs", "leg.kind")
 
 
 class NodeParameters:
@@ -89,7 +88,7 @@ class NodeParameters:
         }
         self.parameters, self._origin = _vehicle(self._values, changes)
         self._values["mode"] = self.parameters.drop.mode
-        legs = interface_of(self.parameters.drop.mode, int(self.parameters.vehicle.legs)).legs
+        legs = self.parameters.interface.legs
         own = settings_of(legs)
         for name in given:
             if name in SETTINGS and name not in own and name not in shared:

@@ -5,7 +5,7 @@ Needs rerun-sdk and ROS 2.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from rclpy.parameter_client import AsyncParameterClient
 
 from rlv_landing.errors import LandingError
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import LEAST_LEGS, MODES, MOST_LEGS, SPACE
+from rlv_landing.quantities import LEAST_LEGS, MODES, MOST_LEGS, RADIAL, SPACE, TRIPOD
 from rlv_landing.touchdown import leg_directions
 
 from ..messages.axes import to_ros
@@ -213,8 +213,8 @@ def stamp_of(header: Any) -> int:
     return int(header.stamp.sec) * NANOSECONDS + int(header.stamp.nanosec)
 
 
-def kind_of(markers: Any) -> tuple[str, int]:
-    """The mode of the landing of a vehicle in `markers`, and its number of legs.
+def kind_of(markers: Any) -> tuple[str, int, str]:
+    """The mode of the landing of a vehicle in `markers`, its number of legs, and their kind.
 
     A landing is symmetric if its main struts are joined to the body as in a landing mode: in its
     plane of symmetry or beside it, in their order. Any other is one in space.
@@ -223,15 +223,22 @@ def kind_of(markers: Any) -> tuple[str, int]:
         LandingError: the legs are more or fewer than a landing has.
     """
     across = [p.y for p in markers.markers[1].points[::2]]
+    if len(markers.markers[2].points) > len(markers.markers[1].points):
+        return SPACE, _checked_legs(across), TRIPOD
     radius = max(map(abs, across), default=0.0)
     for mode in MODES:
         sines = [sine for sine, _ in leg_directions(Parameters().for_mode(mode)).values()]
         reach = max(map(abs, sines))
         fits = len(across) == len(sines)
         if fits and np.allclose(across, [-s * radius / reach for s in sines], atol=1e-6):
-            return mode, len(sines)
+            return mode, len(sines), RADIAL
+    return SPACE, _checked_legs(across), RADIAL
+
+
+def _checked_legs(across: Sequence[float]) -> int:
+    """The number of legs, from something of each main strut."""
     if not LEAST_LEGS <= len(across) <= MOST_LEGS:
         raise LandingError(
             f"the markers have {len(across)} main struts; a landing has {LEAST_LEGS} to {MOST_LEGS}"
         )
-    return SPACE, len(across)
+    return len(across)

@@ -19,7 +19,7 @@ def landing_scene(history: History, parameters: Parameters) -> Scene:
         history: the landing.
         parameters: its vehicle and ground.
     """
-    scene = Scene(parameters.drop.mode, int(parameters.vehicle.legs))
+    scene = Scene(parameters.drop.mode, int(parameters.vehicle.legs), parameters.leg.kind)
     time = history.time
     parts = {
         part: in_view(lines)

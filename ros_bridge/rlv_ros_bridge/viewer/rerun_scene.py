@@ -20,10 +20,10 @@ from rlv_landing.core import SpatialInputs
 from rlv_landing.figures.ground.drawn import in_view
 from rlv_landing.figures.ground.shape import GroundShape
 from rlv_landing.figures.ground.turn import deck_matrix, deck_place
-from rlv_landing.figures.plots import DRAWN_OF_A_LEG, legs_together
+from rlv_landing.figures.plots import DRAWN_OF_A_LEG, SECOND_FORCE, legs_together
 from rlv_landing.figures.style import COLOURS, FORCE, GRID, INK, PAPER
 from rlv_landing.parameters import Parameters
-from rlv_landing.quantities import LEGS, SPACE, interface_of
+from rlv_landing.quantities import LEGS, RADIAL, SPACE, TRIPOD, interface_of
 from rlv_landing.text.durable import whole_file, writing
 
 Array = NDArray[np.float64]
@@ -55,8 +55,8 @@ class Curve(NamedTuple):
     colours: tuple[str, ...]
 
 
-def curves(mode: str, legs: Sequence[int] = LEGS) -> list[Curve]:
-    """The plots of a landing in `mode` on `legs`."""
+def curves(mode: str, legs: Sequence[int] = LEGS, kind: str = RADIAL) -> list[Curve]:
+    """The plots of a landing in `mode` on `legs` of a kind."""
     together = legs_together(mode, legs)
     names = {f"leg {'/'.join(map(str, group))}": group[0] for group in together}
 
@@ -71,6 +71,7 @@ def curves(mode: str, legs: Sequence[int] = LEGS) -> list[Curve]:
 
     return [
         *(strut(*drawn) for drawn in DRAWN_OF_A_LEG),
+        *([strut(*SECOND_FORCE)] if kind == TRIPOD else []),
         *(_body_in_space() if mode == SPACE else _body_in_a_plane()),
     ]
 
@@ -93,13 +94,13 @@ def _body_in_space() -> tuple[Curve, Curve]:
 
 
 class Scene:
-    """A recording of a landing in `mode` on so many `legs`.
+    """A recording of a landing in `mode` on so many `legs` of a `kind`.
 
     Lengths are in m, times in s, axes as in REP-103 (x forward, y left, z up).
     """
 
-    def __init__(self, mode: str, legs: int = len(LEGS)) -> None:
-        self.interface = interface_of(mode, legs)
+    def __init__(self, mode: str, legs: int = len(LEGS), kind: str = RADIAL) -> None:
+        self.interface = interface_of(mode, legs, kind)
         self.stream = rr.RecordingStream("rlv-landing")
         colours = {
             leg: rgb(colour)
@@ -117,7 +118,7 @@ class Scene:
             self._log(part, rr.LineStrips3D.from_fields(radii=RADII[part], colors=colour))
         self._log(FOOTPADS, rr.Points3D.from_fields(radii=RADII[FOOTPADS], colors=[rgb(INK)]))
         self._log(CONTACT, rr.Arrows3D.from_fields(radii=RADII[CONTACT], colors=[rgb(FORCE)]))
-        self._curves = curves(mode, self.interface.legs)
+        self._curves = curves(mode, self.interface.legs, kind)
         for curve in self._curves:
             self._log(
                 curve.entity,

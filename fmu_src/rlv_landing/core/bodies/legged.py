@@ -82,6 +82,7 @@ class Legged(System):
         rounding: How far rounding may put the balance off [J].
         mass: The whole vehicle's [kg].
         more_contact, more_friction: What contacts of the body itself hold as the legs' do [J].
+        more_auxiliary: What the legs' second auxiliary struts hold, where they have two [J].
     """
 
     groups: int
@@ -91,6 +92,7 @@ class Legged(System):
     mass: float
     more_contact: float
     more_friction: float
+    more_auxiliary: float
     _first_leg: int  # its place in the state
     _works: int  # their place in the state
     _energies: int  # their place in the outputs, behind the body's
@@ -120,6 +122,7 @@ class Legged(System):
         self.mass = 0.0
         self.more_contact = 0.0
         self.more_friction = 0.0
+        self.more_auxiliary = 0.0
         # so many states of others stand behind the legs'
         self._first_leg = self.controlled - LEG * groups - behind
         self._works = self.controlled + ACCOUNTS
@@ -279,7 +282,8 @@ class Legged(System):
         self, y: Doubles, kinetic: float, potential: float, out: Doubles, at: int
     ) -> None:
         """Write the energies to `out[at:]`, those of motion given [J], from what is kept."""
-        liquid = auxiliary = stop = 0.0
+        liquid = stop = 0.0
+        auxiliary = self.more_auxiliary
         contact = self.more_contact
         friction = self.more_friction
         for i in range(self.groups):

@@ -5,12 +5,13 @@ from __future__ import annotations
 from math import asin, atan2, fabs, inf, sqrt
 
 from ..access import (
+    ACROSS,
     ENERGY_OUTPUTS,
     LEG,
-    LEG_LOAD_OUTPUTS,
     LEG_OUTPUTS,
     SPATIAL_OUTPUTS,
     STATUS_OUTPUTS,
+    across_state,
     foot_loads_of,
     leg_model,
     leg_place,
@@ -25,7 +26,7 @@ from ..access import (
 from ..memory import Doubles
 from ..records import LegLoadOutputs, Rotation, SpatialOutputs, StatusOutputs, Vector
 from ..vectors import added, cross, dot, length_of, less, to_body
-from .spatial_legs import cg_of, foot_place
+from .spatial_legs import cg_of, foot_place, moved_across
 from .spatial_motion import SpatialMotion
 from .status import phase_of
 
@@ -56,6 +57,8 @@ class Spatial(SpatialMotion):
         self._off_ground = self._outside > 0
         self._keep_status(y)
         self._keep_point_energies(y)
+        if self._tripod:
+            self._keep_second_energies()
         kinetic = self._kinetic_energy(y, turn)
         self._put_body(y, dy, turn, out, at)
         at += SPATIAL_OUTPUTS
@@ -65,8 +68,11 @@ class Spatial(SpatialMotion):
         at += STATUS_OUTPUTS
         for i in range(self.groups):
             self._put_leg(i, y, out, at)
-            put(LegLoadOutputs(self._transverse[i]), out, at + LEG_OUTPUTS)
-            at += LEG_OUTPUTS + LEG_LOAD_OUTPUTS
+            if self._tripod:
+                self._put_second_strut(i, out, at + LEG_OUTPUTS)
+            else:
+                put(LegLoadOutputs(self._transverse[i]), out, at + LEG_OUTPUTS)
+            at += self._leg_row
 
     def _ground_is_still(self, u: Doubles) -> bool:
         now = spatial_inputs(u, 0)
@@ -86,6 +92,8 @@ class Spatial(SpatialMotion):
         for i in range(self.groups):
             leg = leg_state(shift, self._first_leg + LEG * i)
             way = max(way, fabs(leg.r), fabs(leg.h))
+            if self._tripod:
+                way = max(way, fabs(across_state(shift, self._first_across + ACROSS * i).t))
         return way
 
     def _put_body(self, y: Doubles, rates: Doubles, turn: Rotation, out: Doubles, at: int) -> None:
@@ -150,7 +158,11 @@ class Spatial(SpatialMotion):
         twice = p.m_u * dot(velocity, velocity) + dot(spin, turning)
         for i in range(self.groups):
             leg = leg_state(y, self._first_leg + LEG * i)
-            foot = foot_place(leg, leg_place(self._places, i), p)
+            place = leg_place(self._places, i)
+            foot = foot_place(leg, place, p)
+            if self._tripod:
+                across = across_state(y, self._first_across + ACROSS * i)
+                foot = moved_across(foot, across, place)
             moved = added(added(velocity, cross(spin, foot.from_cg)), foot.rate)
             twice += leg_model(self._legs, i).m_d * dot(moved, moved)
         return 0.5 * twice

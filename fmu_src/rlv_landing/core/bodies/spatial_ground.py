@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from math import inf
 
 from ..access import (
+    ACROSS,
     CONTACT_ACCOUNT,
     DECK_TURN,
     ENERGY_OUTPUTS,
@@ -19,6 +20,7 @@ from ..access import (
     LEG_OUTPUTS,
     POINT_STATE,
     ROTATION,
+    SECOND_STRUT_OUTPUTS,
     SPATIAL_INPUTS,
     SPATIAL_OUTPUTS,
     STATUS_OUTPUTS,
@@ -104,6 +106,10 @@ class SpatialGround(Legged):
     _point_forces: Records[GroundForce]
     _point_loads: Records[FootLoads]
     _first_point: int
+    # place in the state of what legs on three struts have across their planes
+    _first_across: int
+    # how many outputs a leg has
+    _leg_row: int
 
     def __init__(
         self,
@@ -115,14 +121,18 @@ class SpatialGround(Legged):
         met: tuple[Sequence[BodyPoint], LegModel, HeightField, Buffer],
     ) -> None:
         points, law, field, heights = met
-        leg_row = LEG_OUTPUTS + LEG_LOAD_OUTPUTS
+        more = SECOND_STRUT_OUTPUTS if body.tripod > 0.0 else LEG_LOAD_OUTPUTS
+        across = ACROSS * len(legs) if body.tripod > 0.0 else 0
+        leg_row = LEG_OUTPUTS + more
         row = SPATIAL_OUTPUTS + ENERGY_OUTPUTS + STATUS_OUTPUTS + leg_row * len(legs)
-        behind = POINT_STATE * len(points)
+        behind = across + POINT_STATE * len(points)
         super().__init__(legs, places, (scale, relative), SPATIAL_INPUTS, row, behind)
         self.mass += body.m_u
         self._energies = SPATIAL_OUTPUTS
         self.points = len(points)
-        self._first_point = self.controlled - behind
+        self._first_across = self.controlled - behind
+        self._first_point = self._first_across + across
+        self._leg_row = leg_row
         self.counted = self._first_point
         self._body = stored([body])
         self._turn = room(1, ROTATION)

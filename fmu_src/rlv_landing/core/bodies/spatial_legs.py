@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..records import (
+    AcrossState,
     FootPlace,
     LegForces,
     LegModel,
@@ -30,6 +31,11 @@ def about_across(place: LegPlace, point: Vector) -> Vector:
     return Vector(place.cos_g * point.y, -radial_part(place, point), place.sin_g * point.y)
 
 
+def along_across(place: LegPlace, t: float) -> Vector:
+    """The vector t across the leg's plane in body axes."""
+    return Vector(-t * place.sin_g, 0.0, t * place.cos_g)
+
+
 def in_leg(place: LegPlace, r: float, h: float) -> Vector:
     """The vector r, h of the leg's plane in body axes."""
     return Vector(r * place.cos_g, h, r * place.sin_g)
@@ -43,6 +49,14 @@ def cg_of(p: SpatialModel) -> Vector:
 def foot_place(leg: LegState, place: LegPlace, p: SpatialModel) -> FootPlace:
     """The footpad from the CG, and its rate."""
     return FootPlace(less(in_leg(place, leg.r, leg.h), cg_of(p)), in_leg(place, leg.vr, leg.vh))
+
+
+def moved_across(foot: FootPlace, across: AcrossState, place: LegPlace) -> FootPlace:
+    """A footpad that is free, from where it would be in its leg's plane."""
+    return FootPlace(
+        added(foot.from_cg, along_across(place, across.t)),
+        added(foot.rate, along_across(place, across.vt)),
+    )
 
 
 def joint_place(place: LegPlace, leg: LegModel, p: SpatialModel) -> Vector:

@@ -6,9 +6,10 @@ from array import array
 from collections.abc import Sequence
 
 from ..access import (
+    ACROSS,
     LEG,
     SPATIAL_ATTITUDE,
-    SPATIAL_LOADS,
+    across_state,
     deck_turn_of,
     foot_motion_of,
     keep,
@@ -34,7 +35,6 @@ from ..records import (
     LegPlace,
     SpatialAttitude,
     SpatialInputs,
-    SpatialLoads,
     SpatialModel,
     SpatialState,
     Vector,
@@ -52,7 +52,6 @@ from ..vectors import (
     to_inertial,
 )
 from .deck import deck_spin, deck_velocity, from_origin, motion_on_ground
-from .spatial_ground import SpatialGround
 from .spatial_legs import (
     about_across,
     cg_of,
@@ -60,10 +59,12 @@ from .spatial_legs import (
     foot_place,
     force_on_body,
     joint_place,
+    moved_across,
     spatial_leg_rates,
     spatial_loads,
     transverse_part,
 )
+from .tripod_motion import TripodMotion
 
 
 def gone_on(place: float, speed: float, acceleration: float, dt: float) -> float:
@@ -71,14 +72,14 @@ def gone_on(place: float, speed: float, acceleration: float, dt: float) -> float
     return place + (speed + 0.5 * acceleration * dt) * dt
 
 
-class SpatialMotion(SpatialGround):
+class SpatialMotion(TripodMotion):
     """One body in space on legs, and its ground: its state is a `SpatialState`.
 
     Each leg is a group of its own. The body's and the footpads' accelerations are found together,
-    since the force that keeps each footpad in its leg's plane contains both.
+    since the force that keeps each footpad in its leg's plane contains both. Legs on three struts
+    have no such force.
     """
 
-    _loads: Records[SpatialLoads]
     _attitude: Records[SpatialAttitude]
     _transverse: Buffer
     # inverse of the mass that an acceleration along the body's x, z moves [1/kg]
@@ -96,7 +97,6 @@ class SpatialMotion(SpatialGround):
         met: tuple[Sequence[BodyPoint], LegModel, HeightField, Buffer],
     ) -> None:
         super().__init__(body, legs, places, scale, relative, met)
-        self._loads = room(len(legs), SPATIAL_LOADS)
         self._attitude = room(1, SPATIAL_ATTITUDE)
         # the force that keeps each footpad in its leg's plane, along t [N]
         self._transverse = array("d", bytes(8 * len(legs)))
@@ -198,6 +198,8 @@ class SpatialMotion(SpatialGround):
             transverse += self._move(i, y, a, spin, spin_rate, dy)
         external = now.force_x * s.vx + now.force_y * s.vy + now.force_z * s.vz + dot(moment, spin)
         self._put_powers(external, transverse, dy)
+        if self._tripod:
+            self._add_second_powers(dy)
         self._put_point_rates(dy)
 
     def _load(self, i: int, y: Doubles, now: SpatialInputs, rolling: Vector) -> None:
@@ -210,20 +212,27 @@ class SpatialMotion(SpatialGround):
         model = leg_model(self._legs, i)
         spin = Vector(s.spin_x, s.spin_y, s.spin_z)
         foot = foot_place(leg, place, p)
+        if self._tripod:
+            across = across_state(y, self._first_across + ACROSS * i)
+            foot = moved_across(foot, across, place)
         moved = added(cross(spin, foot.from_cg), foot.rate)
         point = added(Vector(s.x, s.y, s.z), to_inertial(turn, foot.from_cg))
         above = from_origin(now, point)
         ground = deck_velocity(now, rolling, above)
         velocity = less(added(Vector(s.vx, s.vy, s.vz), to_inertial(turn, moved)), ground)
         axes = rotation_of(self._ground, 0)
+        steep = 1.0
         if self._has_field:
             steep = self._meet_field(above, velocity, model.step, self._motions, i)
             axes = rotation_of(self._local, 0)
-            motion = foot_motion_of(self._motions, i)
-            keep(leg_forces_on(leg, motion, steep, model), self._forces, i)
         else:
             keep(motion_on_ground(axes, above, velocity, model.step), self._motions, i)
-            motion = foot_motion_of(self._motions, i)
+        motion = foot_motion_of(self._motions, i)
+        if self._tripod:
+            self._keep_tripod_forces(i, y, steep)
+        elif self._has_field:
+            keep(leg_forces_on(leg, motion, steep, model), self._forces, i)
+        else:
             keep(leg_forces(leg, motion, model), self._forces, i)
         forces = leg_forces_of(self._forces, i)
         contact = to_inertial(axes, Vector(forces.f1, forces.normal, forces.f2))
@@ -244,6 +253,8 @@ class SpatialMotion(SpatialGround):
         force = to_body(turn, Vector(contact.x, contact.y - model.m_d * p.g, contact.z))
         bias = cross(spin, added(moved, foot.rate))
         keep(spatial_loads(force, bias, foot.from_cg, forces, place), self._loads, i)
+        if self._tripod:
+            self._add_across_loads(i)
 
     def _acceleration(self, spin: Vector, force: Vector, moment: Vector) -> SpatialAttitude:
         """The body's acceleration under the legs' loads, body axes.
@@ -260,6 +271,8 @@ class SpatialMotion(SpatialGround):
             force: All forces on the body but the legs' [N].
             moment: Their moment about the CG [N m].
         """
+        if self._tripod:
+            return self._tripod_acceleration(spin, force, moment)
         p = spatial_model(self._body, 0)
         # the inertia, by rows
         i_x = Vector(p.I_x, p.I_xy, p.I_xz)
@@ -333,6 +346,9 @@ class SpatialMotion(SpatialGround):
         loads = spatial_loads_of(self._loads, i)
         frame = foot_acceleration(loads, place, a, spin_rate)
         put(spatial_leg_rates(leg, leg_forces_of(self._forces, i), loads, frame, model.m_d), dy, at)
+        if self._tripod:
+            self._put_across_rates(i, y, frame, dy)
+            return 0.0
         force = model.m_d * frame.z - loads.tangential
         self._transverse[i] = force
         if p.at_joint > 0.0:

@@ -22,17 +22,19 @@ from .laws import (
     FrictionForce,
     GroundForce,
     NormalForce,
+    SpaceStrut,
     StrutForce,
     StrutMotion,
     StrutStatus,
 )
-from .legs import FootLoads, LegForces, LegStatus
+from .legs import AcrossForces, FootLoads, LegForces, LegStatus
 from .models import BodyModel, LegModel, LegPlace
 from .outputs import (
     BodyOutputs,
     EnergyOutputs,
     LegLoadOutputs,
     LegOutputs,
+    SecondStrutOutputs,
     SpatialOutputs,
     StatusOutputs,
 )
@@ -61,11 +63,13 @@ from .spatial import (
     TerrainPlace,
     Vector,
 )
-from .state import Accounts, BodyState, Fault, Inputs, LegState, Phase
+from .state import Accounts, AcrossState, BodyState, Fault, Inputs, LegState, Phase
 from .steps import Bend, Crest, PhiWeights, StiffPair
 
 __all__ = [
     "Accounts",
+    "AcrossForces",
+    "AcrossState",
     "Attitude",
     "AxialForce",
     "Bearing",
@@ -106,6 +110,8 @@ __all__ = [
     "PlanarLoads",
     "PointState",
     "Rotation",
+    "SecondStrutOutputs",
+    "SpaceStrut",
     "SpatialAttitude",
     "SpatialInputs",
     "SpatialLoads",

@@ -76,6 +76,16 @@ class StrutMotion(NamedTuple):
     e_h: float
 
 
+class SpaceStrut(NamedTuple):
+    """A strut between its joint on the body and a footpad that is free across the leg's plane."""
+
+    stroke: float  # [m] compression positive
+    rate: float  # [m/s]
+    e_r: float
+    e_h: float
+    e_t: float
+
+
 class FootMotion(NamedTuple):
     """A footpad against the ground, in the ground's axes."""
 

@@ -42,6 +42,25 @@ class LegForces(NamedTuple):
     mass_2: float
 
 
+class AcrossForces(NamedTuple):
+    """What a leg on three struts has beside its `LegForces`, the leg's axes.
+
+    Those have the main strut and the first auxiliary strut, with their parts in the leg's plane.
+    """
+
+    stroke: float  # second auxiliary strut [m]
+    rate: float  # [m/s]
+    force: float  # [N] compression positive
+    dissipated: float  # by it [W]
+    r: float  # its force on the footpad along r [N]
+    h: float  # along h [N]
+    t: float  # all struts' force on the footpad along t [N]
+    # of the struts on the body about the legs' axis at the CG's height [N m]
+    moment_r: float  # of all struts
+    moment_h: float  # of all struts
+    moment: float  # of the second auxiliary strut, as in LegForces
+
+
 class FootLoads(NamedTuple):
     """A footpad and the ground's force on it, both inertial."""
 

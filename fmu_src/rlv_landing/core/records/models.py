@@ -60,6 +60,7 @@ class LegModel(NamedTuple):
     Lc: float
     Ld: float
     Ls0: float
+    Lt: float  # joints of a tripod's auxiliary struts: distance from the leg's plane [m]
     Ka: float
     ek: float
     Ca: float

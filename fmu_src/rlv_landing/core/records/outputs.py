@@ -114,3 +114,11 @@ class LegLoadOutputs(NamedTuple):
     """The quantities of one leg that follow those of `LegOutputs` in a landing in space."""
 
     transverse_force: float
+
+
+class SecondStrutOutputs(NamedTuple):
+    """The quantities of a leg on three struts that follow those of `LegOutputs`."""
+
+    force: float
+    stroke: float
+    stroke_rate: float

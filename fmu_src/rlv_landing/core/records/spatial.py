@@ -64,6 +64,7 @@ class SpatialModel(NamedTuple):
     cg_z: float  # [m]
     H: float  # of the top sensor above the CG, on the legs' axis [m]
     at_joint: float  # see BodyModel
+    tripod: float  # 1: each leg has three struts, and its footpad is free; 0: it keeps in a plane
     g: float
     heading: float  # outputs give the heading within half a turn of it [rad]
     # the ground's axes 1, 2 and its normal n on a deck that is not turned

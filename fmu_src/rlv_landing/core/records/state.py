@@ -53,6 +53,13 @@ class LegState(NamedTuple):
     q2: float  # the friction law's displacement along 2 [m]
 
 
+class AcrossState(NamedTuple):
+    """A footpad across its leg's plane, where it is free. For derivatives, each per second."""
+
+    t: float  # [m]
+    vt: float  # [m/s]
+
+
 class Accounts(NamedTuple):
     """Energy accounts of all legs [J]: dissipated so far, six fields, and supplied so far, three.
 

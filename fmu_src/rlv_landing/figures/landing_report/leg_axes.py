@@ -76,11 +76,11 @@ class _InSpace:
         self.offset = in_leg(np.array([v.cg_offset_x, 0.0, v.cg_offset_z]), direction)
         self.foot = in_leg(foot - place, direction) + self.offset
         self.contact = in_leg(force, direction)
-        self._across = history[f"leg[{leg}].auxiliary_strut.transverse_force"]
+        self._history, self._leg = history, leg
 
     def across(self, along: list[Array], rates: list[Array]) -> Array:
         """The landing's own output."""
-        return self._across
+        return self._history[f"leg[{self._leg}].auxiliary_strut.transverse_force"]
 
 
 class _Symmetric:

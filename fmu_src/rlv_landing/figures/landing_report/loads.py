@@ -1,4 +1,4 @@
-"""Loads at the interfaces of a leg: both joints of the body, and the footpad on the ground.
+"""Loads at the interfaces of a leg: its joints on the body, and the footpad on the ground.
 
 They follow from a landing's outputs by Newton's law for the footpad. With what the body weighs they
 are the body's acceleration, which a test holds.
@@ -15,12 +15,14 @@ from numpy.typing import NDArray
 from ...errors import LandingError
 from ...history import History
 from ...parameters import Parameters
+from ...quantities import TRIPOD
 from .leg_axes import in_body, leg_axes
 
 Array = NDArray[np.float64]
 # components of a load, in this order [N, N.m]
 COMPONENTS = ("F radial", "F axial", "F tangential", "M radial", "M axial", "M tangential")
 MAIN, AUXILIARY, FOOTPAD = "main strut's body joint", "auxiliary strut's body joint", "footpad"
+SECOND = "second auxiliary strut's body joint"
 # where the ground strikes the body itself: the axes are those of a leg at azimuth 0
 STRIKE = "points of the body (radial, axial, tangential: body x, y, z; about the CG)"
 # loads below this part of the largest are rounding
@@ -63,12 +65,12 @@ class Peak(NamedTuple):
 
 
 def interface_loads(history: History) -> list[Interface]:
-    """The loads at the three interfaces of each leg, legs by number.
+    """The loads at the interfaces of each leg, legs by number: three, of a tripod four.
 
     The main strut pushes along itself. The auxiliary strut does so too, and it holds the footpad
     in the leg's plane, across itself. With `vehicle.transverse_load_at = footpad` that is a force
-    at the footpad, so at the joint a force and a moment. (derived: docs/model.md, body and
-    footpads; docs/space.md, what a leg does)
+    at the footpad, so at the joint a force and a moment. A tripod's struts push along themselves
+    alone. (derived: docs/model.md, body and footpads; docs/space.md, what a leg does)
 
     Raises:
         LandingError: The history does not know its parameters.
@@ -77,7 +79,8 @@ def interface_loads(history: History) -> list[Interface]:
     if p is None:
         raise LandingError("this history does not know its parameters, which its loads need")
     struck = [_strike(history)] if p.vehicle.body_points else []
-    return [*(found for leg in history.legs for found in _leg(history, p, leg)), *struck]
+    of_leg = _tripod if p.leg.kind == TRIPOD else _leg
+    return [*(found for leg in history.legs for found in of_leg(history, p, leg)), *struck]
 
 
 def peaks(interface: Interface, time: Array) -> list[Peak]:
@@ -97,6 +100,26 @@ def _strike(history: History) -> Interface:
     """The ground's loads on the points of the body, all together, about the CG."""
     force, moment = (in_body(history, f"body.strike_{kind}_") for kind in ("force", "moment"))
     return Interface(STRIKE, 0, np.zeros_like(force), np.concatenate([force, moment], axis=1))
+
+
+def _tripod(history: History, p: Parameters, leg: int) -> list[Interface]:
+    axes, own = leg_axes(history, p, leg), p.of_leg(leg)
+    m, a = own.main_strut, own.auxiliary_strut
+    joints = {
+        MAIN: ("main_strut", (m.joint_radius, -m.joint_depth, 0.0)),
+        AUXILIARY: ("auxiliary_strut", (a.joint_radius, -a.joint_depth, a.joint_spread)),
+        SECOND: ("auxiliary_strut_2", (a.joint_radius, -a.joint_depth, -a.joint_spread)),
+    }
+    found = []
+    for what, (strut, joint) in joints.items():
+        point = np.tile(joint, (len(history), 1))
+        reach = axes.foot - point
+        along = reach / np.linalg.norm(reach, axis=1)[:, None]
+        force = history[f"leg[{leg}].{strut}.force"][:, None] * along
+        load = np.concatenate([force, np.zeros_like(force)], axis=1)
+        found.append(Interface(what, leg, point - axes.offset, load))
+    ground = np.concatenate([axes.contact, np.zeros_like(axes.contact)], axis=1)
+    return [*found, Interface(FOOTPAD, leg, axes.foot - axes.offset, ground)]
 
 
 def _leg(history: History, p: Parameters, leg: int) -> list[Interface]:

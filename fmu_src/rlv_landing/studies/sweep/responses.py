@@ -13,13 +13,13 @@ from ...outputs import Extreme
 from ...quantities import (
     LEG_QUANTITIES,
     MODES,
-    MOST_LEGS,
     SPACE,
-    SPACE_LEG_QUANTITIES,
     Interface,
     Quantity,
     groups_of,
     interface_of,
+    leg_quantities_in_space,
+    widest_interfaces,
 )
 from ...validation.first_contact import first_contact
 from ...validation.measures import leg_work
@@ -128,7 +128,10 @@ IN_A_PLANE = interface_of(min(MODES))
 @cache
 def every_response() -> Mapping[str, Quantity]:
     """The responses of landings of any mode, on any legs, by name."""
-    return {**known_responses(interface_of(SPACE, MOST_LEGS)), **known_responses()}
+    found: dict[str, Quantity] = {}
+    for interface in reversed(widest_interfaces()):
+        found |= known_responses(interface)
+    return found
 
 
 @cache
@@ -152,7 +155,8 @@ def known_responses(interface: Interface = IN_A_PLANE) -> Mapping[str, Quantity]
             found[full] = replace(of_kind(q), meaning=f"{words} {q.meaning}", name=full)
             if name.endswith("time"):
                 found[full] = replace(found[full], unit="s", display_unit="")
-    for q in SPACE_LEG_QUANTITIES if interface.in_space else LEG_QUANTITIES:
+    in_space = leg_quantities_in_space(interface.leg_kind)
+    for q in in_space if interface.in_space else LEG_QUANTITIES:
         for name in OVER_LEGS:
             full = f"legs.{q.name}.{name}"
             meaning = f"{REDUCTIONS[name]} of all legs: {q.meaning}"
