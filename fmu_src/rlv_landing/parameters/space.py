@@ -8,6 +8,7 @@ from ..errors import LandingError
 from ..quantities import SPACE
 from .drop import Drop
 from .ground import Ground
+from .sea import Sea
 from .surroundings import check_azimuths
 from .vehicle import Vehicle
 
@@ -19,12 +20,13 @@ ONLY_IN_SPACE = {
     ),
     Drop: ("heading", "roll", "roll_rate", "yaw_rate", "lateral_velocity"),
     Ground: ("slope_direction", "step", "terrain"),
+    Sea: tuple(f.name for f in fields(Sea)),
 }
 # a symmetric landing may have them, and does not depend on them
 NO_EFFECT_IN_A_PLANE = ("vehicle.leg_azimuth", "vehicle.inertia_roll", "vehicle.inertia_yaw")
 
 
-def check_space(vehicle: Vehicle, drop: Drop, ground: Ground) -> None:
+def check_space(vehicle: Vehicle, drop: Drop, ground: Ground, sea: Sea) -> None:
     """Check what belongs together in a landing in space, and that no other landing has it.
 
     Raises:
@@ -37,7 +39,13 @@ def check_space(vehicle: Vehicle, drop: Drop, ground: Ground) -> None:
         check_azimuths(vehicle.leg_azimuths, int(vehicle.legs))
         _check_inertia(vehicle)
         return
-    for name, group in (("vehicle", vehicle), ("drop", drop), ("ground", ground)):
+    groups: dict[str, Vehicle | Drop | Ground | Sea] = {
+        "vehicle": vehicle,
+        "drop": drop,
+        "ground": ground,
+        "sea": sea,
+    }
+    for name, group in groups.items():
         defaults = {f.name: f.default for f in fields(group)}
         for what in ONLY_IN_SPACE[type(group)]:
             value, default = getattr(group, what), defaults[what]

@@ -69,6 +69,8 @@ class Spatial(SpatialMotion):
             at += LEG_OUTPUTS + LEG_LOAD_OUTPUTS
 
     def _ground_is_still(self, u: Doubles) -> bool:
+        if self.at_sea:
+            return False
         now = spatial_inputs(u, 0)
         return (
             now.surge_rate == 0.0

@@ -8,6 +8,7 @@ from math import inf
 
 from ..access import (
     CONTACT_ACCOUNT,
+    DECK_INPUTS,
     DECK_TURN,
     ENERGY_OUTPUTS,
     FOOT_LOADS,
@@ -69,6 +70,7 @@ from .deck import (
     steepness,
 )
 from .legged import Legged
+from .sea import Sea
 from .spatial_legs import cg_of
 
 
@@ -76,7 +78,7 @@ class SpatialGround(Legged):
     """A body in space above its ground, without its motion.
 
     It is made with its numbers, those of its legs, and `met`: the points of the body that meet the
-    ground, their contact law, the height field, and its heights [m].
+    ground, their contact law, the height field, its heights [m], and the sea that moves the deck.
 
     Attributes:
         points: How many points of the body meet the ground by themselves. Their contact law is
@@ -104,6 +106,7 @@ class SpatialGround(Legged):
     _point_forces: Records[GroundForce]
     _point_loads: Records[FootLoads]
     _first_point: int
+    _sea: Sea
 
     def __init__(
         self,
@@ -112,9 +115,9 @@ class SpatialGround(Legged):
         places: Sequence[LegPlace],
         scale: Buffer,
         relative: Buffer,
-        met: tuple[Sequence[BodyPoint], LegModel, HeightField, Buffer],
+        met: tuple[Sequence[BodyPoint], LegModel, HeightField, Buffer, Sea],
     ) -> None:
-        points, law, field, heights = met
+        points, law, field, heights, sea = met
         leg_row = LEG_OUTPUTS + LEG_LOAD_OUTPUTS
         row = SPATIAL_OUTPUTS + ENERGY_OUTPUTS + STATUS_OUTPUTS + leg_row * len(legs)
         behind = POINT_STATE * len(points)
@@ -142,12 +145,18 @@ class SpatialGround(Legged):
         self._point_motions = room(len(points), FOOT_MOTION)
         self._point_forces = room(len(points), GROUND_FORCE)
         self._point_loads = room(len(points), FOOT_LOADS)
+        self._sea = sea
+        self.at_sea = sea.count > 0
         if points and not friction_only_takes(leg_model(self._law, 0)):
             self.rising = FRICTION
 
     def is_off_ground(self, outputs: Doubles) -> bool:
         """Whether a contact was beyond the height field where `outputs` were read last."""
         return self._off_ground
+
+    def add_sea(self, t: float, now: Doubles) -> None:
+        """Add the deck's motion in the sea at time `t` [s] to its motion by the inputs `now`."""
+        self._sea.add_to(t, now, DECK_INPUTS)
 
     def _turn_ground(self, now: SpatialInputs) -> None:
         """Keep the deck's angles and the ground's axes, which most decks seldom change."""

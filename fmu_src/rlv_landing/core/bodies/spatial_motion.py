@@ -52,6 +52,7 @@ from ..vectors import (
     to_inertial,
 )
 from .deck import deck_spin, deck_velocity, from_origin, motion_on_ground
+from .sea import Sea
 from .spatial_ground import SpatialGround
 from .spatial_legs import (
     about_across,
@@ -93,7 +94,7 @@ class SpatialMotion(SpatialGround):
         places: Sequence[LegPlace],
         scale: Buffer,
         relative: Buffer,
-        met: tuple[Sequence[BodyPoint], LegModel, HeightField, Buffer],
+        met: tuple[Sequence[BodyPoint], LegModel, HeightField, Buffer, Sea],
     ) -> None:
         super().__init__(body, legs, places, scale, relative, met)
         self._loads = room(len(legs), SPATIAL_LOADS)
