@@ -198,11 +198,10 @@ class Landing:
         Those that were set may be on their ways.
         """
         found = self._inputs.places(self._time)
-        waves = waves_of(self.parameters)
-        if not waves.numbers:
+        motion = DeckMotion.at_sea(self.parameters)
+        if motion is None:
             return found
-        still = SpatialInputs(*[0.0] * len(self.interface.inputs))
-        deck = DeckMotion(still, still, waves).at(self._time)
+        deck = motion.at(self._time)
         return {name: at + getattr(deck, name.partition(".")[2]) for name, at in found.items()}
 
     def step(self, dt: float) -> None:

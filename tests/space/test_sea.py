@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from five_legs import five_legs
 from space_vehicles import SPACE, TURNING, vehicle
 
 from rlv_landing import Landing, LandingError, Parameters
@@ -20,7 +19,6 @@ from rlv_landing.parameters.sea import HIGHEST, LOWEST
 from rlv_landing.presets import parse_toml, to_toml
 from rlv_landing.studies.outcome import outcome
 from rlv_landing.studies.whole_landing import whole_landing
-from rlv_ros_bridge.fmu.runner import FmuRunner
 
 SEA: dict[str, Any] = {
     "sea.wave_height": 2.5,
@@ -253,18 +251,6 @@ def test_it_does_not_settle_or_stand_and_slides_by_what_it_slides_on_the_deck() 
     assert way.max() > 0.25
     calm = whole_landing(Landing(vehicle(values | {"sea.wave_height": 0.0}), rtol=1e-4), every=5e-3)
     assert found.margins["slid"] < outcome(calm).margins["slid"] + 0.05
-
-
-def test_the_fmu_lands_at_sea_as_landing_does(space_fmu: Path) -> None:
-    parameters = five_legs().with_values(SEA | {"drop.vertical_velocity": -2.5})
-    landing = Landing(parameters)
-    names = landing.interface.output_names
-    with FmuRunner(space_fmu, dict(parameters.items()), names) as runner:
-        for k in range(3):
-            assert runner.values() == pytest.approx(landing.values(), abs=0.0)
-            runner.step(k, 0.1)
-            landing.advance_to((k + 1) * 0.1)
-        assert dict(zip(runner.output_names, runner.values())) == landing.outputs()
 
 
 def test_a_file_names_a_table_and_all_digits_are_kept(tmp_path: Path) -> None:

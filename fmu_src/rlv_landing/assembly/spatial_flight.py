@@ -19,7 +19,7 @@ from ..errors import LandingError
 from ..parameters import Parameters
 from ..parameters.operators import FREEDOMS as NAMES
 from ..touchdown import DEPTH_LIMIT, STEEPEST, each_leg, footpad_at_rest
-from .sea import CALM, Waves
+from .sea import CALM, Waves, waves_of
 from .surroundings import body_points, height_field
 
 if TYPE_CHECKING:
@@ -55,6 +55,13 @@ class DeckMotion:
     ) -> None:
         self._made_of = (inputs, rates, waves, since)
         self._sea = waves.kernel() if waves.numbers else None
+
+    @classmethod
+    def at_sea(cls, parameters: Parameters, since: float = 0.0) -> DeckMotion | None:
+        """The motion in the parameters' sea without inputs; None where there is no sea."""
+        waves = waves_of(parameters)
+        still = SpatialInputs(*[0.0] * len(SpatialInputs._fields))
+        return cls(still, still, waves, since) if waves.numbers else None
 
     def __reduce__(self) -> tuple[type[DeckMotion], tuple[Any, ...]]:
         return type(self), self._made_of
