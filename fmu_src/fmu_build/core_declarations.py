@@ -18,8 +18,8 @@ RECORDS = "records"
 TRANSLATED = (RECORDS, "access", "memory")
 MATH = (
     "from cython cimport final\n"
-    "from libc.math cimport INFINITY as inf, acos, asin, atan2, cos, exp, expm1, fabs, log\n"
-    "from libc.math cimport pow, sin, sqrt, tanh\n"
+    "from libc.math cimport INFINITY as inf, acos, asin, atan2, cos, exp, expm1, fabs, floor\n"
+    "from libc.math cimport log, pow, sin, sqrt, tanh\n"
     "from libc.string cimport memcpy\n"
 )
 DATA = """

@@ -5,7 +5,8 @@ Positions of the ground change no output at once: it moves to a new one from the
 
 from __future__ import annotations
 
-from rlv_landing.quantities import SPACE_INPUTS
+from rlv_landing.parameters import parameters_of
+from rlv_landing.quantities import SPACE, SPACE_INPUTS
 
 LOADS = frozenset(q.name for q in SPACE_INPUTS if q.name.startswith("external."))
 GROUND = frozenset(q.name for q in SPACE_INPUTS if q.name.startswith("ground."))
@@ -35,9 +36,12 @@ VX = MOTION | {"drop.horizontal_velocity"}
 VY = MOTION | {"drop.vertical_velocity", "ground.gravity"}
 VZ = MOTION | {"drop.lateral_velocity"}
 FEET = frozenset({"vehicle.leg_azimuth", "vehicle.leg_azimuths"})
+# what moves the deck by itself
+SEA = frozenset(name for name in parameters_of(SPACE) if name.startswith("sea."))
 HEIGHT = (
     VY
     | FEET
+    | SEA
     | {
         *("ground.slope", "ground.slope_direction", "ground.step", "ground.terrain"),
         "vehicle.body_points",

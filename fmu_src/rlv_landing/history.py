@@ -48,7 +48,7 @@ class History:
         data: The columns, (n, names).
         parameters: The landing's parameters, where they are known.
         ground: Motion of the ground from the first of the times on, in space that of the deck; by
-            default it is at rest.
+            default that of the parameters' sea, else it is at rest.
         decks: Where the ground is at each sample, where it was moved in the course of the landing
             and that is known; else None.
         stamps: The times in whole nanoseconds, (n,), where a log has them; else None.
@@ -77,6 +77,8 @@ class History:
         self.names = tuple(names)
         self.data = data
         self.parameters = parameters
+        if parameters is not None and ground == AT_REST and len(time):
+            ground = DeckMotion.at_sea(parameters, float(time[0])) or ground
         self.ground = ground
         self.extremes = extremes
         self.decks: Sequence[SpatialInputs] | None = None

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from .assembly import DeckMotion, begin, ground_motion, landing_system
+from .assembly import DeckMotion, begin, ground_motion, landing_system, waves_of
 from .core import DormandPrince, Exponential, Inputs, Solver, SpatialInputs
 from .errors import LandingError, unknown
 from .events.search import EventSearch
@@ -184,7 +184,7 @@ class Landing:
             self._reader.forget()
 
     def inputs(self) -> dict[str, float]:
-        """The inputs that act at the present time, by name.
+        """The inputs at the present time, by name; a sea's motion of the deck is on top of them.
 
         Heave and tilt are the ground's present position, which is on its way to a new one that was
         set; their rates are those of its motion.
@@ -193,8 +193,16 @@ class Landing:
         return dict(zip(self.interface.input_names, view(self._solver.u_now)))
 
     def ground_places(self) -> dict[str, float]:
-        """The ground's positions by name as they are now, on their ways to those that were set."""
-        return self._inputs.places(self._time)
+        """The ground's positions by name as they are now, with the sea's motion of the deck.
+
+        Those that were set may be on their ways.
+        """
+        found = self._inputs.places(self._time)
+        motion = DeckMotion.at_sea(self.parameters)
+        if motion is None:
+            return found
+        deck = motion.at(self._time)
+        return {name: at + getattr(deck, name.partition(".")[2]) for name, at in found.items()}
 
     def step(self, dt: float) -> None:
         """Go on by `dt` [s].
@@ -388,9 +396,11 @@ class Landing:
         values, rates = self._inputs.setting(t)
         if self.parameters.drop.mode == SPACE:
             places = (*self.interface.positions, *self.interface.position_rates)
-            if not any(numbers[i] for numbers in (values, rates) for i in places):
+            waves = waves_of(self.parameters)
+            driven = any(numbers[i] for numbers in (values, rates) for i in places)
+            if not driven and not waves.numbers:
                 return AT_REST
-            return DeckMotion(SpatialInputs(*values), SpatialInputs(*rates))
+            return DeckMotion(SpatialInputs(*values), SpatialInputs(*rates), waves, t)
         return ground_motion(Inputs(*values), Inputs(*rates))
 
     def _record(

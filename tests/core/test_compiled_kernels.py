@@ -36,6 +36,7 @@ ENTRIES = {
     "outputs_at",
     "record",
     "record_some",
+    "places",
 }
 SETTING_UP = {"__init__"}
 KERNELS = kernels()

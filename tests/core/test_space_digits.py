@@ -9,7 +9,7 @@ import pytest
 from rlv_landing.core import COMPILED
 
 # five legs that differ, points of the body, a height field on a slope, the CG off the legs' axis, a
-# turned deck that moves in all directions; prints every bit
+# turned deck that moves in all directions, at sea, where a window ends; prints every bit
 LAND = """
 import sys
 from rlv_landing import Landing, core, load_preset
@@ -23,6 +23,7 @@ values = {
     "ground.terrain": "x -3 3 3 z -3 2 4 h 0 0.1 0 0.02 0 0.03 0 0 0.05 0.01 0 0",
     "leg[1].main_strut.kind": "spring-damper", "leg[2].ground.step": 0.01,
     "leg.kind": sys.argv[4],
+    "sea.wave_height": 2.0, "sea.direction": 1.0, "sea.time": 0.4149, "sea.deck_y": 8.0,
 }
 landing = Landing(load_preset("yue2022-figures").with_values(values), "space", 1e-3, sys.argv[3])
 landing.set_inputs(

@@ -93,11 +93,13 @@ def test_the_planar_fmu_does_not_repeat_it(recorded: Path, fmu: Path, command) -
 
 
 def log_with_inputs(folder: Path, decks: list[SpatialInputs], kind: str = "radial") -> LogReader:
-    """A log as the node writes it, of a landing on a deck and in gusts, in all directions.
+    """A log as the node writes it, of a landing on a ship and in gusts, in all directions.
 
     `decks` gets where the deck is at each sample; the legs are of a `kind`.
     """
-    parameters, random = five_legs().with_values({"leg.kind": kind}), Random(7)
+    sea = {"sea.wave_height": 1.0, "sea.direction": 1.0, "sea.seed": 4.0, "sea.time": 9.0}
+    parameters = five_legs().with_values({**sea, "leg.kind": kind})
+    random = Random(7)
     table, names = input_table_of(SPACE), topics_of(SPACE.legs)
     packer, landing = SampleBytes(Vehicle.of(parameters)), Landing(parameters)
     entries = [

@@ -16,6 +16,7 @@ from .planar import (
     planar_start,
     planar_system,
 )
+from .sea import waves_of
 from .spatial import spatial_system
 from .spatial_flight import DeckMotion
 from .start import begin, landing_system, new_solver
@@ -38,4 +39,5 @@ __all__ = [
     "spatial_system",
     "tangential_stiffness",
     "touchdown_energy",
+    "waves_of",
 ]

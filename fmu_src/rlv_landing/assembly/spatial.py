@@ -11,6 +11,7 @@ from ..parameters import Parameters
 from ..quantities import TRIPOD
 from ..touchdown import each_leg, leg_directions
 from .legs import AT_REST, IN_PLANE, NO_ENERGY, flat_state, leg_model, state_sizes
+from .sea import waves_of
 from .spatial_flight import DeckMotion, SpatialFlight
 from .surroundings import body_points, height_field
 
@@ -74,7 +75,7 @@ def spatial_system(parameters: Parameters, kind: type[Spatial] = Spatial) -> Spa
     else:
         legs = [leg_model(parameters)] * len(places)
     body, law = spatial_model(parameters), leg_model(parameters)
-    met = (points, law, *height_field(parameters))
+    met = (points, law, *height_field(parameters), waves_of(parameters).kernel())
     return kind(body, legs, places, scale, relative, met)
 
 
@@ -93,7 +94,7 @@ def spatial_start(
     Raises:
         LandingError: As `SpatialFlight.start`.
     """
-    deck = DeckMotion(SpatialInputs(*inputs), SpatialInputs(*rates))
+    deck = DeckMotion(SpatialInputs(*inputs), SpatialInputs(*rates), waves_of(parameters))
     flight = SpatialFlight(parameters, spatial_model(parameters), spatial_places(parameters), deck)
     legs = [
         LegState(r=radius, h=height, vr=0.0, vh=0.0, z1=charge, z2=charge, q1=0.0, q2=0.0)

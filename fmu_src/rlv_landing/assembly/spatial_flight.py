@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Sequence
 from math import ceil, cos, inf, sin, sqrt
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..core import LegPlace, SpatialInputs, SpatialModel, SpatialState
 from ..core.bodies.deck import deck_turn, from_origin, ground_axes
+from ..core.bodies.sea import FREEDOMS
 from ..core.bodies.spatial_legs import cg_of, in_leg
 from ..core.bodies.spatial_motion import gone_on
 from ..core.ground.terrain import terrain_place
@@ -15,9 +17,18 @@ from ..core.records import Rotation, TerrainPlace, Vector
 from ..core.vectors import added, cross, dot, less, rotation, scaled, solved, to_body, to_inertial
 from ..errors import LandingError
 from ..parameters import Parameters
+from ..parameters.operators import FREEDOMS as NAMES
 from ..touchdown import DEPTH_LIMIT, STEEPEST, each_leg, footpad_at_rest
+from .sea import CALM, Waves, waves_of
 from .surroundings import body_points, height_field
 
+if TYPE_CHECKING:
+    from numpy import float64
+    from numpy.typing import NDArray
+
+# numbers of the deck's motion, a place and a rate a freedom; the places among them
+MOTION = 2 * FREEDOMS
+MOVED = dict(zip(range(0, MOTION, 2), NAMES))
 # parts of the free flight's duration at which the footpads are checked to be above the ground
 CHECKS = 64
 # steps down to a height field, the shortest one [m], and how often the last is halved
@@ -29,16 +40,36 @@ Quaternion = tuple[float, float, float, float]
 Tensor = tuple[Vector, Vector, Vector]
 
 
-class DeckMotion(NamedTuple):
-    """The motion of the deck from some time on, at constant accelerations."""
+class DeckMotion:
+    """The motion of the deck from some time on: at constant accelerations, on top of the sea's.
 
-    inputs: SpatialInputs
-    rates: SpatialInputs
+    Args:
+        inputs: Its places and rates at that time, without the sea's.
+        rates: Rates of these.
+        waves: The sea.
+        since: That time [s], 0 at the start of the landing.
+    """
+
+    def __init__(
+        self, inputs: SpatialInputs, rates: SpatialInputs, waves: Waves = CALM, since: float = 0.0
+    ) -> None:
+        self._made_of = (inputs, rates, waves, since)
+        self._sea = waves.kernel() if waves.numbers else None
+
+    @classmethod
+    def at_sea(cls, parameters: Parameters, since: float = 0.0) -> DeckMotion | None:
+        """The motion in the parameters' sea without inputs; None where there is no sea."""
+        waves = waves_of(parameters)
+        still = SpatialInputs(*[0.0] * len(SpatialInputs._fields))
+        return cls(still, still, waves, since) if waves.numbers else None
+
+    def __reduce__(self) -> tuple[type[DeckMotion], tuple[Any, ...]]:
+        return type(self), self._made_of
 
     def at(self, t: float) -> SpatialInputs:
         """The deck's place `t` [s] later, as in the kernels."""
-        u, rate = self.inputs, self.rates
-        return u._replace(
+        u, rate, _, since = self._made_of
+        u = u._replace(
             surge=gone_on(u.surge, u.surge_rate, rate.surge_rate, t),
             heave=gone_on(u.heave, u.heave_rate, rate.heave_rate, t),
             sway=gone_on(u.sway, u.sway_rate, rate.sway_rate, t),
@@ -46,6 +77,26 @@ class DeckMotion(NamedTuple):
             yaw=gone_on(u.yaw, u.yaw_rate, rate.yaw_rate, t),
             tilt=gone_on(u.tilt, u.tilt_rate, rate.tilt_rate, t),
         )
+        if self._sea is None:
+            return u
+        now = array("d", bytes(8 * MOTION))
+        self._sea.places(array("d", [since + t]), 1, now)
+        return u._replace(**{name: getattr(u, name) + now[k] for k, name in MOVED.items()})
+
+    def places(self, times: NDArray[float64]) -> NDArray[float64]:
+        """The deck's places at `times` [s] later, (n,): (6, n), in the order of the inputs."""
+        import numpy as np
+
+        u, rate, _, since = self._made_of
+        found = np.empty((len(MOVED), len(times)))
+        for row, name in enumerate(MOVED.values()):
+            speed, change = getattr(u, f"{name}_rate"), getattr(rate, f"{name}_rate")
+            found[row] = getattr(u, name) + (speed + 0.5 * change * times) * times
+        if self._sea is not None:
+            rows = np.zeros((len(times), MOTION))
+            self._sea.places(np.ascontiguousarray(since + times), len(times), rows.reshape(-1))
+            found += rows[:, ::2].T
+        return found
 
 
 class Tumbling(NamedTuple):

@@ -75,6 +75,7 @@ if not TYPE_CHECKING and os.environ.get("RLV_LANDING_PURE") != "1":
                 Exponential,
                 Legged,
                 Planar,
+                Sea,
                 Solver,
                 Spatial,
                 System,
@@ -82,6 +83,7 @@ if not TYPE_CHECKING and os.environ.get("RLV_LANDING_PURE") != "1":
 if not COMPILED:
     from .bodies.legged import Legged
     from .bodies.planar import Planar
+    from .bodies.sea import Sea
     from .bodies.spatial import Spatial
     from .bodies.system import System
     from .solvers.dormand_prince import DormandPrince
@@ -111,6 +113,7 @@ __all__ = [
     "Phase",
     "Planar",
     "PointState",
+    "Sea",
     "Solver",
     "Spatial",
     "SpatialInputs",

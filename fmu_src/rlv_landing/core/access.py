@@ -97,6 +97,9 @@ AUXILIARY_ACCOUNT = Accounts._fields.index("auxiliary")
 CONTACT_ACCOUNT = Accounts._fields.index("contact")
 GROUND_ACCOUNT = Accounts._fields.index("ground")
 
+# where the inputs have the deck's places and rates
+DECK_INPUTS = SpatialInputs._fields.index("surge")
+
 # where a leg's state has what may be stiff in it
 Z1 = LegState._fields.index("z1")
 Z2 = LegState._fields.index("z2")

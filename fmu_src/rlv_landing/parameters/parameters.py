@@ -12,6 +12,7 @@ from .drop import Drop, Integration
 from .ground import Ground
 from .leg import Leg, check_triangle, check_tripod
 from .one_leg import LEG_NAME, OVERRIDES, split_leg, written_overrides
+from .sea import Sea, check_sea
 from .space import check_space
 from .table import FIELDS, GROUPS, PARAMETER_QUANTITIES, check_value, overrides_of
 from .vehicle import AuxiliaryStrut, MainStrut, Vehicle
@@ -30,6 +31,7 @@ class Parameters:
         main_strut: The main strut.
         auxiliary_strut: The auxiliary strut.
         ground: The ground and its contact.
+        sea: The sea below a deck.
         drop: The state at first contact.
         solver: What the integrator may spend.
         by_mode: Values that belong to one landing mode only: mode -> name -> value.
@@ -42,6 +44,7 @@ class Parameters:
     main_strut: MainStrut = field(default_factory=MainStrut)
     auxiliary_strut: AuxiliaryStrut = field(default_factory=AuxiliaryStrut)
     ground: Ground = field(default_factory=Ground)
+    sea: Sea = field(default_factory=Sea)
     drop: Drop = field(default_factory=Drop)
     solver: Integration = field(default_factory=Integration)
     by_mode: Mapping[str, Mapping[str, float | str]] = field(default_factory=dict)
@@ -236,7 +239,8 @@ class Parameters:
                 raise LandingError(f"leg[{leg}]: {e}") from None
 
     def _check_together(self) -> None:
-        check_space(self.vehicle, self.leg, self.drop, self.ground)
+        check_space(self.vehicle, self.leg, self.drop, self.ground, self.sea)
+        check_sea(self.sea)
         self._check_legs()
         m, a = self.main_strut, self.auxiliary_strut
         swept = m.area_lower * m.stroke_max

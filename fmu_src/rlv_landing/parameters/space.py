@@ -9,6 +9,7 @@ from ..quantities import SPACE
 from .drop import Drop
 from .ground import Ground
 from .leg import Leg
+from .sea import Sea
 from .surroundings import check_azimuths
 from .vehicle import Vehicle
 
@@ -21,6 +22,7 @@ ONLY_IN_SPACE = {
     Leg: ("kind",),
     Drop: ("heading", "roll", "roll_rate", "yaw_rate", "lateral_velocity"),
     Ground: ("slope_direction", "step", "terrain"),
+    Sea: tuple(f.name for f in fields(Sea)),
 }
 # a symmetric landing may have them, and does not depend on them
 NO_EFFECT_IN_A_PLANE = (
@@ -29,7 +31,7 @@ NO_EFFECT_IN_A_PLANE = (
 )
 
 
-def check_space(vehicle: Vehicle, leg: Leg, drop: Drop, ground: Ground) -> None:
+def check_space(vehicle: Vehicle, leg: Leg, drop: Drop, ground: Ground, sea: Sea) -> None:
     """Check what belongs together in a landing in space, and that no other landing has it.
 
     Raises:
@@ -42,11 +44,12 @@ def check_space(vehicle: Vehicle, leg: Leg, drop: Drop, ground: Ground) -> None:
         check_azimuths(vehicle.leg_azimuths, int(vehicle.legs))
         _check_inertia(vehicle)
         return
-    groups: dict[str, Vehicle | Leg | Drop | Ground] = {
+    groups: dict[str, Vehicle | Leg | Drop | Ground | Sea] = {
         "vehicle": vehicle,
         "leg": leg,
         "drop": drop,
         "ground": ground,
+        "sea": sea,
     }
     for name, group in groups.items():
         defaults = {f.name: f.default for f in fields(group)}

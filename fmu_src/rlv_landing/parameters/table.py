@@ -14,6 +14,8 @@ from .drop import Drop, Integration
 from .ground import Ground
 from .leg import Leg
 from .one_leg import OVERRIDES, read_overrides, split_leg, written_overrides
+from .operators import OPERATORS, canonical_operators
+from .sea import Sea
 from .space import NO_EFFECT_IN_A_PLANE, ONLY_IN_SPACE
 from .surroundings import (
     AZIMUTHS,
@@ -32,6 +34,7 @@ GROUPS: dict[str, type] = {
     "main_strut": MainStrut,
     "auxiliary_strut": AuxiliaryStrut,
     "ground": Ground,
+    "sea": Sea,
     "drop": Drop,
     "solver": Integration,
 }
@@ -186,4 +189,5 @@ FORMS: dict[str, Callable[[str], str]] = {
     POINTS: lambda text: written_points(read_points(text)),
     AZIMUTHS: lambda text: " ".join(map(repr, read_azimuths(text))),
     TERRAIN: canonical_terrain,
+    OPERATORS: canonical_operators,
 }

@@ -17,7 +17,7 @@ DEFAULT_PRESET = "yue2022-figures"
 # parameters that a complete file may leave out: they say nothing of a vehicle, or of one that has
 # nothing of the kind
 NOT_OF_A_VEHICLE = {
-    *(name for name in PARAMETER_QUANTITIES if name.startswith("solver.")),
+    *(name for name in PARAMETER_QUANTITIES if name.startswith(("solver.", "sea."))),
     *(name for name, q in PARAMETER_QUANTITIES.items() if q.kind == "string" and not q.choices),
     *("ground.step", "leg.kind", "auxiliary_strut.joint_spread"),
 }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import pi, sqrt
 
-from ..parameters import Parameters
+from ..parameters import PARAMETER_QUANTITIES, Parameters
 from .damper import AMBIENT, BULK_MODULUS, BULK_SLOPE, CHARGE, DENSITY, Damper, size_damper
 from .leg_geometry import LegGeometry, leg_geometry
 from .needs import Needs
@@ -26,6 +26,7 @@ def size_vehicle(needs: Needs) -> Parameters:
         **_auxiliary_strut(needs, leg),
         **_ground(needs),
         **_drop(needs),
+        **_sea(),
     }
     values = {name: value for name, (value, _) in rules.items()}
     sources = {name: source for name, (_, source) in rules.items()}
@@ -179,4 +180,12 @@ def _drop(needs: Needs) -> Rules:
             f"drop.{name}": (0.0, "closure: a symmetric landing")
             for name in ("heading", "roll", "roll_rate", "yaw_rate", "lateral_velocity")
         },
+    }
+
+
+def _sea() -> Rules:
+    return {
+        name: (q.default, "closure: no sea")
+        for name, q in PARAMETER_QUANTITIES.items()
+        if name.startswith("sea.")
     }

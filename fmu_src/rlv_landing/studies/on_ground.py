@@ -174,9 +174,8 @@ def _seen_from_ground(history: History, place: Array, time: Array) -> Array:
     """
     ground, t = history.ground, time - history.time[0]
     if isinstance(ground, DeckMotion):
-        deck = ground.at(t)
-        moved = place - np.stack(np.broadcast_arrays(deck.surge, deck.heave, deck.sway, t)[:3])
-        tilt, roll, yaw = np.broadcast_arrays(deck.tilt, deck.roll, deck.yaw, t)[:3]
+        surge, heave, sway, roll, yaw, tilt = ground.places(t)
+        moved = place - np.stack([surge, heave, sway])
         seen: Array = np.einsum("jin,jn->in", _deck_turn(tilt, roll, yaw), moved)
         return seen
     x, y, z = place

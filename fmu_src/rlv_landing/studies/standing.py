@@ -19,6 +19,8 @@ ENERGY_PART = 1e-3
 
 def may_stand(landing: Landing) -> bool:
     """Whether nothing but the ground at rest acts on the landing from now on."""
+    if landing.parameters.sea.wave_height > 0.0:
+        return False
     positions = {landing.interface.input_names[i] for i in landing.interface.positions}
     return not any(v for name, v in landing.inputs().items() if name not in positions)
 

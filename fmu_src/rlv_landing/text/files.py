@@ -31,6 +31,8 @@ LARGEST_TEXT = 4 * 1024**2
 LONGEST_LINE = 1024**2
 DEEPEST = 32
 LARGEST_INTEGER = 2**63
+# a text in quotes, on one line
+_QUOTED = re.compile(r'"(?:[^"\\\n]|\\.)*"|' + r"'[^'\n]*'")
 _TOO_LARGE = "a whole number of more than 64 bits; write it as 1e19"
 _BYTE_ORDER_MARKS = {
     codecs.BOM_UTF32_LE: "UTF-32",
@@ -167,8 +169,9 @@ def parse_document(text: str, name: str) -> dict[str, Any]:
         LandingError: The syntax is wrong, tables or lists are nested more than 32 deep, or a whole
             number has more than 64 bits.
     """
-    # the library takes a time that grows with the square of the parts of a key
-    plain = re.sub(r"\.{2,}", "", text)
+    # the library takes a time that grows with the square of the parts of a key; dots in a text,
+    # such as a list of numbers, divide none
+    plain = re.sub(r"\.{2,}", "", _QUOTED.sub("", text))
     if max(part.count(".") for part in re.split(r"[\n,=\[\]{}#]", plain)) > DEEPEST:
         raise LandingError(f"{name}: TOML syntax: a key has more than {DEEPEST} parts")
     try:

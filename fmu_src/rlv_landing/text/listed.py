@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LandingError
-from ..parameters import terrain_from_table
+from ..parameters import operators_from_table, terrain_from_table
+from ..parameters.operators import OPERATORS, is_operators
 from ..parameters.surroundings import AZIMUTHS, POINTS, TERRAIN, is_terrain, written_points
 from ..quantities import Quantity
 from .files import read_text
@@ -22,7 +23,7 @@ def parse_parameter(q: Quantity, value: Any, folder: Path | None = None) -> floa
     Args:
         q: The parameter.
         value: The number or text; the points of the body may be an array of arrays, the azimuths
-            an array, a height field the name of its file.
+            an array, a height field and response operators the name of their file.
         folder: The folder that a file's name starts from; None: the present one.
 
     Raises:
@@ -37,6 +38,11 @@ def parse_parameter(q: Quantity, value: Any, folder: Path | None = None) -> floa
         missing = f"there is no height field {path}; {TERRAIN} names a table of heights"
         table = read_text(path, "height field", missing)
         return parse_value(q, terrain_from_table(table, str(path)))
+    if q.name == OPERATORS and isinstance(value, str) and value.strip() and not is_operators(value):
+        path = (folder or Path()) / value.strip()
+        missing = f"there is no table {path}; {OPERATORS} names a table of response operators"
+        table = read_text(path, "table of response operators", missing)
+        return parse_value(q, operators_from_table(table, str(path)))
     return parse_value(q, value)
 
 

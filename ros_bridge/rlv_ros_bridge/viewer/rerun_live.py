@@ -10,10 +10,12 @@ from typing import Any
 
 import numpy as np
 from rclpy.node import Node
+from rclpy.parameter import Parameter as RosParameter
 from rclpy.parameter_client import AsyncParameterClient
 
+from rlv_landing.assembly import DeckMotion
 from rlv_landing.errors import LandingError
-from rlv_landing.parameters import Parameters
+from rlv_landing.parameters import PARAMETER_QUANTITIES, Parameters
 from rlv_landing.quantities import LEAST_LEGS, MODES, MOST_LEGS, RADIAL, SPACE, TRIPOD
 from rlv_landing.touchdown import leg_directions
 
@@ -35,12 +37,16 @@ WATCHED: tuple[Topic, ...] = (RPY, TWIST, *CONTACTS, STRUTS)
 # Reliable: what is sent before the viewer has found its sender comes all the same. Five seconds of
 # messages may wait. A viewer that takes none does not delay the landing.
 QOS = Qos(depth=5000)
+Kind = RosParameter.Type
 # Samples that lack a topic are dropped when a sample is newer by this [ns].
 LONGEST_GAP = 2_000_000_000
 # Period of drawing [s], and of checking for signals [s].
 DRAW_SECONDS, POLL_SECONDS = 0.05, 0.1
-# Parameters of the node that say how its ground lies.
-GROUND = ("ground.slope", "ground.slope_direction", "ground.terrain")
+# Parameters of the node that say how its ground lies, and moves at sea.
+GROUND = (
+    *("ground.slope", "ground.slope_direction", "ground.terrain", "drop.contact_time"),
+    *(name for name in PARAMETER_QUANTITIES if name.startswith("sea.")),
+)
 
 
 class LiveScenes:
@@ -64,6 +70,8 @@ class LiveScenes:
         self._rows: dict[int, dict[str, Any]] = {}
         self._markers: list[tuple[int, Any]] = []
         self._forces: dict[str, float] = {}
+        # the deck of a landing at sea
+        self._deck: DeckMotion | None = None
         for topic in (MARKERS, *WATCHED):
             callback = self._receive_markers if topic is MARKERS else self._row_callback(topic)
             node.create_subscription(
@@ -91,6 +99,7 @@ class LiveScenes:
             try:
                 self.scene = Scene(*kind_of(message))
                 self.scene.ground(Parameters())
+                self._deck = None
                 self._on_scene(self.scene)
             except LandingError as e:
                 self.failure = e
@@ -105,11 +114,22 @@ class LiveScenes:
 
             def draw_ground(answer: Any) -> None:
                 told = dict(zip(GROUND, answer.result().values))
-                # those that the node does not have are empty
-                values = {name: v.string_value or v.double_value for name, v in told.items()}
-                given = {name: value for name, value in values.items() if value}
-                own = {"drop.mode": SPACE} if scene.interface.in_space else {}
-                scene.ground(Parameters().with_values({**own, **given}))
+                # those that the node does not have are of no type
+                given = {
+                    name: v.string_value if v.type == Kind.STRING.value else v.double_value
+                    for name, v in told.items()
+                    if v.type in (Kind.STRING.value, Kind.DOUBLE.value)
+                }
+                # only landings in space have a sea; with four legs markers may not tell them
+                in_space = scene.interface.in_space or "sea.wave_height" in given
+                own = {"drop.mode": SPACE} if in_space else {}
+                try:
+                    parameters = Parameters().with_values({**own, **given})
+                    scene.ground(parameters)
+                    self._deck = DeckMotion.at_sea(parameters)
+                except LandingError as e:
+                    # rclpy's executor crashes where a callback of a future raises
+                    self.failure = e
 
             self._parameters.get_parameters(list(GROUND)).add_done_callback(draw_ground)
 
@@ -162,6 +182,8 @@ class LiveScenes:
         for entity, points in ((BODY, body), (MAIN, main), (AUXILIARY, auxiliary)):
             scene.lines(entity, time, (points.reshape(shape),))
         scene.footpads(time, feet)
+        if self._deck is not None:
+            scene.decks(time, [self._deck.at(float(t)) for t in time])
         rows = [complete.get(stamp, self._forces) for stamp, _ in self._markers]
         forces = [
             [

@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from rlv_landing.figures.ground.drawn import in_view
+from rlv_landing.figures.ground.shape import decks_of
 from rlv_landing.figures.wireframe import contact_forces, wireframe
 from rlv_landing.history import History
 from rlv_landing.parameters import Parameters
+from rlv_landing.touchdown import AT_REST
 
 from .rerun_scene import AUXILIARY, BODY, MAIN, Scene
 
@@ -30,8 +32,8 @@ def landing_scene(history: History, parameters: Parameters) -> Scene:
     scene.lines(AUXILIARY, time, (parts["auxiliary"],))
     feet = parts["feet"][:, :, 0]
     scene.ground(parameters, 1.0 + float(np.abs(feet[..., :2]).max()))
-    if history.decks is not None:
-        scene.decks(time, history.decks)
+    if history.decks is not None or history.ground != AT_REST:
+        scene.decks(time, decks_of(history, range(len(time))))
     scene.footpads(time, feet)
     scene.contacts(time, feet, in_view(contact_forces(history, parameters, np.arange(len(time)))))
     scene.curves(time, {name: history[name] for name in history.names})

@@ -27,6 +27,8 @@ TEXTS = {
     "ground.terrain": [
         terrain_of((-3.0, 3.0), (-3.0, 3.0), ((0.2, 0.2), (0.25, 0.2))),
     ],
+    # the deck follows the waves' surface
+    "sea.operators": ["frequencies 0 9 directions -3 3 operators " + ("1 0 " * 3 + "0 0 " * 3) * 4],
     "vehicle.leg_overrides": [
         "leg[2].main_strut.length = 1.44; leg[3].vehicle.footpad_mass = 6.0",
         "leg[1].ground.step = 0.001; leg[4].main_strut.charge_pressure = 1.5e6",
@@ -46,6 +48,13 @@ MOVED = FIVE_LEGS | {
     "drop.contact_time": 0.15,
     "main_strut.charge_pressure": 2e6,
     "auxiliary_strut.play_tension": 5e-3,
+    "sea.wave_height": 1.0,
+    "sea.direction": 0.7,
+    "sea.time": 12.0,
+    "sea.seed": 5.0,
+    "sea.deck_x": -3.0,
+    "sea.deck_y": 5.0,
+    "sea.deck_z": 2.0,
 }
 # the deck's place and way count in these through the rigid vehicle's attitude, all but not at all
 MORE_DECLARED = {"status.phase", "energy.potential", "body.y", "body.q_w", "contact.force_y"}

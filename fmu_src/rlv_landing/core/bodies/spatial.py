@@ -75,6 +75,8 @@ class Spatial(SpatialMotion):
             at += self._leg_row
 
     def _ground_is_still(self, u: Doubles) -> bool:
+        if self.at_sea:
+            return False
         now = spatial_inputs(u, 0)
         return (
             now.surge_rate == 0.0

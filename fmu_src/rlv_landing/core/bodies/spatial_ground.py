@@ -9,6 +9,7 @@ from math import inf
 from ..access import (
     ACROSS,
     CONTACT_ACCOUNT,
+    DECK_INPUTS,
     DECK_TURN,
     ENERGY_OUTPUTS,
     FOOT_LOADS,
@@ -71,6 +72,7 @@ from .deck import (
     steepness,
 )
 from .legged import Legged
+from .sea import Sea
 from .spatial_legs import cg_of
 
 
@@ -78,7 +80,7 @@ class SpatialGround(Legged):
     """A body in space above its ground, without its motion.
 
     It is made with its numbers, those of its legs, and `met`: the points of the body that meet the
-    ground, their contact law, the height field, and its heights [m].
+    ground, their contact law, the height field, its heights [m], and the sea that moves the deck.
 
     Attributes:
         points: How many points of the body meet the ground by themselves. Their contact law is
@@ -110,6 +112,7 @@ class SpatialGround(Legged):
     _first_across: int
     # how many outputs a leg has
     _leg_row: int
+    _sea: Sea
 
     def __init__(
         self,
@@ -118,9 +121,9 @@ class SpatialGround(Legged):
         places: Sequence[LegPlace],
         scale: Buffer,
         relative: Buffer,
-        met: tuple[Sequence[BodyPoint], LegModel, HeightField, Buffer],
+        met: tuple[Sequence[BodyPoint], LegModel, HeightField, Buffer, Sea],
     ) -> None:
-        points, law, field, heights = met
+        points, law, field, heights, sea = met
         more = SECOND_STRUT_OUTPUTS if body.tripod > 0.0 else LEG_LOAD_OUTPUTS
         across = ACROSS * len(legs) if body.tripod > 0.0 else 0
         leg_row = LEG_OUTPUTS + more
@@ -152,12 +155,18 @@ class SpatialGround(Legged):
         self._point_motions = room(len(points), FOOT_MOTION)
         self._point_forces = room(len(points), GROUND_FORCE)
         self._point_loads = room(len(points), FOOT_LOADS)
+        self._sea = sea
+        self.at_sea = sea.count > 0
         if points and not friction_only_takes(leg_model(self._law, 0)):
             self.rising = FRICTION
 
     def is_off_ground(self, outputs: Doubles) -> bool:
         """Whether a contact was beyond the height field where `outputs` were read last."""
         return self._off_ground
+
+    def add_sea(self, t: float, now: Doubles) -> None:
+        """Add the deck's motion in the sea at time `t` [s] to its motion by the inputs `now`."""
+        self._sea.add_to(t, now, DECK_INPUTS)
 
     def _turn_ground(self, now: SpatialInputs) -> None:
         """Keep the deck's angles and the ground's axes, which most decks seldom change."""

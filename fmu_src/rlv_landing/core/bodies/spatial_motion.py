@@ -52,6 +52,7 @@ from ..vectors import (
     to_inertial,
 )
 from .deck import deck_spin, deck_velocity, from_origin, motion_on_ground
+from .sea import Sea
 from .spatial_legs import (
     about_across,
     cg_of,
@@ -94,7 +95,7 @@ class SpatialMotion(TripodMotion):
         places: Sequence[LegPlace],
         scale: Buffer,
         relative: Buffer,
-        met: tuple[Sequence[BodyPoint], LegModel, HeightField, Buffer],
+        met: tuple[Sequence[BodyPoint], LegModel, HeightField, Buffer, Sea],
     ) -> None:
         super().__init__(body, legs, places, scale, relative, met)
         self._attitude = room(1, SPATIAL_ATTITUDE)

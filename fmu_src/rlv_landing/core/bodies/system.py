@@ -26,6 +26,7 @@ class System:
         row: How many outputs there are.
         stiff_pairs: How many pairs of states `stiff` tells of.
         rising: How many of the states that are carried along never fall; they come first of those.
+        at_sea: Whether the inputs change by themselves, too: see `add_sea`.
     """
 
     n: int
@@ -35,6 +36,7 @@ class System:
     row: int
     stiff_pairs: int
     rising: int
+    at_sea: bool
     scale: Buffer
     relative: Buffer
     _rates: Buffer
@@ -49,12 +51,16 @@ class System:
         self.row = row
         self.stiff_pairs = stiff_pairs
         self.rising = 0
+        self.at_sea = False
         self.scale = scale
         self.relative = relative
         self._rates = array("d", bytes(8 * self.n))
 
     def inputs_after(self, u: Doubles, rates: Doubles, dt: float, now: Doubles) -> None:
         """Write to `now` the inputs `dt` [s] after they were `u`, at their `rates` [unit/s]."""
+
+    def add_sea(self, t: float, now: Doubles) -> None:
+        """Add to the inputs `now` what they are by themselves at time `t` [s]."""
 
     def rhs(self, y: Doubles, u: Doubles, dy: Doubles) -> None:
         """Write dy/dt at the state `y` and the inputs `u` to `dy`."""

@@ -48,13 +48,19 @@ class Path:
         self.u_now = array("d", bytes(8 * system.inputs))
 
     def inputs_at(self, t: float) -> None:
-        """Write the inputs at time `t` [s] to `u_now`."""
-        self._inputs_at(t)
+        """Write the inputs at time `t` [s] to `u_now`, without what they are by themselves."""
+        self._given_at(t)
 
-    def _inputs_at(self, t: float) -> None:
+    def _given_at(self, t: float) -> None:
         self.system.inputs_after(
             data(self.u), data(self.u_rate), t - self.t_input, data(self.u_now)
         )
+
+    def _inputs_at(self, t: float) -> None:
+        """Write the inputs that act at time `t` [s] to `u_now`."""
+        self._given_at(t)
+        if self.system.at_sea:
+            self.system.add_sea(t, data(self.u_now))
 
     def interpolate(self, t: float, y: Buffer) -> None:
         """Write the state at time `t` [s], inside the last internal step, to `y` [n]."""
