@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from math import inf
 
 from ..access import (
+    BALANCE,
     CONTACT_ACCOUNT,
     DECK_TURN,
     ENERGY_OUTPUTS,
@@ -121,6 +122,7 @@ class SpatialGround(Legged):
         super().__init__(legs, places, (scale, relative), SPATIAL_INPUTS, row, behind)
         self.mass += body.m_u
         self._energies = SPATIAL_OUTPUTS
+        self.unsought = self._energies + BALANCE
         self.points = len(points)
         self._first_point = self.controlled - behind
         self.counted = self._first_point

@@ -26,6 +26,8 @@ class System:
         row: How many outputs there are.
         stiff_pairs: How many pairs of states `stiff` tells of.
         rising: How many of the states that are carried along never fall; they come first of those.
+        unsought: The output whose extremes are those at steps' ends, as it is the integration's own
+            error; -1 where all are sought inside steps, too.
     """
 
     n: int
@@ -35,6 +37,7 @@ class System:
     row: int
     stiff_pairs: int
     rising: int
+    unsought: int
     scale: Buffer
     relative: Buffer
     _rates: Buffer
@@ -49,6 +52,7 @@ class System:
         self.row = row
         self.stiff_pairs = stiff_pairs
         self.rising = 0
+        self.unsought = -1
         self.scale = scale
         self.relative = relative
         self._rates = array("d", bytes(8 * self.n))
