@@ -77,7 +77,7 @@ typedef struct {
     double rtol, t, t_old, t_input, h, error_old;
     double steps, rejected, rhs_calls;
     double start_energy, dissipated, balance, most_balance;
-    int cut; /* whether slopes of the interpolant written last were cut */
+    int cut; /* whether slopes of the interpolant written last were cut by more than next to nothing */
     double u[INPUTS], u_rate[INPUTS];
 #ifdef SPACE
     double turned[3], axes[3][3], turn[3][3], xx, xz, zz;
@@ -520,7 +520,8 @@ static void write_dense(Landing *s, double h)
             continue;
         double low = MIN(MAX(early, 0.0), 3.0 * change), high = MIN(MAX(late, 0.0), 3.0 * change);
         if (low != early || high != late) {
-            s->cut = 1;
+            if (fabs(low - early) + fabs(high - late) > 1e-8 * s->scale[i])
+                s->cut = 1;
             s->dense[2][i] = low - change;
             s->dense[3][i] = 2.0 * change - high - low;
         }

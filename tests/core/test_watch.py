@@ -143,6 +143,40 @@ def test_inputs_set_before_time_passes_are_those_of_the_start():
     assert found(solver, 0.0)[X] == (0.25, 0.0, 0.25, 0.0)
 
 
+class Counted(Swinging):
+    """`Swinging` with one output several times; it counts how often they are read."""
+
+    def __init__(self, copies, unsought):
+        super().__init__()
+        self.reads, self.copies, self.unsought = 0, copies, unsought
+
+    def read(self, y, u, dy, out, at):
+        self.reads += 1
+        values = [kinked(y[0])] * self.copies
+        out[at : at + 4] = array("d", [*values, *([0.0] * (4 - self.copies))])
+
+
+def counted(copies, unsought=-1):
+    solver = DormandPrince(Counted(copies, unsought), 1e-6)
+    solver.y[0] = -0.9
+    solver.start(0.0)
+    solver.advance(0.02)
+    return solver
+
+
+def test_outputs_that_turn_together_share_their_samples():
+    one, three = counted(1), counted(3)
+    assert one.system.reads > one.steps + 5
+    assert three.system.reads == one.system.reads
+    assert found(three, 0.02)[:3] == [found(one, 0.02)[0]] * 3
+
+
+def test_an_output_that_is_unsought_has_the_extremes_of_steps_ends():
+    sought, plain = counted(1), counted(1, unsought=0)
+    assert plain.system.reads < sought.system.reads
+    assert found(plain, 0.02)[0][2] < found(sought, 0.02)[0][2]
+
+
 gaps = st.floats(1e-6, 1e-2)
 values = st.floats(-1e4, 1e4)
 

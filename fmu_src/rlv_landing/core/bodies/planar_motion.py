@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from ..access import (
     ATTITUDE,
+    BALANCE,
     BODY,
     BODY_ACCELERATION,
     BODY_OUTPUTS,
@@ -78,6 +79,7 @@ class PlanarMotion(Legged):
         super().__init__(legs, places, (scale, relative), INPUTS, row, 0)
         self.mass += body.m_u
         self._energies = BODY_OUTPUTS
+        self.unsought = self._energies + BALANCE
         self._body = stored([body])
         self._loads = room(len(legs), PLANAR_LOADS)
         self._attitude = room(1, ATTITUDE)

@@ -8,6 +8,7 @@ from math import inf
 
 from ..access import (
     ACROSS,
+    BALANCE,
     CONTACT_ACCOUNT,
     DECK_INPUTS,
     DECK_TURN,
@@ -132,6 +133,7 @@ class SpatialGround(Legged):
         super().__init__(legs, places, (scale, relative), SPATIAL_INPUTS, row, behind)
         self.mass += body.m_u
         self._energies = SPATIAL_OUTPUTS
+        self.unsought = self._energies + BALANCE
         self.points = len(points)
         self._first_across = self.controlled - behind
         self._first_point = self._first_across + across

@@ -27,6 +27,8 @@ class System:
         stiff_pairs: How many pairs of states `stiff` tells of.
         rising: How many of the states that are carried along never fall; they come first of those.
         at_sea: Whether the inputs change by themselves, too: see `add_sea`.
+        unsought: The output whose extremes are those at steps' ends, as it is the integration's own
+            error; -1 where all are sought inside steps, too.
     """
 
     n: int
@@ -37,6 +39,7 @@ class System:
     stiff_pairs: int
     rising: int
     at_sea: bool
+    unsought: int
     scale: Buffer
     relative: Buffer
     _rates: Buffer
@@ -52,6 +55,7 @@ class System:
         self.stiff_pairs = stiff_pairs
         self.rising = 0
         self.at_sea = False
+        self.unsought = -1
         self.scale = scale
         self.relative = relative
         self._rates = array("d", bytes(8 * self.n))

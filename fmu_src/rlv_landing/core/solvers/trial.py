@@ -20,6 +20,9 @@ SHORTEST_JUDGED = 1e-10
 BULGE = 0.002
 # at looser tolerances the inside of every step is judged
 LOOSE = 1e-4
+# so small a cut of an interpolant's parts, in parts of its state's scale, is no reason to judge it:
+# the value inside changes by 4/27 of it at most, and a step may lose a thousand times as much
+UNSEEN = 1e-8
 # a cubic between two values rises throughout where its slopes at both are at most so many times
 # that of the straight line (Fritsch and Carlson, Monotone piecewise cubic interpolation, SIAM
 # Journal on Numerical Analysis 17, 1980)
@@ -37,7 +40,8 @@ class Trial(Rest):
     Attributes:
         rhs_calls: Calls of the right-hand side so far.
         ceiling: [n] how large the error of each state may be at any tolerance.
-        flattened: Whether the interpolant written last was changed to keep a state monotonic.
+        flattened: Whether the interpolant written last was changed by more than next to nothing to
+            keep a state monotonic.
     """
 
     rhs_calls: float
@@ -171,6 +175,7 @@ class Trial(Rest):
         """
         n = self.n
         d, k1, k_end = data(self.dense), data(self.k1), data(self.k_end)
+        scale = data(self.system.scale)
         first = self.system.controlled
         self.flattened = False
         for i in range(first, first + self.system.rising):
@@ -180,11 +185,13 @@ class Trial(Rest):
             early = h * k1[i]
             late = h * k_end[i]
             if early < 0.0 or early > most or late < 0.0 or late > most:
-                self.flattened = True
-                early = min(max(early, 0.0), most)
-                late = min(max(late, 0.0), most)
-                d[2 * n + j] = early - change
-                d[3 * n + j] = 2.0 * change - late - early
+                first_slope = min(max(early, 0.0), most)
+                last_slope = min(max(late, 0.0), most)
+                cut = fabs(first_slope - early) + fabs(last_slope - late) + fabs(d[4 * n + j])
+                if cut > UNSEEN * scale[i]:
+                    self.flattened = True
+                d[2 * n + j] = first_slope - change
+                d[3 * n + j] = 2.0 * change - last_slope - first_slope
                 d[4 * n + j] = 0.0
             elif d[4 * n + j] != 0.0:
                 middle = 0.5 * change + (early - late + d[4 * n + j]) / 6.0

@@ -22,8 +22,10 @@ from .turning_points import LEVEL, expected, mark_turns, narrowed, where_to_look
 REACH = 2.0
 # the accuracy of an extreme is a part of its size, or of this share of the output's range so far
 SHARE = 0.1
-# samples of the search for one extreme, at most
+# samples of the search for one extreme, at most, beside those taken for other outputs
 LOOKS = 20
+# how many samples of a search are kept for the other outputs that turn in the same place
+SHARED = 32
 
 
 class Watch(Path):
@@ -52,6 +54,9 @@ class Watch(Path):
     _half: Buffer
     _now: Buffer
     _look: Buffer
+    _samples: Buffer
+    _sampled: Buffer
+    _sample_count: int
     _turns: Buffer
     _y_look: Buffer
 
@@ -72,6 +77,9 @@ class Watch(Path):
         self._half = array("d", bytes(8 * row))
         self._now = array("d", bytes(8 * row))
         self._look = array("d", bytes(8 * row))
+        self._samples = array("d", bytes(8 * SHARED * row))
+        self._sampled = array("d", bytes(8 * SHARED))
+        self._sample_count = 0
         self._turns = array("d", bytes(8 * row))
         self._y_look = array("d", bytes(8 * system.n))
 
@@ -91,7 +99,7 @@ class Watch(Path):
         if t <= self.t_start:
             return
         self.t_span = t
-        self._row_at(t, data(self._now))
+        self._row_at(t, data(self._now), 0)
         self._begin(data(self._now), t, data(self.span))
 
     def extremes_of_span(self, t: float, found: Buffer) -> None:
@@ -109,11 +117,11 @@ class Watch(Path):
         """Keep the extremes from the start only."""
         self.t_span = inf
 
-    def _row_at(self, t: float, row: Doubles) -> None:
-        """Write the outputs at time `t` [s], inside one of the last two steps, to `row`."""
+    def _row_at(self, t: float, rows: Doubles, at: int) -> None:
+        """Write the outputs at time `t` [s], inside one of the last two steps, to `rows[at:]`."""
         y = data(self._y_look)
         self._interpolate_back(t, y)
-        self._outputs_at(t, y, row, 0)
+        self._outputs_at(t, y, rows, at)
 
     def _start_rows(self, y: Doubles, dy: Doubles) -> None:
         """Begin at time `t` at the state `y`, whose rates are `dy`, before the first step."""
@@ -162,8 +170,8 @@ class Watch(Path):
         half, now = data(self._half), data(self._now)
         if t > self.t_old:
             middle = 0.5 * (self.t_old + t)
-            self._row_at(middle, half)
-            self._row_at(t, now)
+            self._row_at(middle, half, 0)
+            self._row_at(t, now, 0)
             self._judge_middle(half, middle, found, since)
             self._judge(self.t_old, data(self.middle), middle, half, t, now, found, since)
             self._note_row(now, t, found, since)
@@ -202,6 +210,7 @@ class Watch(Path):
         if t1 <= t0 or t2 <= t1:
             self._note_row(middle, t1, found, since)
             return
+        self._sample_count = 0
         turns = data(self._turns)
         mark_turns(first, middle, following, LEVEL, turns, self.row)
         for i in range(self.row):
@@ -218,23 +227,38 @@ class Watch(Path):
         return v1 - reach < found[i]
 
     def _raise(self, i: int, sign: float, b: Bend, found: Doubles, since: float) -> None:
-        """Search the samples `b` of `sign` times the output `i` for a value beyond the extreme."""
+        """Search the samples `b` of `sign` times the output `i` for a value beyond the extreme.
+
+        The samples that other outputs have asked for are used first.
+        """
         at = (2 * self.row if sign > 0.0 else 0) + i
-        look = data(self._look)
         self._put_higher(at, sign, b.t1, b.v1, found)
+        if i == self.system.unsought:
+            return
         size = max(fabs(b.v1), SHARE * (found[2 * self.row + i] - found[i]))
         surprise = 0.0
-        for _ in range(LOOKS):
+        known = self._sample_count
+        for k in range(known + LOOKS):
             t = where_to_look(b, sign * found[at], size, surprise)
             if t < since:
                 return
-            self._row_at(t, look)
-            value = sign * look[i]
-            self._put_higher(at, sign, t, value, found)
-            if value == b.v1:
-                return
-            surprise = fabs(value - expected(b, t))
-            b = narrowed(b, t, value)
+            place = k if k < known else self._take_sample(t)
+            t = self._sampled[place]
+            if since <= t and b.t0 < t < b.t2 and t != b.t1:
+                value = sign * self._samples[place * self.row + i]
+                self._put_higher(at, sign, t, value, found)
+                if value == b.v1:
+                    return
+                surprise = fabs(value - expected(b, t))
+                b = narrowed(b, t, value)
+
+    def _take_sample(self, t: float) -> int:
+        """Read the outputs at time `t` [s] for all outputs that turn there; return their place."""
+        place = min(self._sample_count, SHARED - 1)
+        self._sample_count = place + 1
+        self._sampled[place] = t
+        self._row_at(t, data(self._samples), place * self.row)
+        return place
 
     def _put_higher(self, at: int, sign: float, t: float, value: float, found: Doubles) -> None:
         """Keep `value` at time `t` [s], `sign` times an output, if it is a new extreme.
