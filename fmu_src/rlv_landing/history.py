@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager
+from functools import cached_property, lru_cache
 from html import escape
 from importlib import import_module
 from pathlib import Path
@@ -108,8 +109,7 @@ class History:
     @cached_property
     def legs(self) -> tuple[int, ...]:
         """The numbers of the legs that have columns."""
-        found = {int(m.group(1)) for m in map(LEG_COLUMN.match, self.names) if m}
-        return tuple(sorted(found))
+        return _legs_of(self.names)
 
     def extreme(self, name: str) -> Extreme:
         """The extremes of a column and when it first has them.
@@ -128,8 +128,8 @@ class History:
             float(values[low]), float(self.time[low]), float(values[high]), float(self.time[high])
         )
 
-    def outputs_at(self, _times: Sequence[float]) -> list[Mapping[str, float]] | None:
-        """All outputs at these times [s], ascending; None where only the samples are known."""
+    def looks(self) -> AbstractContextManager[Callable[[float], Mapping[str, float]]] | None:
+        """All outputs at any time [s]; None where only the samples are known."""
         return None
 
     def until(self, samples: int, extremes: Mapping[str, Extreme] | None = None) -> History:
@@ -262,6 +262,12 @@ class History:
             f'<details open=""><summary>{len(self)} samples until {self.time[-1]:g} s</summary>'
             f"<table><tr>{head}</tr>{''.join(rows)}</table></details>"
         )
+
+
+@lru_cache(maxsize=64)
+def _legs_of(names: tuple[str, ...]) -> tuple[int, ...]:
+    found = {int(m.group(1)) for m in map(LEG_COLUMN.match, names) if m}
+    return tuple(sorted(found))
 
 
 def _decimals(nanoseconds: int) -> str:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .history import History
+    from .sampling import Samples
 
 DEFAULT_RTOL = 1e-5
 # the loosest that keeps peak forces and strokes to 1 %, which the FMU takes at most
@@ -35,6 +36,8 @@ METHODS: dict[str, type[Solver]] = {"exponential": Exponential, "dormand-prince"
 SLICE = 250
 # and the longest time between them [s]: a study looks between samples from the state at such a call
 SLICE_TIME = 0.05
+# and in the first SLICE_TIME of a landing: first contacts are looked for there
+FIRST_SLICE_TIME = 0.01
 
 
 class Landing:
@@ -358,7 +361,7 @@ class Landing:
         return history
 
     @contextmanager
-    def span(self) -> Iterator[Callable[[], dict[str, Extreme]]]:
+    def span(self) -> Iterator[Callable[[], Mapping[str, Extreme]]]:
         """Keep the extremes of all outputs from now on, beside those from the start.
 
         One span is kept at a time. It yields a function: the extremes from now to the present time
@@ -375,21 +378,37 @@ class Landing:
         self, until: float, every: float, progress: Callable[[float], object] | None = None
     ) -> History:
         """As `run`, without the extremes: `span` keeps those of several parts at once."""
+        return self.history([self.samples(until, every, progress)])
+
+    def samples(
+        self, until: float, every: float, progress: Callable[[float], object] | None = None
+    ) -> Samples:
+        """As `sampled`, before a history is made of it."""
         import numpy as np
 
-        from .history import History
-        from .sampling import sample_count
+        from .sampling import Samples, sample_count
 
         start, row = self._time, self._system.row
         # rows, the same turned, and columns are there at once
-        samples = sample_count(start, until, every, 2 * row + len(self.interface.outputs))
+        count = sample_count(start, until, every, 2 * row + len(self.interface.outputs))
         check_going(self._solver)
         ground = self._ground(start)
-        rows = np.empty((samples, row))
-        self._record(rows.reshape(-1), start, every, samples, progress)
-        time: NDArray[float64] = np.array([start + k * every for k in range(samples)])
+        rows = np.empty((count, row))
+        self._record(rows, start, every, progress)
+        time: NDArray[float64] = np.array([start + k * every for k in range(count)])
+        return Samples(time, rows, ground)
+
+    def history(self, parts: Sequence[Samples]) -> History:
+        """One history of `parts`, each of which begins with the last sample of that before."""
+        import numpy as np
+
+        from .history import History
+
+        first, *later = parts
+        time = np.concatenate([first.time, *(part.time[1:] for part in later)])
+        rows = np.concatenate([first.rows, *(part.rows[1:] for part in later)])
         data = self._reader.columns(rows)
-        return History(time, self.interface.output_names, data, self.parameters, ground)
+        return History(time, self.interface.output_names, data, self.parameters, first.ground)
 
     def _ground(self, t: float) -> GroundMotion | DeckMotion:
         """The motion of the ground from time `t` [s] on, as it was set."""
@@ -408,21 +427,23 @@ class Landing:
         rows: NDArray[float64],
         start: float,
         every: float,
-        samples: int,
         progress: Callable[[float], object] | None,
     ) -> None:
-        """Write the outputs at so many `samples` from `start` [s] on, `every` [s], to `rows`."""
-        most = max(1, min(SLICE, round(SLICE_TIME / every)))
+        """Write the outputs from `start` [s] on, `every` [s], to `rows`."""
+        samples, numbers = len(rows), rows.reshape(-1)
         reached = 0
         while reached < samples:
-            goal = min(reached + most, samples)
+            span = SLICE_TIME if self._time >= SLICE_TIME else FIRST_SLICE_TIME
+            most = max(1, min(SLICE, round(span / every)))
+            # the first sample is where the last slice before it ended
+            goal = min(reached + most + (not reached), samples)
             if self._inputs.pending:
                 goal = reached + 1
                 sample = start + reached * every
                 self._move_ground(sample, sample, to_event=False)
             time = start + (goal - 1) * every
             try:
-                record(self._solver, rows, start, every, reached, goal)
+                record(self._solver, numbers, start, every, reached, goal)
             except BaseException:
                 self._end_before(time)
                 raise

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from math import inf
 from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
@@ -57,27 +58,55 @@ class Extreme(NamedTuple):
     maximum_time: float
 
 
-def by_name(
-    found: Sequence[float], names: Sequence[str], order: Sequence[tuple[int, float]]
-) -> dict[str, Extreme]:
-    """The extremes by output.
+class Extremes(Mapping[str, Extreme]):
+    """The extremes by output, each made when it is asked for.
 
     Args:
         found: The four blocks that `Solver.extremes` writes: least values, their times, greatest
             values, their times.
-        names: The outputs' names.
-        order: For each output its place in a block and its factor, as `output_order` gives.
+        places: For each output its place in a block and its factor, as `output_order` gives.
     """
-    row = len(found) // 4
-    extremes = {}
-    for name, (i, factor) in zip(names, order):
-        low, low_time, high, high_time = (found[row * block + i] for block in range(4))
-        extremes[name] = (
-            Extreme(low, low_time, high, high_time)
-            if factor > 0.0
-            else Extreme(-high, high_time, -low, low_time)
-        )
-    return extremes
+
+    def __init__(self, found: Sequence[float], places: Mapping[str, tuple[int, float]]) -> None:
+        self._found = found
+        self._row = len(found) // 4
+        self._places = places
+
+    def __getitem__(self, name: str) -> Extreme:
+        i, factor = self._places[name]
+        low, low_time, high, high_time = self._found[i :: self._row]
+        if factor > 0.0:
+            return Extreme(low, low_time, high, high_time)
+        return Extreme(-high, high_time, -low, low_time)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._places)
+
+    def __len__(self) -> int:
+        return len(self._places)
+
+
+class Layout(NamedTuple):
+    """Where a solver's row has the outputs of an interface."""
+
+    order: Sequence[tuple[int, float]]  # as `output_order`
+    places: Mapping[str, tuple[int, float]]  # the same by name
+    pick: Callable[[Sequence[float]], tuple[float, ...]]
+    turned: Sequence[int]  # the outputs whose factor is -1
+    straight: bool  # the row begins with the outputs in their order
+
+
+@lru_cache(maxsize=64)
+def layout_of(mode: str, names: tuple[str, ...]) -> Layout:
+    """The layout of a solver's row for outputs of these names."""
+    order = output_order(mode, len(names))
+    return Layout(
+        order,
+        dict(zip(names, order)),
+        itemgetter(*(i for i, _ in order)),
+        [k for k, (_, factor) in enumerate(order) if factor < 0.0],
+        all(one == (k, 1.0) for k, one in enumerate(order)),
+    )
 
 
 class OutputReader:
@@ -93,13 +122,10 @@ class OutputReader:
 
     def __init__(self, solver: Solver, mode: str, names: Sequence[str]) -> None:
         self._solver = solver
-        self._names = names
         self._y = array("d", bytes(8 * solver.system.n))
         self._row = array("d", bytes(8 * solver.system.row))
         self._time = inf
-        self._order = output_order(mode, len(names))
-        self._pick = itemgetter(*(i for i, _ in self._order))
-        self._turned = [k for k, (_, factor) in enumerate(self._order) if factor < 0.0]
+        self._layout = layout_of(mode, tuple(names))
 
     def forget(self) -> None:
         """Compute the outputs anew when they are read next."""
@@ -111,8 +137,8 @@ class OutputReader:
             self._solver.interpolate(time, self._y)
             self._solver.outputs_at(time, self._y, self._row)
             self._time = time
-        values = list(self._pick(self._row))
-        for i in self._turned:
+        values = list(self._layout.pick(self._row))
+        for i in self._layout.turned:
             values[i] = -values[i]
         return values
 
@@ -125,16 +151,14 @@ class OutputReader:
         """
         found = self._blocks()
         self._solver.extremes(time, found)
-        if names is None:
-            return by_name(found, self._names, self._order)
-        places = [self._names.index(name) for name in names]
-        return by_name(found, names, [self._order[i] for i in places])
+        extremes = Extremes(found, self._layout.places)
+        return {name: extremes[name] for name in (extremes if names is None else names)}
 
-    def extremes_of_span(self, time: float) -> dict[str, Extreme]:
+    def extremes_of_span(self, time: float) -> Extremes:
         """The extremes from the time of `Solver.open_span` to `time` [s], by name."""
         found = self._blocks()
         self._solver.extremes_of_span(time, found)
-        return by_name(found, self._names, self._order)
+        return Extremes(found, self._layout.places)
 
     def _blocks(self) -> array[float]:
         return array("d", bytes(8 * 4 * len(self._row)))
@@ -146,6 +170,8 @@ class OutputReader:
         """
         import numpy as np
 
-        found = np.ascontiguousarray(rows.T)[[i for i, _ in self._order]]
-        found[self._turned] *= -1.0
+        if self._layout.straight:
+            return np.asfortranarray(rows[:, : len(self._layout.order)])
+        found = np.ascontiguousarray(rows.T)[[i for i, _ in self._layout.order]]
+        found[self._layout.turned] *= -1.0
         return found.T

@@ -3,10 +3,32 @@
 from __future__ import annotations
 
 from math import inf
+from typing import TYPE_CHECKING, NamedTuple
 
 from .effort import SECONDS_PER_SAMPLE, SECONDS_PER_SECOND, check_duration, check_memory
 from .errors import LandingError
 from .state import LATEST
+
+if TYPE_CHECKING:
+    from numpy import float64
+    from numpy.typing import NDArray
+
+    from .assembly import DeckMotion
+    from .touchdown import GroundMotion
+
+
+class Samples(NamedTuple):
+    """Samples of a landing as its solver writes them.
+
+    Attributes:
+        time: Their times [s], (n,).
+        rows: The kernel's outputs, (n, row); `outputs.output_order` tells what stands where.
+        ground: Motion of the ground from the first of the times on.
+    """
+
+    time: NDArray[float64]
+    rows: NDArray[float64]
+    ground: GroundMotion | DeckMotion
 
 
 def sample_count(

@@ -6,6 +6,7 @@ import itertools
 from array import array
 from collections.abc import Iterator, Sequence
 from math import hypot, isfinite
+from operator import attrgetter
 from typing import NamedTuple
 
 from .core import Fault, Solver, Spatial
@@ -56,6 +57,10 @@ class StateHeader(NamedTuple):
 # fields that the solver's system has by the same name, and those that the solver has
 OF_SYSTEM = ("energy_start", "most_balance")
 OF_SOLVER = tuple(name for name in StateHeader._fields if name not in ("time", *OF_SYSTEM))
+# reads all that the header has after the time from a solver
+AFTER_TIME = attrgetter(
+    *(f"system.{name}" if name in OF_SYSTEM else name for name in StateHeader._fields[1:])
+)
 WHOLE = ("fault", "dense_at", "seen", "still", "waited")
 
 
@@ -74,10 +79,7 @@ def state_of(solver: Solver, time: float, ways: Sequence[float]) -> array[float]
         time: The landing's time [s].
         ways: The numbers of `DrivenInputs.state`.
     """
-    kept = {name: float(getattr(solver, name)) for name in OF_SOLVER}
-    kept |= {name: float(getattr(solver.system, name)) for name in OF_SYSTEM}
-    header = StateHeader(time=time, **kept)
-    state = array("d", (*header, *ways))
+    state = array("d", (time, *AFTER_TIME(solver), *ways))
     for numbers in _arrays(solver):
         state.frombytes(numbers.tobytes())
     return state

@@ -65,6 +65,10 @@ def joint_clearance(history: History) -> float:
     body[2] = history["body.z"]
     turn = _turns(*(history[f"body.q_{k}"] for k in "wxyz"))
     normal = np.array(_normal(p))
+    height = normal @ _seen_from_ground(history, body, history.time)
+    # the normal in the body's axes
+    upward = _in_inertial_axes(history, normal)
+    upwards = (turn * (upward[:, None] if upward.ndim > 1 else upward[:, None, None])).sum(axis=0)
     found = []
     for leg, (s, c) in leg_directions(p).items():
         strut = p.of_leg(leg).auxiliary_strut
@@ -75,9 +79,7 @@ def joint_clearance(history: History) -> float:
                 -strut.joint_depth,
                 strut.joint_radius * s + t * c - p.vehicle.cg_offset_z,
             ])  # fmt: skip
-            place = body + np.tensordot(joint, turn, axes=(0, 1))
-            height = normal @ _seen_from_ground(history, place, history.time)
-            found.append(_least(history.time, height))
+            found.append(_least(history.time, height + joint @ upwards))
     return min(found)
 
 
@@ -189,6 +191,18 @@ def _seen_from_ground(history: History, place: Array, time: Array) -> Array:
         x * np.sin(slope) + y * np.cos(slope),
         z,
     ])  # fmt: skip
+
+
+def _in_inertial_axes(history: History, normal: Array) -> Array:
+    """A direction of the deck's axes, (3,), in inertial ones: (3,) at rest, else (3, n)."""
+    ground = history.ground
+    if not isinstance(ground, DeckMotion):
+        return normal
+    t = history.time - history.time[0]
+    deck = ground.at(t)
+    turn = _deck_turn(*np.broadcast_arrays(deck.tilt, deck.roll, deck.yaw, t)[:3])
+    found: Array = np.einsum("jin,i->jn", turn, normal)
+    return found
 
 
 def _deck_turn(tilt: Array, roll: Array, yaw: Array) -> Array:

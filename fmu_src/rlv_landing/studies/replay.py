@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from array import array
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 
 import numpy as np
@@ -22,7 +22,8 @@ class ReplayedHistory(History):
     """A history of a landing from its start, which can be repeated to any time of it.
 
     A repetition starts from the last state before that time, and takes the very same internal
-    steps. The landing is at the end of the history again afterwards.
+    steps. The landing is at the end of the history again afterwards. States at which outputs were
+    asked for are kept, too.
 
     Args:
         part: The history.
@@ -82,14 +83,24 @@ class ReplayedHistory(History):
         finally:
             landing.restore(end, checked=False)
 
-    def outputs_at(self, times: Sequence[float]) -> list[Mapping[str, float]]:
-        """All outputs at these times [s], ascending."""
-        found: list[Mapping[str, float]] = []
-        with self._landing_at(times[0]) as landing:
-            for t in times:
-                landing.advance_to(max(t, landing.time))
-                found.append(landing.outputs())
-        return found
+    @contextmanager
+    def looks(self) -> Iterator[Callable[[float], Mapping[str, float]]]:
+        """All outputs at any time [s]; the landing is at the end again afterwards."""
+        landing, end = self._landing, self._landing.state()
+        try:
+            yield self._look
+        finally:
+            landing.restore(end, checked=False)
+
+    def _look(self, t: float) -> Mapping[str, float]:
+        landing, before = self._landing, self._before(t)
+        known, state = self._states[before]
+        if not known <= landing.time <= t:
+            landing.restore(state, checked=False)
+        if t > landing.time:
+            landing.advance_to(t)
+            self._states.insert(before + 1, (t, landing.state()))
+        return landing.outputs()
 
     def first_time(self, holds: Holds, after: float, before: float) -> float:
         """The first time [s] at which something `holds` that does not end again.

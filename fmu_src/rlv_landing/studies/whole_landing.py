@@ -9,12 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..audit.rest import LONGEST_WAIT, REST_AFTER
-from ..history import History, joined
 from ..landing import Landing
+from ..outputs import layout_of
+from ..sampling import Samples
 from .outcome import SETTLED, TOPPLED
 from .replay import ReplayedHistory
-from .standing import may_stand, stands
+from .standing import Standing, may_stand
 
+Array = NDArray[np.float64]
 CHECK_EVERY = 0.25
 # time between samples [s], at least, of what still rocks at REST_AFTER from its first contact
 LATER_EVERY = 1e-2
@@ -43,7 +45,7 @@ def whole_landing(
         every: Time between samples [s].
         decided: Whether the landing may end before `until`.
         progress: Called with the time reached [s] on the way.
-        standing: Whether it may end where the vehicle stands, see `standing.stands`: before it is
+        standing: Whether it may end where the vehicle stands, see `standing.Standing`: before it is
             at rest, where nothing but the ground at rest acts on it.
 
     Raises:
@@ -61,14 +63,14 @@ def whole_landing(
         until = contact + LONGEST_WAIT
     if not decided:
         return ReplayedHistory(landing.run(until, every, keep), landing, states)
-    standing = standing and may_stand(landing)
+    stands = Standing(landing).at_all if standing and may_stand(landing) else None
     with landing.span() as extremes:
-        parts = list(_until_decided(landing, until, every, keep, standing=standing))
-        whole = joined(parts or [landing.sampled(until, every, keep)])
+        parts = list(_until_decided(landing, until, every, keep, stands))
+        whole = landing.history(parts or [landing.samples(until, every, keep)])
         whole.extremes = extremes()
-    stood = standing and bool(parts) and stands(parts[-1])
+    stood = stands is not None and bool(parts) and stands(parts[-1].rows)
     return ReplayedHistory(
-        whole, landing, states, stands_from=len(whole) - len(parts[-1]) if stood else None
+        whole, landing, states, stands_from=len(whole) - len(parts[-1].rows) if stood else None
     )
 
 
@@ -86,27 +88,28 @@ def _until_decided(
     until: float,
     every: float,
     keep: Callable[[float], object],
-    *,
-    standing: bool,
-) -> Iterator[History]:
+    stands: Callable[[Array], bool] | None,
+) -> Iterator[Samples]:
     """The landing in parts, until it is decided or `until` [s]; see `whole_landing`."""
+    layout = layout_of(landing.parameters.drop.mode, landing.interface.output_names)
+    phase = layout.places["status.phase"][0]
     contact = landing.parameters.drop.contact_time
     for end, step in ((min(until, contact + REST_AFTER), every), (until, max(every, LATER_EVERY))):
         for part in _checked(landing, end, step, keep):
             yield part
-            if _is_decided(part["status.phase"]) or (standing and stands(part)):
+            if _is_decided(part.rows[:, phase]) or (stands is not None and stands(part.rows)):
                 return
 
 
 def _checked(
     landing: Landing, end: float, every: float, keep: Callable[[float], object]
-) -> Iterator[History]:
+) -> Iterator[Samples]:
     """The landing until `end` [s] in parts of 0.25 s, as far as whole intervals fit."""
     start, samples, checks = landing.time, max(1, round(CHECK_EVERY / every)), 0
     while end - landing.time > every * (1.0 - 1e-9):
         checks += 1
-        yield landing.sampled(min(start + checks * samples * every, end), every, keep)
+        yield landing.samples(min(start + checks * samples * every, end), every, keep)
 
 
-def _is_decided(phase: NDArray[np.float64]) -> bool:
+def _is_decided(phase: Array) -> bool:
     return bool(phase[-1] == SETTLED or np.all(phase == TOPPLED))

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import copysign, sqrt
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,8 +52,8 @@ class FirstContact:
         time, values = history.time, history[name]
         if not self.sample or self.time == time[self.sample]:
             return float(values[self.sample])
-        start, curve = _curve(time, values, self.sample)
-        return float(np.polyval(curve, self.time - start))
+        curve = _curve(time, values, self.sample)
+        return curve.at(self.time - float(time[self.sample - 1]))
 
 
 def first_contact(history: History, leg: int) -> FirstContact | None:
@@ -80,10 +82,8 @@ def _found(history: History, leg: int) -> FirstContact | None:
         exact = _exact(history, sample, before, last, name)
         if exact is not None:
             return exact
-    start, curve = _curve(history.time, depth, sample)
-    roots = start + np.roots(curve)
-    inside = [t for t in roots[np.isreal(roots)].real if before <= t <= last]
-    return FirstContact(sample, float(min(inside, default=last)))
+    inside = [t for x in _curve(history.time, depth, sample).roots() if before <= (t := before + x)]
+    return FirstContact(sample, min([*inside, last]))
 
 
 def _exact(
@@ -93,22 +93,26 @@ def _exact(
 
     Two near times are looked for, between which all outputs are linear.
     """
-    above = max(before, last - NEAR)
-    looks = history.outputs_at((above, last))
-    while looks is not None and looks[0][depth] >= 0.0 and above > before:
-        last, above = above, max(before, last - 8.0 * (last - above))
-        looks = history.outputs_at((above, last))
-    while looks is not None and last - above > NEAR:
-        middle = 0.5 * (above + last)
-        look = history.outputs_at((middle,))
-        assert look is not None
-        if look[0][depth] < 0.0:
-            above, looks[0] = middle, look[0]
-        else:
-            last, looks[1] = middle, look[0]
-    if looks is None or not looks[0][depth] < 0.0 <= looks[1][depth]:
+    looks = history.looks()
+    if looks is None:
         return None
-    first, second = looks
+    with looks as look:
+        # what follows begins there
+        first = look(before)
+        above = max(before, last - NEAR)
+        first, second = look(above), look(last)
+        while first[depth] >= 0.0 and above > before:
+            above, last, second = max(before, above - 8.0 * (last - above)), above, first
+            first = look(above)
+        while last - above > NEAR:
+            middle = 0.5 * (above + last)
+            found = look(middle)
+            if found[depth] < 0.0:
+                above, first = middle, found
+            else:
+                last, second = middle, found
+    if not first[depth] < 0.0 <= second[depth]:
+        return None
     part = first[depth] / (first[depth] - second[depth])
     values = {name: first[name] + part * (second[name] - first[name]) for name in history.names}
     return FirstContact(sample, above + part * (last - above), values)
@@ -129,11 +133,36 @@ def _first_known(history: History, leg: int) -> tuple[int, float] | None:
     return (sample, time) if touches else None
 
 
-def _curve(time: Array, values: Array, sample: int) -> tuple[float, Array]:
+class _Parabola(NamedTuple):
+    """c + b x + a x^2."""
+
+    c: float
+    b: float
+    a: float
+
+    def at(self, x: float) -> float:
+        return self.c + x * (self.b + x * self.a)
+
+    def roots(self) -> list[float]:
+        """Where it is 0; none where it is constant."""
+        c, b, a = self
+        inside = b * b - 4.0 * a * c
+        if inside < 0.0:
+            return []
+        # of both signs the one that does not cancel
+        q = -0.5 * (b + copysign(sqrt(inside), b))
+        return [*([q / a] if a else []), *([c / q] if q else [])]
+
+
+def _curve(time: Array, values: Array, sample: int) -> _Parabola:
     """The parabola through the samples before `sample`, over the time from the last of these on."""
     first = max(sample - BEFORE, 0)
-    start = float(time[sample - 1])
-    curve: Array = np.polyfit(
-        time[first:sample] - start, values[first:sample], min(BEFORE, sample) - 1
-    )
-    return start, curve
+    v: list[float] = values[first:sample].tolist()
+    t: list[float] = time[first:sample].tolist()
+    if len(v) < 2:
+        return _Parabola(v[-1], 0.0, 0.0)
+    rise = (v[-1] - v[-2]) / (t[-1] - t[-2])
+    if len(v) < BEFORE:
+        return _Parabola(v[-1], rise, 0.0)
+    bend = (rise - (v[-2] - v[-3]) / (t[-2] - t[-3])) / (t[-1] - t[-3])
+    return _Parabola(v[-1], rise + bend * (t[-1] - t[-2]), bend)
