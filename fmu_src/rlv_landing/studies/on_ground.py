@@ -198,9 +198,8 @@ def _in_inertial_axes(history: History, normal: Array) -> Array:
     ground = history.ground
     if not isinstance(ground, DeckMotion):
         return normal
-    t = history.time - history.time[0]
-    deck = ground.at(t)
-    turn = _deck_turn(*np.broadcast_arrays(deck.tilt, deck.roll, deck.yaw, t)[:3])
+    _, _, _, roll, yaw, tilt = ground.places(history.time - history.time[0])
+    turn = _deck_turn(tilt, roll, yaw)
     found: Array = np.einsum("jin,i->jn", turn, normal)
     return found
 

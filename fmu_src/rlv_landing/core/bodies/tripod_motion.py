@@ -39,6 +39,7 @@ from ..records import (
 from ..struts.kinds import auxiliary_strut_energy
 from ..tripod import across_forces, tripod_forces
 from ..vectors import added, cross, dot, less, scaled, solved
+from .sea import Sea
 from .spatial_ground import SpatialGround
 from .spatial_legs import along_across, cg_of, force_on_body, in_leg
 
@@ -61,7 +62,7 @@ class TripodMotion(SpatialGround):
         places: Sequence[LegPlace],
         scale: Buffer,
         relative: Buffer,
-        met: tuple[Sequence[BodyPoint], LegModel, HeightField, Buffer],
+        met: tuple[Sequence[BodyPoint], LegModel, HeightField, Buffer, Sea],
     ) -> None:
         super().__init__(body, legs, places, scale, relative, met)
         self._tripod = body.tripod > 0.0
