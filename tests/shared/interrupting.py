@@ -1,5 +1,6 @@
 """Ctrl-C for tests."""
 
+import gc
 import signal
 import time
 
@@ -24,7 +25,8 @@ def interrupted_after(seconds, work):
 def raises_keyboard_interrupt(work, delay):
     """Whether Ctrl-C, `delay` [s] after the start of `work` or at its end, reaches the caller.
 
-    It does not if something between `work` and the caller drops the exception.
+    It does not if something between `work` and the caller drops the exception. The test tools'
+    own callbacks of the garbage collector do, so it waits meanwhile.
     """
     pressed = []
 
@@ -33,6 +35,7 @@ def raises_keyboard_interrupt(work, delay):
         signal.default_int_handler(2, None)
 
     usual = signal.signal(signal.SIGALRM, press)
+    gc.disable()
     try:
         signal.setitimer(signal.ITIMER_REAL, delay)
         work()
@@ -43,4 +46,5 @@ def raises_keyboard_interrupt(work, delay):
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, usual)
+        gc.enable()
     return False
