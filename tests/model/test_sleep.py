@@ -42,6 +42,22 @@ def test_a_million_seconds_at_rest_take_no_steps(mode, method):
     assert (history.data == np.array(before)).all()
 
 
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("rtol", [1e-2, 9.8e-5, 1e-5])
+@pytest.mark.parametrize("preset", [FIGURES, "yue2022-tests"])
+def test_on_a_slope_it_falls_asleep_at_any_tolerance(preset, rtol, method):
+    """Steps at the limit of stability would shake the seals for ever."""
+    slope = {"ground.slope": 0.09, "drop.tilt": 0.09, "ground.friction": 0.54}
+    push = {"external.force_x": 58.3}
+    parameters = load_preset(preset, "2-2").with_values(
+        slope | {"drop.vertical_velocity": -0.786, "drop.contact_time": 0.0}
+    )
+    landing = Landing(parameters, rtol=rtol, method=method, inputs=push)
+    landing.advance_to(LONG)
+    assert landing.statistics["asleep"] == 1
+    assert landing.get("status.phase") == Phase.SETTLED
+
+
 def test_what_sleeps_has_settled_and_stands_still(rested):
     assert rested.get("status.phase") == Phase.SETTLED
     for name in ("body.ax", "body.ay", "body.pitch_acceleration"):

@@ -185,8 +185,8 @@ class Legged(System):
                 farthest = max(farthest, excess)
         return farthest / MOST_GATHERED
 
-    def may_rest(self, u: Doubles, rates: Doubles, outputs: Doubles) -> bool:
-        """Whether it stands and is slow, with loads and ground that do not change.
+    def is_slow(self, outputs: Doubles) -> bool:
+        """Whether it stands and is slow.
 
         Its acceleration does not count: at rest an explicit method oscillates by a part of the
         tolerance.
@@ -194,7 +194,11 @@ class Legged(System):
         phase = status_outputs(outputs, self._energies + ENERGY_OUTPUTS).phase
         if is_phase(phase, Phase.FALLING) or is_phase(phase, Phase.TOPPLED):
             return False
-        if not is_slow(outputs[self._energies + KINETIC], self.mass):
+        return is_slow(outputs[self._energies + KINETIC], self.mass)
+
+    def may_rest(self, u: Doubles, rates: Doubles, outputs: Doubles) -> bool:
+        """Whether it stands and is slow, with loads and ground that do not change."""
+        if not self.is_slow(outputs):
             return False
         for i in range(self.inputs):
             if rates[i] != 0.0:

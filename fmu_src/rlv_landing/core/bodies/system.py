@@ -123,6 +123,10 @@ class System:
             self.rhs(y, u, rates)
         self.read(y, u, rates, out, at)
 
+    def is_slow(self, outputs: Doubles) -> bool:
+        """Whether the system is so slow with these `outputs` that it may be near a rest."""
+        return False
+
     def may_rest(self, u: Doubles, rates: Doubles, outputs: Doubles) -> bool:
         """Whether the system may be near a rest with these `outputs` at constant inputs.
 

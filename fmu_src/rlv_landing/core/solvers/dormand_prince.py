@@ -9,6 +9,7 @@ Solving Ordinary Differential Equations I, II.6.
 from __future__ import annotations
 
 from array import array
+from math import inf
 
 from ..bodies.system import System
 from ..memory import Buffer, data
@@ -41,6 +42,9 @@ D1, D3, D4 = (
     -10690763975.0 / 1880347072.0,
 )
 D5, D6, D7 = 701980252875.0 / 199316789632.0, -1453857185.0 / 822651844.0, 69997945.0 / 29380423.0
+# the longest step near a rest, times the fastest rate of decay: at the limit of stability, 3.3,
+# oscillations of the tolerance's size stay for ever
+DAMPED = 1.0
 
 
 class DormandPrince(Solver):
@@ -86,6 +90,13 @@ class DormandPrince(Solver):
         self._derivatives(t + h, end, k7)
         for i in range(m):
             e[i] = h * (E1 * k1[i] + E3 * k3[i] + E4 * k4[i] + E5 * k5[i] + E6 * k6[i] + E7 * k7[i])
+
+    def _longest_damped(self) -> float:
+        """By the last two stages, both at the step's end."""
+        fastest = self._fastest(
+            data(self.y_new), data(self.k_end), data(self.y_stage), data(self.k6)
+        )
+        return DAMPED / fastest if fastest > 0.0 else inf
 
     def _dense_correction(self, h: float, at: int) -> None:
         """The interpolant's fourth-order part."""

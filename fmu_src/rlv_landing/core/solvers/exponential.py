@@ -18,7 +18,7 @@ detect a kink inside the step, a part of the difference to a second-order method
 from __future__ import annotations
 
 from array import array
-from math import fabs
+from math import fabs, inf
 
 from ..access import PHI_WEIGHTS, STIFF_PAIR, keep, phi_weights_of, stiff_pair_of
 from ..bodies.system import System
@@ -31,6 +31,9 @@ from .step_control import BETA
 THIRD, SIXTH = 1.0 / 3.0, 1.0 / 6.0
 # part of the difference to the second-order method that counts as error
 KINK = 0.3
+# the longest step near a rest, times the fastest rate of decay: at the limit of stability, 2.8,
+# oscillations of the tolerance's size stay for ever
+WELL_DAMPED = 1.6
 # right-hand sides of a step: at its start, at the stages 2 to 4, at its end
 STAGES = 5
 
@@ -173,6 +176,18 @@ class Exponential(Solver):
         for i in range(m):
             kink = KINK * h * SIXTH * fabs(k1[i] - k2[i] - k3[i] + k4[i])
             e[i] = fabs(e[i]) + kink if relative[i] == 0.0 else e[i]
+
+    def _longest_damped(self) -> float:
+        """By the last two stages, both at the step's end, less what is solved exactly."""
+        end, s = data(self.y_new), data(self.y_stage)
+        k4 = data(self.k4)
+        for g in range(self.system.stiff_pairs):
+            pair = stiff_pair_of(self._pairs, g)
+            grown = (end[pair.j] - end[pair.i]) - (s[pair.j] - s[pair.i])
+            k4[pair.i] += pair.a1 * grown
+            k4[pair.j] -= pair.a2 * grown
+        fastest = self._fastest(end, data(self.k_end), s, k4)
+        return WELL_DAMPED / fastest if fastest > 0.0 else inf
 
 
 def stage_weights(i: int, w: PhiWeights) -> tuple[float, float]:

@@ -120,6 +120,13 @@ class Solver(Trial):
     def _try_step(self, h: float) -> None:
         """Compute a step of `h` [s]: see `Trial` for what it writes."""
 
+    def _longest_damped(self) -> float:
+        """The longest step [s] that damps what decays fastest in the step just computed.
+
+        It is infinite where a method does not know it.
+        """
+        return inf
+
     def _accept(self, h: float) -> None:
         """Accept the step just computed: it becomes the last one, and `t` its end."""
         n = self.n
@@ -178,7 +185,11 @@ class Solver(Trial):
         if h < SHORTEST_STEP or self.t + h <= self.t:
             self.fault = Fault.COLLAPSED
             return
+        slow = self.system.is_slow(data(self.last))
         self._try_step(h)
+        longest = LONGEST_STEP
+        if slow:
+            longest = min(longest, self._longest_damped())
         error = self._error()
         self.h = h * step_factor(error, self.error_old, self.exponent)
         self.spent += 1.0
@@ -187,7 +198,7 @@ class Solver(Trial):
             self.rejected += 1.0
         elif error <= 1.0:
             self._accept(h)
-            self.h = min(self.h, LONGEST_STEP)
+            self.h = min(self.h, longest)
             self.error_old = max(error, LEAST_PREVIOUS_ERROR)
             self.spent = max(self.spent - self.limit * h, 0.0)
         else:

@@ -23,6 +23,8 @@ LOOSE = 1e-4
 # so small a cut of an interpolant's parts, in parts of its state's scale, is no reason to judge it:
 # the value inside changes by 4/27 of it at most, and a step may lose a thousand times as much
 UNSEEN = 1e-8
+# [parts of the states' scales]: stages that differ by no more tell no rate
+TELLS_NOTHING = 1e-13
 # a cubic between two values rises throughout where its slopes at both are at most so many times
 # that of the straight line (Fritsch and Carlson, Monotone piecewise cubic interpolation, SIAM
 # Journal on Numerical Analysis 17, 1980)
@@ -106,6 +108,21 @@ class Trial(Rest):
             e = deviation[i] / limit
             total += e * e
         return sqrt(total / self.system.counted)
+
+    def _fastest(self, one: Doubles, k_one: Doubles, other: Doubles, k_other: Doubles) -> float:
+        """The fastest rate [1/s] by which two states differ in their rates; 0 where they are equal.
+
+        States and rates are those of two stages at the same time, which differ by what decays
+        fastest. Source: Hairer and Wanner, Solving Ordinary Differential Equations II, IV.2.
+        """
+        apart = faster = 0.0
+        for i in range(self.system.controlled):
+            size = self._scale(one, i)
+            way = (one[i] - other[i]) / size
+            rate = (k_one[i] - k_other[i]) / size
+            apart += way * way
+            faster += rate * rate
+        return sqrt(faster / apart) if apart > TELLS_NOTHING * TELLS_NOTHING else 0.0
 
     def _loses(self, h: float) -> bool:
         """Whether a step of `h` [s] loses more than it may of what the system conserves.
