@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Mapping
+from contextlib import closing
 from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -23,8 +25,13 @@ from mcap.records import (
 from mcap.stream_reader import StreamReader
 from mcap.writer import Writer
 
+from rlv_ros_bridge.logs.reader import Decoder, LogReader
 from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
+from rlv_ros_bridge.logs.verification.known_bytes import KnownBytes
+from rlv_ros_bridge.logs.verification.repeat import RepeatedRun
 from rlv_ros_bridge.messages.qos import TELEMETRY
+from rlv_ros_bridge.messages.tables import table_of
+from rlv_ros_bridge.messages.topics import resolve
 
 CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 CDR = bytes([0, 1, 0, 0])
@@ -152,3 +159,19 @@ def in_attachment(change: Callable[[bytes], bytes | None]) -> Change:
         return record
 
     return apply
+
+
+def assert_bytes_are_known(reader: LogReader) -> None:
+    """The bytes of the tenth message of each sampled topic are known from its first one."""
+    reader.read_summary()
+    run, decode = RepeatedRun(reader), Decoder(reader)
+    with closing(run.samples()) as samples:
+        values = list(islice(samples, 10))
+    for name, fields in table_of(run.vehicle.interface).fields_of.items():
+        topic = resolve(reader.namespace, name)
+        messages = list(islice(reader.messages([topic]), 10))
+        known = KnownBytes(messages[0], decode, fields, run.vehicle)
+        assert known.of(messages[9].log_time, values[9]) == messages[9].data, topic
+        assert known.of(messages[9].log_time + 1, values[9]) != messages[9].data, topic
+        other = {output: value + 0.125 for output, value in values[9].items()}
+        assert known.of(messages[9].log_time, other) != messages[9].data, topic

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from pathlib import Path
 from random import Random
 
@@ -13,11 +14,28 @@ from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
 from rlv_ros_bridge.logs.recording import bag_writer, chunk_queue
 from rlv_ros_bridge.logs.recording.bag_writer import CHUNK_BYTES
 from rlv_ros_bridge.messages.qos import TELEMETRY
-from rlv_ros_bridge.messages.wire import TIMES
+from rlv_ros_bridge.messages.wire import STAMP, Places
 
-SIZES = {"/a": 12, "/b": 40, "/c": 16}
+MS = 1_000_000
+COUNT = 5
+# Messages of 16, 44 and 20 bytes: numbers side by side, apart, twice, and none.
+SAMPLED = {
+    "/a": Places(CDR + b"-" * 12, [4], []),
+    "/b": Places(CDR + b"*" * 40, [12], [(4, 3), (20, 0), (28, 1), (36, 3)]),
+    "/c": Places(CDR + b"+" * 16, [], [(12, 4)]),
+}
 SINGLE = "/single"
 MESSAGES = dict[str, list[tuple[int, bytes]]]
+
+
+def filled(places: Places, time: int, numbers: list[float]) -> bytes:
+    """The message with its numbers and its stamp."""
+    data = bytearray(places.data)
+    for at in places.stamps:
+        STAMP.pack_into(data, at, *divmod(time, 10**9))
+    for at, i in places.numbers:
+        struct.pack_into("<d", data, at, numbers[i])
+    return bytes(data)
 
 
 def record(folder: Path, chunk_messages: int, *, by_the_library: bool) -> tuple[Path, MESSAGES]:
@@ -28,25 +46,22 @@ def record(folder: Path, chunk_messages: int, *, by_the_library: bool) -> tuple[
     random = Random(3)
     recorder = Recorder(
         folder,
-        [RecordedTopic(name, CLOCK_TYPE, TELEMETRY) for name in (*SIZES, SINGLE)],
+        [RecordedTopic(name, CLOCK_TYPE, TELEMETRY) for name in (*SAMPLED, SINGLE)],
         {"key": "value"},
     )
     if by_the_library:
         recorder._queue._writer._builder = None
-    expected: MESSAGES = {name: [] for name in (*SIZES, SINGLE)}
-    prefixes = recorder.begin_samples(SIZES)
+    expected: MESSAGES = {name: [] for name in (*SAMPLED, SINGLE)}
+    recorder.begin_samples(SAMPLED, COUNT)
     for k in range(1500):
-        time = 1000 * k
-        data = [CDR + random.randbytes(size - len(CDR)) for size in SIZES.values()]
-        recorder.write_sample(
-            time,
-            b"".join(prefix + TIMES.pack(k, time, time) + d for prefix, d in zip(prefixes, data)),
-        )
-        for name, d in zip(SIZES, data):
-            expected[name].append((time, d))
+        time = MS * k
+        numbers = [random.uniform(-1e3, 1e3) for _ in range(COUNT)]
+        recorder.write_sample(k, time, numbers)
+        for name, places in SAMPLED.items():
+            expected[name].append((time, filled(places, time, numbers)))
         for _ in range(random.choice((0, 0, 0, 1, 2))):
             # Times of single messages may go back, as those of inputs do.
-            expected[SINGLE].append((max(0, time - 1000), CDR + random.randbytes(8)))
+            expected[SINGLE].append((max(0, time - MS), CDR + random.randbytes(8)))
             recorder.write(SINGLE, *expected[SINGLE][-1])
         if k % chunk_messages == chunk_messages - 1:
             recorder.sync()
@@ -90,9 +105,11 @@ def test_every_message_is_in_a_chunk_of_bounded_size_and_found_by_its_index(
         # By the indexes: a span of one topic.
         part = [
             m.data
-            for _, _, m in reader.iter_messages(["/b"], starting_at=400_000, ending_before=900_000)
+            for _, _, m in reader.iter_messages(
+                ["/b"], starting_at=400 * MS, ending_before=900 * MS
+            )
         ]
-    assert part == [data for time, data in expected["/b"] if 400_000 <= time < 900_000]
+    assert part == [data for time, data in expected["/b"] if 400 * MS <= time < 900 * MS]
 
 
 def test_a_message_larger_than_a_chunk_has_one_of_its_own(tmp_path: Path) -> None:

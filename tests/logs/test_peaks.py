@@ -156,12 +156,12 @@ def test_no_record_is_made_of_a_landing_that_is_not_over_in_what_is_kept(monkeyp
     landing = Landing(load_preset("yue2022-figures"))
     history = landing.run(2.0)
     peaks = {name.removeprefix("peak."): peak for name, peak in landing_peaks(landing).items()}
-    values = np.array([history[name] for name in OUTPUT_NAMES]).T.tolist()
+    values = np.array([history[name] for name in OUTPUT_NAMES]).T
     for kept, made in ((2001, True), (1500, True), (150, False)):
         monkeypatch.setattr(landing_record, "MOST_SAMPLES", kept)
         rows = LandingRows(history.parameters)
-        for time, row in zip(history.time.tolist(), values, strict=True):
-            rows.add(time, row)
+        for part in (slice(0, 700), slice(700, None)):
+            rows.add(history.time[part], values[part])
         found = read_landing(rows.texts(peaks))
         assert (found is not None) == made
         if found is not None:

@@ -53,7 +53,7 @@ def write_all(recorder: Recorder, chunks: range, messages: int = 10) -> None:
         for topic in ("/a", "/kept"):
             recorder.write(topic, 1000 * k, CDR + k.to_bytes(8, "little"))
         if k % messages == messages - 1:
-            recorder.flush(now=True)
+            recorder.flush()
 
 
 def test_messages_that_do_not_fit_are_left_out_and_the_log_says_so(

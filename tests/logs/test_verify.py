@@ -12,7 +12,14 @@ from typing import Any
 
 import pytest
 from bridge_tools import one_error_line, record, run
-from log_tools import in_attachment, in_message, in_metadata, rewrite, small_log
+from log_tools import (
+    assert_bytes_are_known,
+    in_attachment,
+    in_message,
+    in_metadata,
+    rewrite,
+    small_log,
+)
 from rclpy.serialization import serialize_message
 
 from rlv_landing import Landing
@@ -65,6 +72,10 @@ def test_a_log_is_its_run_bit_for_bit_by_the_model_and_by_the_fmu(
         assert "same      bit for bit" in done.stdout
         assert "13013 messages at 1001 instants up to 1 s" in done.stdout
         assert "note" not in done.stdout
+
+
+def test_messages_after_the_first_are_compared_by_their_bytes(one_log: Path) -> None:
+    assert_bytes_are_known(LogReader(one_log))
 
 
 def test_a_log_of_an_fmu_of_fmi_3_is_its_run_bit_for_bit(fmu3: Path, tmp_path: Path) -> None:

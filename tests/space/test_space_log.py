@@ -10,6 +10,7 @@ import bridge_tools
 import numpy as np
 import pytest
 from five_legs import DECK, five_legs
+from log_tools import assert_bytes_are_known
 from rclpy.serialization import serialize_message
 from rerun.chunk import RrdReader
 
@@ -67,6 +68,10 @@ def test_it_is_verified_bit_for_bit_by_landing_and_by_the_fmu(
         found = verify(LogReader(recorded), fmu)
         assert (found.same, found.other_bits, found.first) == (True, 0, None)
         assert (found.instants, found.peaks) == (401, len(SPACE.peaks))
+
+
+def test_its_messages_are_compared_by_their_bytes(recorded: Path) -> None:
+    assert_bytes_are_known(LogReader(recorded))
 
 
 def test_it_is_shown_and_exported(recorded: Path, command, tmp_path: Path) -> None:

@@ -110,10 +110,13 @@ def slave_arguments(description: Any, folder: str, name: str) -> dict[str, str]:
 
 
 def function(slave: Any, name: str, arguments: Sequence[Any]) -> Any:
-    """The C function `name` of an FMU.
+    """The C function `name` of an FMU, which is called with Python's lock held.
 
-    FMPy's wrapper of it costs as much processor time as reading twenty values.
+    The FMU computes in this process's Python: were the lock given up, it would take it back at
+    once, or wait for a thread that came first. FMPy's wrapper of the function costs as much
+    processor time as reading twenty values.
     """
-    found = slave.dll[name]
+    library = slave.dll
+    found = ctypes.PyDLL(library._name, handle=library._handle)[name]
     found.argtypes, found.restype = arguments, ctypes.c_int
     return found

@@ -7,12 +7,11 @@ says of the landing's messages, with the outcome, and `acceleration_peak` for ea
 from __future__ import annotations
 
 import json
-from array import array
 from collections.abc import Mapping, Sequence
-from operator import itemgetter
 from typing import Any, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rlv_landing.core import Phase
 from rlv_landing.errors import LandingError
@@ -90,19 +89,27 @@ class LandingRows:
             "body.top_axial_acceleration",
         )
         places = interface.output_names.index
-        self._columns_of = itemgetter(*map(places, self._columns))
+        self._places = [places(name) for name in self._columns]
         self._phase_at = places(PHASE)
-        self._rows = array("d")
-        self._times = array("d")
-        # time and outputs of the last sample
-        self._last: tuple[float, Sequence[float]] = 0.0, ()
+        self._times: list[NDArray[np.float64]] = []
+        self._rows: list[NDArray[np.float64]] = []
+        self._room = MOST_SAMPLES
+        # time [s] and phase of the last sample
+        self._last = 0.0, 0
 
-    def add(self, time: float, values: Sequence[float]) -> None:
-        """Adds the sample at `time` [s]: all outputs, in the order of the interface."""
-        self._last = time, values
-        if len(self._times) < MOST_SAMPLES:
-            self._times.append(time)
-            self._rows.extend(self._columns_of(values))
+    def add(self, times: NDArray[np.float64], samples: NDArray[np.float64]) -> None:
+        """Adds samples.
+
+        Args:
+            times: (samples,) their times [s].
+            samples: (samples, numbers) the numbers of each: its outputs in the order of the
+                interface come first.
+        """
+        self._last = float(times[-1]), int(samples[-1, self._phase_at])
+        if self._room:
+            self._times.append(times[: self._room].copy())
+            self._rows.append(samples[: self._room, self._places])
+            self._room -= len(self._times[-1])
 
     def texts(self, peaks: Mapping[str, Found]) -> dict[str, str]:
         """The record's texts by name; empty where it cannot be made.
@@ -112,13 +119,12 @@ class LandingRows:
         """
         if not self._times:
             return {}
-        time = np.array(self._times)
-        data = np.array(self._rows).reshape(len(time), len(self._columns))
+        time, data = np.concatenate(self._times), np.concatenate(self._rows)
         history = History(time, self._columns, data, self._parameters)
         history.extremes = known_extremes(peaks, history)
-        end, values = self._last
+        end, phase = self._last
         try:
-            landing = landing_summary(history, OUTCOMES[int(values[self._phase_at])])
+            landing = landing_summary(history, OUTCOMES[phase])
             landing["end_time"] = end
             if end > time[-1] and not _is_over(landing):
                 return {}

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+from numpy.typing import NDArray
 
 from rlv_landing.errors import LandingError, reason_of
 from rlv_landing.text.durable import unwritable
 
 from ..messages.definitions import Definition, definition
 from ..messages.qos import Qos
+from ..messages.wire import Places
 from .landing_record import RECORD as LANDING_RECORD
 from .lost import RECORD as LOST_RECORD
-from .mcap_files.chunk_buffer import RECORD_SIZE, message_prefix
+from .mcap_files.sample_records import SampleRecords
 from .peaks import RECORD as PEAKS_RECORD
 from .recording.bag_writer import BagTopic, BagWriter, media_type
 from .recording.chunk_queue import ChunkQueue
@@ -152,33 +156,35 @@ class Recorder:
             self._fail(reason)
         return self._error
 
-    def begin_samples(self, sizes: Mapping[str, int]) -> list[bytes]:
+    def begin_samples(
+        self,
+        messages: Mapping[str, Places],
+        count: int,
+        take: Callable[[NDArray[Any]], None] = lambda samples: None,
+    ) -> None:
         """Prepares for `write_sample`: from now on the messages of a sample are recorded together.
 
         Args:
-            sizes: by topic, in their order in a sample, the size of its message [bytes].
-
-        Returns:
-            For each topic the first bytes of its record. The number of the sample, twice its time
-            (as in `chunk_buffer.MESSAGE_TIMES`) and the message follow them.
+            messages: by topic, in their order in a sample, where its message has which numbers.
+            count: how many numbers a sample has.
+            take: called now and then with the samples since the last call, by fields: `sequence`,
+                `time` [ns] and `numbers`.
         """
-        self._sampled = tuple(sizes)
-        offset = 0
-        for topic, size in sizes.items():
-            self._queue.sample_offsets[self._channels[topic]] = offset
-            offset += RECORD_SIZE + size
-        return [message_prefix(self._channels[topic], size) for topic, size in sizes.items()]
+        self._sampled = tuple(messages)
+        records = SampleRecords({self._channels[t]: p for t, p in messages.items()}, count)
+        self._queue.begin_samples(records, take)
 
-    def write_sample(self, log_time_ns: int, records: bytes) -> None:
+    def write_sample(self, sequence: int, log_time_ns: int, numbers: Sequence[float]) -> None:
         """Records the messages of a sample.
 
         After an error it does nothing.
 
         Args:
+            sequence: the number of the sample.
             log_time_ns: simulation time [ns].
-            records: the records of its messages, in the order of `begin_samples`.
+            numbers: what its messages hold.
         """
-        self._queue.add_sample(log_time_ns, records)
+        self._queue.add_sample(sequence, log_time_ns, numbers)
 
     def write(self, topic: str, log_time_ns: int, data: bytes) -> None:
         """Records one message.
@@ -192,18 +198,9 @@ class Recorder:
         """
         self._queue.add(self._channels[topic], log_time_ns, data)
 
-    def flush(self, *, now: bool = False) -> bool:
-        """Hands what was recorded to the thread that writes, at most every quarter of a second.
-
-        To be called after all messages of an instant.
-
-        Args:
-            now: at once.
-
-        Returns:
-            Whether it was time to.
-        """
-        return self._queue.flush(now=now)
+    def flush(self) -> None:
+        """Hands what was recorded to the thread that writes; after all messages of an instant."""
+        self._queue.flush()
 
     def sync(self) -> None:
         """Waits until the operating system has what was recorded, or recording has failed."""

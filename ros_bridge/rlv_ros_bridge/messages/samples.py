@@ -5,7 +5,7 @@ Made from the table of fields, once as message objects and once, for speed, as s
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from operator import attrgetter, itemgetter, setitem
 from typing import Any
@@ -102,28 +102,27 @@ class SampleBytes:
 
     Args:
         vehicle: what they tell beside the outputs.
-        prefixes: by topic, what comes before its message in what `pack` gives; see `MessageLayout`.
 
-    `vehicle` is as given. `topics` are in the order of the messages; `slices` are where each one's
-    message is in what `pack` gives.
+    `vehicle` is as given. `count` is that of the numbers that are packed. `topics` are in the order
+    of the messages; `slices` are where each one's message is in what `pack` gives, and `places`
+    where its numbers are in the message.
     """
 
-    def __init__(self, vehicle: Vehicle, prefixes: Mapping[Topic, bytes] | None = None) -> None:
+    def __init__(self, vehicle: Vehicle) -> None:
         messages = SampleMessages(vehicle)
         self.vehicle = vehicle
         self.topics: tuple[Topic, ...] = tuple(messages.messages)
         # What is packed: the sample, and after it what the messages carry that is not in it.
         self._computations: list[tuple[Conversion, Callable[[Sequence[float]], Any]]] = []
-        positions, count = self._assign_positions()
-        sentinels = sentinel_numbers(count)
+        positions, self.count = self._assign_positions()
+        sentinels = sentinel_numbers(self.count)
         messages.put(SENTINEL_STAMP, (sentinels[i] for i in positions))
         carried = set(positions)
         self._layout = MessageLayout(
             [serialize_message(message) for message in messages.messages.values()],
             [number if i in carried else 0.0 for i, number in enumerate(sentinels)],
-            [(prefixes or {}).get(topic, b"") for topic in self.topics],
         )
-        self.slices = self._layout.slices
+        self.slices, self.places = self._layout.slices, self._layout.places
 
     def _assign_positions(self) -> tuple[list[int], int]:
         """Which of the packed numbers each path of the table holds, and how many are packed.
@@ -157,18 +156,29 @@ class SampleBytes:
             positions += computed[key]
         return positions, count
 
-    def pack(self, nanoseconds: int, values: Sequence[float], sequence: int = 0) -> bytes:
+    def numbers(self, values: Sequence[float]) -> list[float]:
+        """The `count` numbers of a sample: the outputs, and what the messages carry beside them.
+
+        Args:
+            values: all outputs in the order of the vehicle's interface, SI, the paper's axes.
+        """
+        numbers = [*values, *(-values[z] for z in self._turned)]
+        for compute, pick in self._computations:
+            numbers += compute(*pick(values))
+        return numbers
+
+    def pack(self, nanoseconds: int, values: Sequence[float]) -> bytes:
         """The messages of a sample, one after the other.
 
         Args:
             nanoseconds: simulation time of the sample [ns].
             values: all outputs in the order of the vehicle's interface, SI, the paper's axes.
-            sequence: the number that follows each prefix.
         """
-        computed = [-values[z] for z in self._turned]
-        for compute, pick in self._computations:
-            computed += compute(*pick(values))
-        return self._layout.pack(nanoseconds, values, sequence, computed)
+        return self.pack_numbers(nanoseconds, self.numbers(values))
+
+    def pack_numbers(self, nanoseconds: int, numbers: Sequence[float]) -> bytes:
+        """The messages of a sample by what `numbers` gives; `nanoseconds` as in `pack`."""
+        return self._layout.pack(nanoseconds, numbers)
 
 
 def _picker(positions: tuple[int, ...]) -> Callable[[Sequence[float]], Any]:

@@ -33,6 +33,10 @@ class Topic:
     type_name: str
     period: float = 0.0
 
+    def __hash__(self) -> int:
+        """That of the name, which Python keeps."""
+        return hash(self.name)
+
 
 STRUTS = Topic("struts", "sensor_msgs/msg/JointState")
 POSE = Topic("pose", "geometry_msgs/msg/PoseStamped")

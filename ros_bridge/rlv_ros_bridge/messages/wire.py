@@ -9,7 +9,7 @@ packed by one call of `struct`.
 from __future__ import annotations
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from operator import itemgetter
 from typing import NamedTuple
 
@@ -21,9 +21,9 @@ SENTINEL_STAMP = 305_419_896 * NANOSECONDS + 591_751_049
 # CDR: four bytes of encapsulation, which give the byte order, then the fields; a float64 begins at
 # a multiple of eight from there.
 ENCAPSULATION = 4
-# A message's stamp: seconds, nanoseconds. What follows a prefix: sequence number, stamp twice [ns].
+# A message's stamp: seconds, nanoseconds. It has the size of a number.
 STAMP = struct.Struct("<iI")
-TIMES = struct.Struct("<IQQ")
+WORD = STAMP.size
 
 
 def padded(data: bytes) -> bytes:
@@ -37,16 +37,16 @@ def sentinel_numbers(count: int) -> list[float]:
     return [1.0 + (i * 0.6180339887498949 + 0.0123456789) % 1.0 for i in range(1, count + 1)]
 
 
-class Slots(NamedTuple):
-    """Positions in the list that `MessageLayout.pack` picks from, after the caller's numbers.
+class Places(NamedTuple):
+    """Where the numbers and stamps of a serialised message are.
 
-    `stamp` and `times` are the bytes that `STAMP` and `TIMES` pack; from `constants` on stand the
-    constant bytes.
+    `data` is the message, filled up to whole words. `stamps` are the offsets [bytes] of its stamps;
+    `numbers` are the offset of each number [bytes] and its position among the numbers.
     """
 
-    stamp: int
-    times: int
-    constants: int
+    data: bytes
+    stamps: list[int]
+    numbers: list[tuple[int, int]]
 
 
 class MessageLayout:
@@ -56,107 +56,85 @@ class MessageLayout:
         serialised: each message as rclpy serialises it, with the stamp `SENTINEL_STAMP` and the
             numbers `sentinels`.
         sentinels: float64 values, all different; 0 for a number that no message carries.
-        prefixes: what comes before each message, if anything. After a prefix that is not empty
-            follow a sequence number (uint32) and the stamp [ns] (uint64) twice, and then the
-            message: a record of MCAP.
 
-    `slices` are where each message is in what `pack` gives, without its prefix.
+    `slices` are where each message is in what `pack` gives. `places` say it of each one's numbers.
 
     Raises:
         LandingError: the messages are not in little-endian plain CDR, which is what Fast DDS and
             Cyclone DDS give on x86-64 and ARM; or a sentinel is not found in them.
     """
 
-    def __init__(
-        self,
-        serialised: Sequence[bytes],
-        sentinels: Sequence[float],
-        prefixes: Sequence[bytes] = (),
-    ) -> None:
+    def __init__(self, serialised: Sequence[bytes], sentinels: Sequence[float]) -> None:
         if any(data[:2] != b"\x00\x01" for data in serialised):
             raise LandingError(
                 "messages are not serialised as little-endian CDR here; "
                 "choose RMW_IMPLEMENTATION=rmw_fastrtps_cpp"
             )
-        self._slots = Slots(*range(len(sentinels), len(sentinels) + 3))
-        self._numbers = {struct.pack("<d", s): i for i, s in enumerate(sentinels) if s != 0.0}
-        self._format = ["<"]
-        self._constants: list[bytes] = []
-        self.slices: list[slice] = []
-        picked: list[int] = []
-        for prefix, data in zip(prefixes or [b""] * len(serialised), map(padded, serialised)):
-            if prefix:
-                picked += self._prefix(prefix)
-            start = struct.calcsize("".join(self._format))
-            picked += self._learn(data)
-            self.slices.append(slice(start, start + len(data)))
-        missing = set(self._numbers.values()).difference(picked)
+        known = {struct.pack("<d", s): i for i, s in enumerate(sentinels) if s != 0.0}
+        self.places = [_places(padded(data), known) for data in serialised]
+        missing = set(known.values()) - {i for p in self.places for _, i in p.numbers}
         if missing:
             raise LandingError(
-                f"{len(missing)} of {len(self._numbers)} numbers are not found in the serialised "
+                f"{len(missing)} of {len(known)} numbers are not found in the serialised "
                 "messages; each needs a float64 field of its own"
             )
-        self._pick = itemgetter(*picked)
-        self._pack = struct.Struct("".join(self._format)).pack
-
-    def _prefix(self, prefix: bytes) -> list[int]:
-        """Adds a prefix and `TIMES`; the positions of what they are packed from."""
-        position = self._constant(prefix)
-        self._format.append(f"{TIMES.size}s")
-        return [position, self._slots.times]
-
-    def _constant(self, data: bytes) -> int:
-        """Adds constant bytes; their position in the list to pick from."""
-        self._format.append(f"{len(data)}s")
-        self._constants.append(data)
-        return self._slots.constants + len(self._constants) - 1
-
-    def _learn(self, data: bytes) -> list[int]:
-        """Adds a message; the positions of what each part of it is packed from."""
-        sentinel_stamp = STAMP.pack(*divmod(SENTINEL_STAMP, NANOSECONDS))
+        self.slices: list[slice] = []
+        self._constants: list[bytes] = []
+        # The list to pick from holds the numbers, the stamp and the constants.
+        self._stamp = len(sentinels)
+        parts, end = ["<"], 0
         picked: list[int] = []
-        at = constant_from = 0
-        while at < len(data):
-            word = data[at : at + 8]
-            aligned = (at - ENCAPSULATION) % 8 == 0
-            if word == sentinel_stamp:
-                part, position = f"{STAMP.size}s", self._slots.stamp
-            elif aligned and word in self._numbers:
-                part, position = "d", self._numbers[word]
-            else:
-                at += 4
-                continue
-            if at > constant_from:
-                picked.append(self._constant(data[constant_from:at]))
-            self._format.append(part)
-            picked.append(position)
-            at += 8
-            constant_from = at
-        if constant_from < len(data):
-            picked.append(self._constant(data[constant_from:]))
-        return picked
+        for places in self.places:
+            self.slices.append(slice(end, end + len(places.data)))
+            end += len(places.data)
+            for part, position in self._parts(places):
+                parts.append(part)
+                picked.append(position)
+        self._pick = itemgetter(*picked)
+        self._pack = struct.Struct("".join(parts)).pack
 
-    def pack(
-        self,
-        nanoseconds: int,
-        numbers: Sequence[float],
-        sequence: int = 0,
-        more: Sequence[float] = (),
-    ) -> bytes:
+    def _parts(self, places: Places) -> Iterator[tuple[str, int]]:
+        """The parts of a message: the format of each, and the position of what is packed there."""
+        changing = [(at, "d", position) for at, position in places.numbers]
+        changing += [(at, f"{STAMP.size}s", self._stamp) for at in places.stamps]
+        end = 0
+        for at, part, position in [*sorted(changing), (len(places.data), "", 0)]:
+            if at > end:
+                self._constants.append(places.data[end:at])
+                yield f"{at - end}s", self._stamp + len(self._constants)
+            if part:
+                yield part, position
+            end = at + WORD
+
+    def pack(self, nanoseconds: int, numbers: Sequence[float]) -> bytes:
         """The messages, one after the other.
 
         Args:
             nanoseconds: their stamp [ns].
             numbers: in the order of the sentinels.
-            sequence: the number that follows each prefix.
-            more: the last of the numbers, where the caller has them apart.
         """
-        # In the order of `Slots`.
-        values = [
-            *numbers,
-            *more,
-            STAMP.pack(nanoseconds // NANOSECONDS, nanoseconds % NANOSECONDS),
-            TIMES.pack(sequence, nanoseconds, nanoseconds),
-            *self._constants,
-        ]
-        return self._pack(*self._pick(values))
+        stamp = STAMP.pack(nanoseconds // NANOSECONDS, nanoseconds % NANOSECONDS)
+        return self._pack(*self._pick([*numbers, stamp, *self._constants]))
+
+
+def _places(data: bytes, known: Mapping[bytes, int]) -> Places:
+    """Where numbers and stamps are in a message.
+
+    Args:
+        data: the message with sentinels, filled up to whole words.
+        known: the position of each sentinel by its bytes.
+    """
+    sentinel_stamp = STAMP.pack(*divmod(SENTINEL_STAMP, NANOSECONDS))
+    found = Places(data, [], [])
+    at = 0
+    while at < len(data):
+        word = data[at : at + WORD]
+        if word == sentinel_stamp:
+            found.stamps.append(at)
+        elif (at - ENCAPSULATION) % WORD == 0 and word in known:
+            found.numbers.append((at, known[word]))
+        else:
+            at += WORD // 2
+            continue
+        at += WORD
+    return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -59,6 +60,8 @@ class CommandedGround:
         # (position, rate): the inputs
         self._names = [(joint.position, joint.rate) for joint in joints.values()]
         self._joints = {position: _Joint() for position, _ in self._names}
+        # when the first joint reaches its goal [ns]
+        self._next_goal: float = math.inf
 
     def values(self, now: int) -> dict[str, float]:
         """The inputs that give the ground's motion at the simulation time `now` [ns]."""
@@ -94,13 +97,21 @@ class CommandedGround:
             joint.move(now, here, 0.0)
             joint.rate = (goal - joint.position) / (1e-9 * (spacing + half))
             joint.end = now + spacing + half
+        self._note_next_goal()
 
     def stop_at_goals(self, now: int) -> bool:
         """Stops what has reached its goal at the simulation time `now` [ns]; whether any has."""
+        if now < self._next_goal:
+            return False
         arrived = [j for j in self._joints.values() if j.end is not None and now >= j.end]
         for joint in arrived:
             joint.move(now, joint.goal, 0.0)
+        self._note_next_goal()
         return bool(arrived)
+
+    def _note_next_goal(self) -> None:
+        ends = [j.end for j in self._joints.values() if j.end is not None]
+        self._next_goal = min(ends, default=math.inf)
 
     def stop(self, now: int) -> bool:
         """Stops what moves at a commanded velocity, at the simulation time `now` [ns].

@@ -7,6 +7,9 @@ from collections.abc import Callable, Sequence
 from datetime import datetime, timezone
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import Any
+
+from numpy.typing import NDArray
 
 from rlv_landing import LandingError, __version__
 from rlv_landing.presets import to_toml
@@ -52,22 +55,19 @@ class LandingLog:
         self._error_reported = self._loss_reported = False
         self._rows = LandingRows(settings.parameters)
 
-    def open(self, fmu: FmuRunner, description: bytes, packer: SampleBytes) -> SampleBytes | None:
+    def open(self, fmu: FmuRunner, description: bytes, packer: SampleBytes) -> None:
         """Opens the log, if the landing is to be recorded and it is not open.
 
         Args:
             fmu: the landing's FMU.
             description: the serialised message of `robot_description`, with which the log begins.
-            packer: what packs the samples.
-
-        Returns:
-            What packs samples with the log's prefixes from now on; None where nothing was opened.
+            packer: what makes the samples' numbers.
 
         Raises:
             LandingError: the log's folder exists or cannot be made.
         """
         if self._folder is None or self.recorder is not None:
-            return None
+            return
         names, qos = self._publishing.names, self._publishing.qos
         of_landing = topics_of(packer.vehicle.interface.legs).recorded
         recorded = [
@@ -87,21 +87,17 @@ class LandingLog:
             {"parameters.toml": to_toml(self._settings.parameters).encode("utf-8")},
         )
         self.recorder.write(names[topics.ROBOT_DESCRIPTION], 0, padded(description))
-        sizes = {
-            t: part.stop - part.start
-            for t, part in zip(packer.topics, packer.slices)
-            if t in of_landing
-        }
-        prefixes = self.recorder.begin_samples({names[t]: size for t, size in sizes.items()})
-        return SampleBytes(packer.vehicle, dict(zip(sizes, prefixes)))
+        sampled = {names[t]: p for t, p in zip(packer.topics, packer.places) if t in of_landing}
+        self.recorder.begin_samples(sampled, packer.count, self._take)
 
-    def write_sample(self, k: int, values: Sequence[float], messages: bytes) -> None:
-        """Writes the messages of sample `k`, whose outputs are `values`."""
-        recorder = self.recorder
-        if recorder is None:
-            return
-        recorder.write_sample(k * self._settings.step_ns, messages)
-        self._rows.add(k * self._settings.step_size, values)
+    def _take(self, samples: NDArray[Any]) -> None:
+        """Takes samples, whose numbers begin with the outputs, for the landing's summary."""
+        self._rows.add(samples["sequence"] * self._settings.step_size, samples["numbers"])
+
+    def write_sample(self, k: int, numbers: Sequence[float]) -> None:
+        """Writes the messages of sample `k` by its `numbers`, see `SampleBytes.numbers`."""
+        if self.recorder is not None:
+            self.recorder.write_sample(k, k * self._settings.step_ns, numbers)
 
     def _report(self, recorder: Recorder) -> None:
         """Reports, once each, that recording has failed, and that messages were left out."""
@@ -115,18 +111,16 @@ class LandingLog:
                 "from the log; set log_must_be_complete, and the landing waits"
             )
 
-    def flush(self, *, now: bool = False, wait: bool = False) -> None:
-        """Hands what was written to the disk now and then; after all messages of a sample.
+    def wait_for_disk(self, *, always: bool) -> None:
+        """From now on waits where the disk takes too long `always`, or if the settings say so."""
+        if self.recorder is not None:
+            self.recorder.must_wait = always or self._settings.log_must_be_complete
 
-        Args:
-            now: at once.
-            wait: wait where the disk takes too long, whatever the settings say.
-        """
-        recorder = self.recorder
-        if recorder is not None:
-            recorder.must_wait = wait or self._settings.log_must_be_complete
-            if recorder.flush(now=now):
-                self._report(recorder)
+    def flush(self) -> None:
+        """Hands what was written to the disk; after all messages of a sample."""
+        if self.recorder is not None:
+            self.recorder.flush()
+            self._report(self.recorder)
 
     def write(self, topic: Topic, stamp: int, data: bytes) -> None:
         """Writes a message with the time `stamp` [ns]."""

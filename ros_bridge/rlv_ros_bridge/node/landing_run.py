@@ -36,6 +36,8 @@ DRAIN_SECONDS = 0.5
 # How long another thread, such as one that answers a service, may hold Python's global lock when a
 # sample is due [s]. Python's default of 5 ms is the time of five samples.
 THREAD_SWITCH_SECONDS = 2e-4
+# The longest time between what is recorded and its way to the disk [s of wall time].
+FLUSH_SECONDS = 0.25
 
 
 @dataclass(frozen=True)
@@ -85,16 +87,23 @@ class LandingRun:
         self._queue = publishing.queue
         vehicle = Vehicle.of(settings.parameters, settings.frame_prefix)
         self._phase = vehicle.interface.output_names.index(PHASE)
-        self._set_packer(SampleBytes(vehicle))
+        self._packer = packer = SampleBytes(vehicle)
+        self._slices = [
+            (publishing.publishers[t], part)
+            for t, part in zip(packer.topics, packer.slices)
+            if t in publishing.publishers
+        ]
+        # any outputs but 0, which are no attitude
+        any_outputs = [1.0] * len(vehicle.interface.outputs)
+        self._start_clock = packer.pack(1, any_outputs)[packer.slices[0]]
         self._wireframe = Wireframe(settings.parameters)
         self._transforms = Transforms(settings.parameters, settings.frame_prefix)
         self._diagnostics = DiagnosticsMessage(identity.node, settings.mode, vehicle.interface)
-        self._markers_every, self._tf_every, self._diagnostics_every = (
-            settings.every[t] for t in (topics.MARKERS, topics.TF, topics.DIAGNOSTICS)
-        )
+        self._every = tuple(settings.every[t] for t in topics.OCCASIONAL)
         self._pacer = Pacer(0.0)
         # wall time that computing a sample takes [s]
         self._sample_cost = RunningMean()
+        self._flushed = 0.0
         self._dropped_before = self._queue.dropped
         self.fmu = FmuRunner(settings.fmu, dict(settings.parameters.items()))
         inputs.clear(settings.step_ns, lambda values: Landing(settings.parameters, inputs=values))
@@ -106,23 +115,7 @@ class LandingRun:
         Raises:
             LandingError: the log's folder exists or cannot be made.
         """
-        packer = self.log.open(self.fmu, self.description, self._packer)
-        if packer is not None:
-            self._set_packer(packer)
-
-    def _set_packer(self, packer: SampleBytes) -> None:
-        self._packer = packer
-        publishers = self._publishing.publishers
-        self._slices = [
-            (publishers[t], part)
-            for t, part in zip(packer.topics, packer.slices)
-            if t in publishers
-        ]
-        # The clock comes first, and is not recorded.
-        self._recorded = slice(packer.slices[0].stop, None)
-        # any outputs but 0, which are no attitude
-        any_outputs = [1.0] * len(packer.vehicle.interface.outputs)
-        self._start_clock = packer.pack(1, any_outputs)[packer.slices[0]]
+        self.log.open(self.fmu, self.description, self._packer)
 
     def publish_start_clock(self) -> None:
         """Publishes `/clock`, if the node does, with its value until the landing starts.
@@ -155,6 +148,8 @@ class LandingRun:
                 if factor != self.realtime_factor:
                     factor = self.realtime_factor
                     pacer.start(k, s.step_size / factor if factor > 0.0 else 0.0)
+                    # Without a pace, nothing is late that waits for the disk.
+                    self.log.wait_for_disk(always=not pacer.period)
                 started = time.perf_counter()
                 values, messages = self._compute_sample(k)
                 cost = time.perf_counter() - started
@@ -167,10 +162,10 @@ class LandingRun:
                 queue.publish(latest)
                 if self._enqueue_occasional(k, values):
                     queue.publish(latest)
-                # Without a pace, nothing is late that waits for the disk.
-                self.log.flush(wait=not pacer.period)
+                self._flush_at_times(started)
         finally:
-            self.log.flush(now=True, wait=True)
+            self.log.wait_for_disk(always=True)
+            self.log.flush()
             pacer.stop()
             sys.setswitchinterval(switch_before)
             gc.unfreeze()
@@ -183,6 +178,7 @@ class LandingRun:
             LandingError: the FMU refuses a step.
         """
         self._queue.poll_subscriptions()
+        self.log.wait_for_disk(always=True)
         last = max(0, self.samples - 1) + count
         while not self.end and self.samples <= last:
             k = self.samples
@@ -191,9 +187,15 @@ class LandingRun:
             self._enqueue_occasional(k, values)
             self.samples = k + 1
             self._queue.publish(0.0)
-            self.log.flush(wait=True)
-        self.log.flush(now=True, wait=True)
+            self._flush_at_times(time.perf_counter())
+        self.log.flush()
         self._queue.drain(DRAIN_SECONDS)
+
+    def _flush_at_times(self, now: float) -> None:
+        """Flushes the log every `FLUSH_SECONDS`; `now` is on `time.perf_counter`'s clock [s]."""
+        if now - self._flushed >= FLUSH_SECONDS:
+            self._flushed = now
+            self.log.flush()
 
     @property
     def time(self) -> float:
@@ -201,7 +203,7 @@ class LandingRun:
         return max(0, self.samples - 1) * self.settings.step_size
 
     def _compute_sample(self, k: int) -> tuple[list[float], bytes]:
-        """Steps to sample k and records it; its outputs and its messages."""
+        """Steps to sample k and records it; its outputs, and its messages if anyone takes them."""
         s = self.settings
         # the inputs of time 0 place the vehicle: they are applied before sample 0
         if k != 1:
@@ -211,9 +213,15 @@ class LandingRun:
         values = self.fmu.values()
         toppled = values[self._phase] == Phase.TOPPLED
         self.end = "toppled" if toppled else "finished" if k == s.steps else ""
-        messages = self._packer.pack(k * s.step_ns, values, k)
-        self.log.write_sample(k, values, messages[self._recorded])
-        return values, messages if k else self._start_clock + messages[self._recorded]
+        if self.log.recorder is None and not self._queue.has_subscribers:
+            return values, b""
+        numbers = self._packer.numbers(values)
+        self.log.write_sample(k, numbers)
+        if not self._queue.has_subscribers:
+            return values, b""
+        messages = self._packer.pack_numbers(k * s.step_ns, numbers)
+        # the clock comes first
+        return values, messages if k else self._start_clock + messages[len(self._start_clock) :]
 
     def _apply_inputs(self, now: int) -> None:
         """Applies and records, at the simulation time `now` [ns], the inputs that have arrived."""
@@ -227,13 +235,16 @@ class LandingRun:
 
         Those that nobody takes are not made.
         """
+        markers, tf, diagnostics = self._every
+        if not self.end and k % markers and k % tf and k % diagnostics:
+            return False
         stamp = k * self.settings.step_ns
         due: list[tuple[Topic, bytes]] = []
-        if (k % self._markers_every == 0 or self.end) and self._is_wanted(topics.MARKERS):
+        if (k % markers == 0 or self.end) and self._is_wanted(topics.MARKERS):
             due.append((topics.MARKERS, self._wireframe.pack(stamp, values)))
-        if (k % self._tf_every == 0 or self.end) and self._is_wanted(topics.TF):
+        if (k % tf == 0 or self.end) and self._is_wanted(topics.TF):
             due.append((topics.TF, self._transforms.pack(stamp, values)))
-        if k % self._diagnostics_every == 0 or self.end:
+        if k % diagnostics == 0 or self.end:
             count = self._count(k)
             self._diagnostics.note(stamp, count.problems)
             if self._is_wanted(topics.DIAGNOSTICS):

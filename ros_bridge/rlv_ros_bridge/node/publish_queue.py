@@ -46,13 +46,13 @@ class PublishQueue:
     """The queue in front of a node's publishers.
 
     `dropped` counts messages that were not published although their topic has subscribers.
+    `has_subscribers` is whether any publisher had some when that was polled last.
     """
 
     def __init__(self) -> None:
         self.publishers: list[TopicPublisher] = []
         self.dropped = 0
-        # whether any of them has subscribers
-        self._has_subscribers = True
+        self.has_subscribers = True
         # Publisher and bytes of a message; None and the due time after a sample's last message.
         self._queue: deque[tuple[TopicPublisher | None, bytes, float]] = deque()
         self._write_cost = RunningMean()
@@ -84,7 +84,7 @@ class PublishQueue:
         self._polled = now or time.perf_counter()
         for publisher in self.publishers:
             publisher.has_subscribers = publisher.publisher.get_subscription_count() > 0
-        self._has_subscribers = any(p.has_subscribers for p in self.publishers)
+        self.has_subscribers = any(p.has_subscribers for p in self.publishers)
 
     def enqueue(self, publisher: TopicPublisher, data: bytes) -> None:
         """Queues the message `data`, unless its topic has no subscribers."""
@@ -103,7 +103,7 @@ class PublishQueue:
             due: when it is due, on `time.perf_counter`'s clock [s].
         """
         append = self._queue.append
-        if self._has_subscribers:
+        if self.has_subscribers:
             for publisher, part in slices:
                 if publisher.has_subscribers and k % publisher.every == 0:
                     append((publisher, data[part], 0.0))

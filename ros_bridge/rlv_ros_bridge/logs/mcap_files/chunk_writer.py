@@ -58,7 +58,7 @@ class PackedRecord:
 class JoinedRecords(RecordBuilder):
     """The records of a chunk, which are copied once, when it is written."""
 
-    def __init__(self, parts: list[bytes]) -> None:
+    def __init__(self, parts: list[Any]) -> None:
         super().__init__()
         self._parts = parts
 
@@ -90,7 +90,7 @@ class ChunkWriter:
         if self._builder is not None and self._statistics is not None:
             self._add_messages(gathered)
         else:
-            for record in split_records(b"".join(gathered.parts)):
+            for record in split_records(b"".join(gathered.parts())):
                 m = decode_record(record[0], record[RECORD_HEAD.size :])
                 self._mcap.add_message(m.channel_id, m.log_time, m.data, m.publish_time, m.sequence)
         self._mcap.flush()
@@ -103,7 +103,7 @@ class ChunkWriter:
         builder, statistics = self._builder, self._statistics
         indexes = _message_indexes(gathered, builder.count)
         first, last, count = gathered.first, gathered.last, gathered.count
-        builder.record_writer = JoinedRecords([builder.end(), *gathered.parts])
+        builder.record_writer = JoinedRecords([builder.end(), *gathered.parts()])
         builder.message_indices = {
             channel: PackedIndex(channel, entries) for channel, entries in indexes.items()
         }
@@ -127,12 +127,16 @@ def _message_indexes(gathered: Gathered, begun: int) -> dict[int, NDArray[np.uin
     """
     shift = np.array([0, begun], "<u8")
     indexes: dict[int, NDArray[np.uint64]] = {}
-    if gathered.samples:
+    records = gathered.sample_records
+    if records is not None and gathered.offsets:
         # All channels at once: the samples' times and offsets, plus the offset in a sample.
-        offsets = gathered.sample_offsets
-        within = np.array([[(0, offset)] for offset in offsets.values()], "<u8")
-        samples = np.array(gathered.samples, "<u8").reshape(-1, 2) + shift
-        indexes = dict(zip(offsets, samples + within))
-    for channel, entries in gathered.singles.items():
+        within = np.array([[(0, offset)] for offset in records.offsets.values()], "<u8")
+        samples = np.empty((gathered.sample_count, 2), "<u8")
+        samples[:, 0], samples[:, 1] = records.read(gathered.rows)["time"], gathered.offsets
+        indexes = dict(zip(records.offsets, samples + shift + within))
+    singles: dict[int, list[tuple[int, int]]] = {}
+    for single in gathered.singles:
+        singles.setdefault(single.channel, []).append((single.time, single.offset))
+    for channel, entries in singles.items():
         indexes[channel] = np.array(entries, "<u8") + shift
     return indexes

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-import time
 import weakref
 from collections import Counter
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
+from typing import Any
+
+from numpy.typing import NDArray
 
 from rlv_landing.errors import reason_of
 
@@ -13,10 +15,10 @@ from ..lost import RECORD as LOST_RECORD
 from ..lost import Gap
 from ..mcap_files.chunk_buffer import ChunkBuffer, Gathered
 from ..mcap_files.chunk_writer import ChunkWriter
+from ..mcap_files.sample_records import SampleRecords
 from .bag_writer import CHUNK_BYTES, BagWriter
 from .writing_thread import WritingThread
 
-FLUSH_SECONDS = 0.25
 # What may wait for the disk, uncompressed [bytes]: half a minute of a landing at 1 kHz.
 WAITING_BYTES = 64 * 1024 * 1024
 # What may wait of messages that are kept in a gap [bytes].
@@ -47,10 +49,9 @@ class ChunkQueue:
         self.gap: Gap | None = None
         self._kept = kept
         self._sequences: Counter[int] = Counter()
-        self._flushed = time.monotonic()
         self._writer = ChunkWriter(bag.mcap)
         self._buffer = ChunkBuffer(self._hand_over, CHUNK_BYTES, self._writer.begun)
-        self.sample_offsets = self._buffer.sample_offsets
+        self._take: Callable[[NDArray[Any]], None] = lambda samples: None
         self._thread = WritingThread(_write_to(self._writer, bag), WAITING_BYTES)
         # A queue that nobody ends leaves no thread.
         weakref.finalize(self, self._thread.end)
@@ -82,29 +83,26 @@ class ChunkQueue:
             self._sequences[channel] = sequence + 1
             self.singles[channel] += 1
 
-    def add_sample(self, time_ns: int, records: bytes) -> None:
-        """Adds the records of a sample with its time [ns]; after an error it does nothing."""
-        if self._thread.error is None:
-            self._buffer.add_sample(time_ns, records)
-            self.samples += 1
-
-    def flush(self, *, now: bool = False) -> bool:
-        """Hands what was gathered to the thread, at most every `FLUSH_SECONDS`.
-
-        To be called after all messages of an instant.
+    def begin_samples(self, records: SampleRecords, take: Callable[[NDArray[Any]], None]) -> None:
+        """Takes samples from now on; once.
 
         Args:
-            now: at once.
-
-        Returns:
-            Whether it was time to.
+            records: makes their records.
+            take: called in the thread that adds with the samples of each chunk, as `records.read`
+                gives them, also of those that are left out.
         """
-        clock = time.monotonic()
-        if not now and clock - self._flushed < FLUSH_SECONDS:
-            return False
-        self._flushed = clock
+        self._take = take
+        self._buffer.begin_samples(records)
+
+    def add_sample(self, sequence: int, time_ns: int, numbers: Sequence[float]) -> None:
+        """Adds the numbers of a sample, with its time [ns]; after an error it does nothing."""
+        if self._thread.error is None:
+            self._buffer.add_sample(sequence, time_ns, numbers)
+            self.samples += 1
+
+    def flush(self) -> None:
+        """Hands what was gathered to the thread; after all messages of an instant."""
         self._buffer.hand_over()
-        return True
 
     def sync(self) -> None:
         """Waits until the operating system has what was added, or writing has failed."""
@@ -123,6 +121,8 @@ class ChunkQueue:
         self._thread.end(discard=discard)
 
     def _hand_over(self, gathered: Gathered) -> None:
+        if gathered.sample_records is not None and gathered.offsets:
+            self._take(gathered.sample_records.read(gathered.rows))
         if self._thread.hand_over((gathered, self.gap), gathered.size, wait=self.must_wait):
             self.gap = None
         else:
@@ -130,20 +130,19 @@ class ChunkQueue:
 
     def _leave_out(self, gathered: Gathered) -> None:
         """Leaves messages out, but for those of the channels that are kept."""
-        kept = [(c, *found) for c in self._kept for found in gathered.records(c)]
-        if sum(len(record) for *_, record in kept) > KEPT_BYTES:
+        kept = [single for single in gathered.singles if single.channel in self._kept]
+        if sum(len(single.record) for single in kept) > KEPT_BYTES:
             kept = []
         self.samples -= gathered.sample_count
-        for channel, entries in gathered.singles.items():
-            self.singles[channel] -= len(entries)
+        self.singles.subtract(single.channel for single in gathered.singles)
         count = gathered.count - len(kept)
         self.lost += count
         if count:
             gap = Gap(count, gathered.sample_count, gathered.first, gathered.last)
             self.gap = gap if self.gap is None else self.gap.and_then(gap)
-        for channel, at, record in kept:
-            self._buffer.add_record(channel, at, record)
-            self.singles[channel] += 1
+        for single in kept:
+            self._buffer.add_record(single.channel, single.time, single.record)
+            self.singles[single.channel] += 1
 
 
 def _write_to(writer: ChunkWriter, bag: BagWriter) -> Callable[[_Job], None]:

@@ -19,6 +19,7 @@ from ...messages.topics import resolve
 from ..mcap_files.chunks import FILE_RECORDS, RECORDS_PER_BYTE
 from ..peaks import read_peaks
 from ..reader import Decoder, LogMessage, LogReader
+from .known_bytes import KnownBytes
 from .repeat import RepeatedRun
 from .result import Difference, Verification
 
@@ -89,6 +90,8 @@ class _Comparison:
         self._decode = Decoder(reader)
         self._recovered = "recovered_from" in reader.metadata
         self._scales: Mapping[tuple[str, str], float] | None = None
+        # by topic; None where they cannot be known
+        self._known: dict[str, KnownBytes | None] = {}
 
     def compare_with(self, samples: Iterator[dict[str, float]]) -> None:
         """Compares all messages with `samples`, the repetition's from time 0 on.
@@ -184,6 +187,32 @@ class _Comparison:
             found.largest = max(found.largest, share)
 
     def _compare(self, message: LogMessage, values: Mapping[str, float]) -> None:
+        """Compares a message, by its bytes if these are known and the same, else by its fields.
+
+        Raises:
+            _DifferenceError: a difference beyond the tolerance.
+        """
+        known = self._known.get(message.topic)
+        if known is not None and message.data == known.of(message.log_time, values):
+            self._found.messages += 1
+            self._found.values += known.values
+            return
+        self._compare_fields(message, values)
+        if message.topic not in self._known:
+            self._known[message.topic] = self._learn(message)
+
+    def _learn(self, message: LogMessage) -> KnownBytes | None:
+        """The bytes of messages like one that is right; None where they cannot be known."""
+        # Of a log that differs in bits or in frames, few messages have the bytes.
+        if self._found.not_exact or self._frames_differ:
+            return None
+        fields = table_of(self._run.vehicle.interface).fields_of[self._topics[message.topic]]
+        try:
+            return KnownBytes(message, self._decode, fields, self._run.vehicle)
+        except LandingError:
+            return None
+
+    def _compare_fields(self, message: LogMessage, values: Mapping[str, float]) -> None:
         expected = expected_fields(
             self._topics[message.topic], values, message.log_time, self._run.vehicle
         )
