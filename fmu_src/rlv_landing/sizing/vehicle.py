@@ -51,6 +51,7 @@ def _vehicle(needs: Needs) -> Rules:
         ),
         "vehicle.transverse_load_at": ("footpad", "closure: conserves energy"),
         "vehicle.legs": (4.0, "closure: four legs"),
+        "leg.kind": ("radial", "closure: two struts in a plane"),
         "vehicle.leg_azimuth": (pi, "closure: leg 1 behind"),
         "vehicle.leg_overrides": ("", "closure: legs that are alike"),
         "vehicle.body_points": ("", "closure: none"),
@@ -121,6 +122,10 @@ def _auxiliary_strut(needs: Needs, leg: LegGeometry) -> Rules:
         "auxiliary_strut.joint_radius": (leg.joint_radius, layout),
         "auxiliary_strut.joint_depth": (leg.auxiliary_depth, layout),
         "auxiliary_strut.length": (leg.auxiliary_length, layout),
+        "auxiliary_strut.joint_spread": (
+            0.2 * leg.auxiliary_length,
+            "closure: a fifth of the length, of tripods",
+        ),
         "auxiliary_strut.stiffness": (stiffness, "closure: 0.1 % of the length at full load"),
         "auxiliary_strut.exponent": (1.0, "closure: linear"),
         "auxiliary_strut.damping": (

@@ -9,7 +9,7 @@ from ..errors import LandingError
 from ..parameters import Parameters
 from ..quantities import MODES, MOST_LEGS, SPACE, Interface, interface_of
 
-MODE, LEGS = "drop.mode", "vehicle.legs"
+MODE, LEGS, KIND = "drop.mode", "vehicle.legs", "leg.kind"
 
 
 def landed_modes(
@@ -45,7 +45,17 @@ def landed_modes(
 def interface_for(
     modes: Collection[str], parameters: Parameters, varied: Mapping[str, Iterable[Any]]
 ) -> Interface:
-    """The outputs of landings, on as many legs as one of them may have; else as `landed_modes`."""
+    """The outputs of landings, on as many legs as one of them may have; else as `landed_modes`.
+
+    Raises:
+        LandingError: Landings on legs of different kinds, which have other responses.
+    """
+    kinds = sorted({str(kind) for kind in varied.get(KIND, ())}) or [parameters.leg.kind]
+    if len(kinds) > 1:
+        raise LandingError(
+            f"a study lands on {' and '.join(kinds)} legs ({KIND}), which have other responses "
+            "each; make a study of each"
+        )
     legs = [parameters.vehicle.legs, *(v for v in varied.get(LEGS, ()) if isinstance(v, float))]
     most = int(max(v for v in legs if v <= MOST_LEGS))
-    return interface_of(min(modes), most, parameters.leg.kind)
+    return interface_of(min(modes), most, kinds[0])

@@ -13,7 +13,7 @@ from ..history import History
 from ..landing import Landing
 from ..outputs import Extreme
 from ..parameters import check_value
-from ..quantities import Quantity
+from ..quantities import RADIAL, TRIPOD, Quantity
 from .replay import ReplayedHistory
 
 # the quantities that may have a limit, by output name; the largest value is compared, of a load its
@@ -31,7 +31,7 @@ LIMITS: dict[str, Quantity] = {
         ),
         Quantity(
             "N",
-            "auxiliary strut's axial force, either sign",
+            "auxiliary strut's axial force, either sign; of a tripod both struts'",
             0.0,
             1e12,
             name="auxiliary_strut.force",
@@ -123,25 +123,27 @@ def first_limit_passed(
     landing's extremes decide, between the samples too. The time is as in `time_passed`.
     """
     limits = check_limits(limits)
-    passed = _beyond(history.extreme, legs, limits)
+    kind = RADIAL if history.parameters is None else history.parameters.leg.kind
+    passed = _beyond(history.extreme, legs, limits, kind)
     if not passed:
         return None
     if isinstance(history, ReplayedHistory):
         names = [
-            _output(name, leg)
+            output
             for name in limits
             for leg in ((None,) if name in OF_THE_BODY else legs)
+            for output in _outputs(name, leg, kind)
         ]
         time = history.first_time(
-            lambda landing: bool(_beyond(landing.extremes(names).__getitem__, legs, limits)),
+            lambda landing: bool(_beyond(landing.extremes(names).__getitem__, legs, limits, kind)),
             float(history.time[0]),
             float(history.time[-1]),
         )
-        passed = _beyond(history.extremes_at(time).__getitem__, legs, limits) or passed
+        passed = _beyond(history.extremes_at(time).__getitem__, legs, limits, kind) or passed
         _, name, leg = max(passed, key=lambda p: p[0])
         return PassedLimit(name, leg, time, limits[name])
     timed = [
-        (_time_beyond(history, name, leg, limits[name]), -excess, name, leg)
+        (_time_beyond(history, name, leg, limits[name], kind), -excess, name, leg)
         for excess, name, leg in passed
     ]
     time, _, name, leg = min(timed, key=lambda p: p[:2])
@@ -149,24 +151,41 @@ def first_limit_passed(
 
 
 def _beyond(
-    extreme: Callable[[str], Extreme], legs: tuple[int, ...], limits: Mapping[str, float]
+    extreme: Callable[[str], Extreme],
+    legs: tuple[int, ...],
+    limits: Mapping[str, float],
+    kind: str,
 ) -> list[tuple[float, str, int | None]]:
     """The limits that the extremes are beyond: by what factor, name, and leg."""
     found: list[tuple[float, str, int | None]] = []
     for name, limit in limits.items():
         for leg in (None,) if name in OF_THE_BODY else legs:
-            reached = _largest(extreme(_output(name, leg)), magnitude=name in EITHER_SIGN)
+            reached = max(
+                _largest(extreme(output), magnitude=name in EITHER_SIGN)
+                for output in _outputs(name, leg, kind)
+            )
             if reached > limit:
                 found.append((reached / limit if limit > 0.0 else inf, name, leg))
     return found
 
 
-def _output(name: str, leg: int | None) -> str:
-    return name if leg is None else f"leg[{leg}].{name}"
+def _outputs(name: str, leg: int | None, kind: str) -> list[str]:
+    """The outputs that a limit of a leg, or of the body, is of; `kind` is that of the legs."""
+    if leg is None:
+        return [name]
+    names = [name]
+    if kind == TRIPOD and name.startswith("auxiliary_strut."):
+        names.append(name.replace("auxiliary_strut.", "auxiliary_strut_2."))
+    return [f"leg[{leg}].{one}" for one in names]
 
 
-def _time_beyond(history: History, name: str, leg: int | None, limit: float) -> float:
-    return time_passed(history, _output(name, leg), limit, magnitude=name in EITHER_SIGN)
+def _time_beyond(history: History, name: str, leg: int | None, limit: float, kind: str) -> float:
+    magnitude = name in EITHER_SIGN
+    return min(
+        time_passed(history, output, limit, magnitude=magnitude)
+        for output in _outputs(name, leg, kind)
+        if _largest(history.extreme(output), magnitude=magnitude) > limit
+    )
 
 
 def time_passed(

@@ -24,7 +24,7 @@ from .outcome import SLIDE
 from .study_effort import check_landings
 from .sweep.design import Design
 from .sweep.factors import column
-from .sweep.responses import JUDGED, LEGS_PEAKS, expand, known_responses
+from .sweep.responses import JUDGED, LEGS_PEAKS, expand, known_responses, suited
 from .sweep.study import ENDS, NUMBERS, UNTIL
 from .sweep.sweep import threads
 from .sweep.sweep_row import MODE, Plan
@@ -139,7 +139,7 @@ def land_many(  # noqa: PLR0913  the options of a study, by name
     mode = parameters.drop.mode
     design = _design(states, mode)
     interface = interface_for([mode], parameters, design.columns)
-    names = expand(PEAKS if responses is None else responses, interface)
+    names = expand(suited(PEAKS, interface) if responses is None else responses, interface)
     _check_numbers(until, every, rtol, slide, workers)
     count = workers or default_workers()
     if len(design):

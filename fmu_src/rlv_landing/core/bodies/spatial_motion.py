@@ -254,8 +254,6 @@ class SpatialMotion(TripodMotion):
         force = to_body(turn, Vector(contact.x, contact.y - model.m_d * p.g, contact.z))
         bias = cross(spin, added(moved, foot.rate))
         keep(spatial_loads(force, bias, foot.from_cg, forces, place), self._loads, i)
-        if self._tripod:
-            self._add_across_loads(i)
 
     def _acceleration(self, spin: Vector, force: Vector, moment: Vector) -> SpatialAttitude:
         """The body's acceleration under the legs' loads, body axes.

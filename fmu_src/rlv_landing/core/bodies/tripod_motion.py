@@ -99,7 +99,7 @@ class TripodMotion(SpatialGround):
         )
 
     def _tripod_acceleration(self, spin: Vector, force: Vector, moment: Vector) -> SpatialAttitude:
-        """The body's acceleration under its struts, body axes.
+        """The body's acceleration under its struts, body axes; completes each leg's loads.
 
         Args:
             spin: The body's angular velocity [rad/s].
@@ -114,6 +114,7 @@ class TripodMotion(SpatialGround):
         moment = less(moment, cross(spin, turning))
         struts = Vector(0.0, 0.0, 0.0)
         for i in range(self.groups):
+            self._add_across_loads(i)
             place = leg_place(self._places, i)
             forces = leg_forces_of(self._forces, i)
             across = across_forces_of(self._across, i)

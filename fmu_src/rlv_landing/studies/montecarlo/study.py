@@ -22,7 +22,7 @@ from ..landed import interface_for
 from ..limits import LIMITS
 from ..outcome import SLIDE
 from ..sweep.factors import LARGEST, read_factor
-from ..sweep.responses import LEGS_PEAKS, expand, known_responses
+from ..sweep.responses import LEGS_PEAKS, expand, known_responses, suited
 from ..sweep.states_table import read_states
 from ..sweep.study import UNTIL, Study, read_end
 from ..variables import VARIABLES, check_variables
@@ -142,7 +142,7 @@ def _montecarlo(document: Mapping[str, Any], path: Path, text: str) -> MonteCarl
     if dispersions.table is not None:
         varied.update(dispersions.table.design.columns)
     interface = interface_for([mode], parameters, varied)
-    loads = expand(toml_keys.texts(keys, "loads") or LOADS, interface)
+    loads = expand(toml_keys.texts(keys, "loads") or suited(LOADS, interface), interface)
     grades = read_grades(toml_keys.tables(document, "grade"), known_responses(interface))
     limits = toml_keys.values(toml_keys.table(document, "limits"), LIMITS, "limit")
     criterion = toml_keys.text(keys, "criterion", "toppled")

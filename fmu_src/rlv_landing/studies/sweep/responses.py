@@ -14,6 +14,7 @@ from ...quantities import (
     LEG_QUANTITIES,
     MODES,
     SPACE,
+    TRIPOD,
     Interface,
     Quantity,
     groups_of,
@@ -192,6 +193,22 @@ def of_kind(q: Quantity) -> Quantity:
     return Quantity(q.unit, "", display_unit=q.display_unit)
 
 
+def suited(names: Sequence[str], interface: Interface) -> tuple[str, ...]:
+    """The names of a default set that landings with this interface have.
+
+    Where legs have a second auxiliary strut, it is named after the first one.
+    """
+    if interface.leg_kind != TRIPOD:
+        return tuple(names)
+    found = []
+    for name in names:
+        if "transverse_force" not in name:
+            found.append(name)
+            if "auxiliary_strut." in name:
+                found.append(name.replace("auxiliary_strut.", "auxiliary_strut_2."))
+    return tuple(found)
+
+
 def expand(names: Sequence[str] | None, interface: Interface = IN_A_PLANE) -> tuple[str, ...]:
     """Names of responses in the order given, with patterns expanded.
 
@@ -205,7 +222,7 @@ def expand(names: Sequence[str] | None, interface: Interface = IN_A_PLANE) -> tu
         LandingError: A response does not exist (the message names the nearest), or is named twice.
     """
     known = known_responses(interface)
-    default = DEFAULT_IN_SPACE if interface.in_space else DEFAULT
+    default = suited(DEFAULT_IN_SPACE if interface.in_space else DEFAULT, interface)
     found: list[str] = []
     for name in default if names is None else names:
         if name.endswith(".*"):

@@ -199,6 +199,7 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
             'or method = "table" with table = "FILE.csv"'
         )
     samples = _samples(keys, method)
+    set_ = {name: (value,) for name, value in fixed.items()}
     if method == "grid":
         grid(factors)
     numbers = {name: toml_keys.number(keys, q) for name, q in NUMBERS.items()}
@@ -215,7 +216,7 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
         seed=toml_keys.integer(keys, "seed", 1, 0, 2**31 - 1),
         parameters=parameters,
         modes=modes,
-        interface=(interface := interface_for(landed, parameters, {**varied, **columns})),
+        interface=(interface := interface_for(landed, parameters, {**set_, **varied, **columns})),
         responses=expand(toml_keys.texts(keys, "responses"), interface),
         limits={name: float(v) for name, v in limits.items()},
         fixed=fixed,
