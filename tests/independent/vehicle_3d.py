@@ -96,7 +96,7 @@ class Vehicle3D:
     Args:
         parameters: numbers of vehicle, ground and drop (its mode gives the legs' azimuths).
         inputs: loads and the ground's motion, from time 0 on; in space the loads alone.
-        deck: in space, the deck's surge, heave, sway, roll, yaw and tilt over time, and their rates.
+        deck: in space, the deck's surge, heave, sway, roll, yaw, tilt over time, and their rates.
         roll_yaw: the body's inertia about its own x and y [kg m2]; a symmetric landing must not
             depend on them, and one in space has its own.
     """
