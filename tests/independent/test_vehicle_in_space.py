@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from array import array
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,7 @@ from vehicle_3d import (
 )
 
 from rlv_landing import Landing, Parameters, load_preset
-from rlv_landing.assembly import spatial_system
+from rlv_landing.assembly import spatial_system, waves_of
 from rlv_landing.core import access
 from rlv_landing.core.bodies.spatial import Spatial
 
@@ -123,6 +124,7 @@ def test_rates_are_those_of_newton_and_euler_at_random_states(legs: int, at: str
 
 
 FIVE, THREE = "five legs, rolled, yawing, on steps and a slope", "three legs, the CG off the axis"
+AT_SEA = "three legs on a ship in waves"
 LANDINGS: dict[str, dict[str, Any]] = {
     FIVE: {
         "vehicle.legs": 5.0,
@@ -143,13 +145,40 @@ LANDINGS: dict[str, dict[str, Any]] = {
         "drop.roll": -0.04,
         "drop.lateral_velocity": -0.4,
     },
+    AT_SEA: {
+        "vehicle.legs": 3.0,
+        "drop.roll": -0.04,
+        "drop.vertical_velocity": -2.0,
+        "ground.slope": 0.05,
+        "ground.slope_direction": 1.0,
+        "sea.wave_height": 6.0,
+        "sea.peak_period": 9.0,
+        "sea.direction": 0.8,
+        "sea.time": 77.0,
+        "sea.deck_x": -40.0,
+        "sea.deck_y": 10.0,
+    },
 }
+
+
+def deck_of(parameters: Parameters) -> Callable[[float], tuple[Array, Array]]:
+    """The deck's motion: the sum of all harmonics, each by itself."""
+    waves = waves_of(parameters)
+    numbers = np.array(waves.numbers).reshape(-1, 13)
+    w, a, b = numbers[:, 0], numbers[:, 1::2].T, numbers[:, 2::2].T
+
+    def deck(t: float) -> tuple[Array, Array]:
+        c, s = np.cos(w * (waves.start + t)), np.sin(w * (waves.start + t))
+        return a @ c + b @ s, (b * w) @ c - (a * w) @ s
+
+    return deck
 
 
 @pytest.mark.parametrize(
     ("name", "until"),
     [
         (THREE, 0.04),
+        (AT_SEA, 0.04),
         pytest.param(THREE, 0.2, marks=LONG),
         pytest.param(FIVE, 0.2, marks=LONG),
     ],
@@ -162,7 +191,8 @@ def test_a_landing_that_rolls_and_yaws_is_that_of_the_newton_euler_model(
     values = {"drop.mode": "space", "drop.contact_time": 0.0, **tensor, **LANDINGS[name]}
     parameters = load_preset("yue2022-figures").with_values(values)
     landing = Landing(parameters, rtol=1e-9)
-    model, legs = Vehicle3D(parameters), int(parameters.vehicle.legs)
+    deck = None if name != AT_SEA else deck_of(parameters)
+    model, legs = Vehicle3D(parameters, deck=deck), int(parameters.vehicle.legs)
     y = model.start([0.0] * 6)
     now = landing.outputs()
     y[POSITION] = [now[f"body.{axis}"] for axis in "xyz"]

@@ -14,7 +14,7 @@ about z by -psi. SI units. Arrays of vectors are (3, n): component, leg.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -79,12 +79,24 @@ def rotation(q: Array) -> Array:
     )
 
 
+def deck_turn(angles: Array, rates: Array) -> tuple[Array, Array]:
+    """Rotation of a deck rolled, yawed and tilted by `angles` [rad], and its spin [rad/s]."""
+    (sr, sy, st), (cr, cy, ct) = np.sin(angles), np.cos(angles)
+    by_yaw = np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
+    by_roll = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]])
+    by_tilt = np.array([[ct, st, 0], [-st, ct, 0], [0, 0, 1]])
+    # each rate is about its own axis, turned by what is turned after it
+    spin = by_tilt @ (rates[0] * np.array([1.0, 0.0, 0.0]) + by_roll @ [0.0, rates[1], 0.0])
+    return by_tilt @ by_roll @ by_yaw, spin - rates[2] * np.array([0.0, 0.0, 1.0])
+
+
 class Vehicle3D:
     """The right-hand side of the vehicle in space.
 
     Args:
         parameters: numbers of vehicle, ground and drop (its mode gives the legs' azimuths).
         inputs: loads and the ground's motion, from time 0 on; in space the loads alone.
+        deck: in space, the deck's surge, heave, sway, roll, yaw, tilt over time, and their rates.
         roll_yaw: the body's inertia about its own x and y [kg m2]; a symmetric landing must not
             depend on them, and one in space has its own.
     """
@@ -94,8 +106,9 @@ class Vehicle3D:
         parameters: Parameters,
         inputs: Inputs = Inputs(),
         roll_yaw: tuple[float, float] = (150.0, 40.0),
+        deck: Callable[[float], tuple[Array, Array]] | None = None,
     ) -> None:
-        self.inputs = inputs
+        self.inputs, self.deck = inputs, deck
         self.vehicle, self.damper, self.strut = (
             parameters.vehicle,
             parameters.main_strut,
@@ -333,6 +346,12 @@ class Vehicle3D:
         relative = (
             speed - cross((0.0, 0.0, -u.tilt_rate), arm) - np.array([[0.0], [u.heave_rate], [0.0]])
         )
+        if self.deck is not None:
+            places, rates = self.deck(t)
+            turn, spin = deck_turn(places[3:], rates[3:])
+            along, normal, across = turn @ along, turn @ normal, turn @ across
+            arm = place - places[:3, None]
+            relative = speed - rates[:3, None] - cross(spin[:, None], arm)
         d, sinking = self.step - normal @ arm, -(normal @ relative)
         depth = np.maximum(d, 0.0)
         Fn = np.maximum(

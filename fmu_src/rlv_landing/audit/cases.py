@@ -23,6 +23,12 @@ class Case(NamedTuple):
         landing.set_inputs({"external.force_x": self.side_load * weight(self.parameters)})
         return landing
 
+    def without_sea(self) -> Case:
+        """This case on a deck that no sea moves."""
+        if self.parameters.sea.wave_height == 0.0:
+            return self
+        return self._replace(parameters=self.parameters.with_values({"sea.wave_height": 0.0}))
+
     @property
     def holds(self) -> bool:
         """Whether friction can hold the vehicle.

@@ -47,23 +47,52 @@ TESTS_PRESET = "yue2022-tests"
     help="Least counts within 5, 10, 20 % of the simulation, or none "
     "[default: those that the preset is stated to reach].",
 )
+@click.option(
+    "--case",
+    metavar="NAME",
+    is_flag=False,
+    flag_value="",
+    help="Land a case from elsewhere instead, and set its numbers beside ours: one that comes with "
+    "the package, all, or a FILE.toml of your own. Without a name: list them.",
+)
+@click.option(
+    "--plot",
+    metavar="FILE.png",
+    type=click.Path(path_type=Path),
+    help="With --case: draw the differences in parts of their tolerances.",
+)
 @json_option()
-@force_option("Overwrite the report if it exists.")
+@force_option("Overwrite the report or the figure if it exists.")
 def validate(
-    tests: tuple[str, ...], html: Path | None, *, as_json: bool, force: bool, **options: Any
+    tests: tuple[str, ...],
+    html: Path | None,
+    case: str | None,
+    plot: Path | None,
+    *,
+    as_json: bool,
+    force: bool,
+    **options: Any,
 ) -> int:
-    """Set landings beside the paper's section 5.
+    """Set landings beside the paper's section 5, or beside a case from elsewhere.
 
     It prints every printed scalar, the summary measures, and the counts within 5, 10 and 20 %.
     Both drop tests are run unless --mode names one. Errors are on the scale of the paper's
     simulation, near-zero scalars on that of their curve. The exit code is 1 when the counts are
-    below those required.
+    below those required. A case has a vehicle and tolerances of its own; the exit code is 1 when a
+    number is beyond its tolerance.
 
     \b
     rlv-landing validate
     rlv-landing validate --html report.html
     rlv-landing validate --parameters mine.toml --require none --mode 2-2 --test-data drop7.csv
+    rlv-landing validate --case
+    rlv-landing validate --case three-legs-friction
     """
+    if case is not None:
+        _refuse_beside_case({**options, "test_data": tests, "html": html})
+        return _cases(case, plot, as_json=as_json, force=force)
+    if plot is not None:
+        raise LandingError("--plot draws the differences of a case: name one by --case")
     from ..validation.required_counts import (
         STATED,
         STATED_OF_TESTS,
@@ -106,6 +135,45 @@ def validate(
         "required": None if bounds is None else dict(zip(levels, bounds)),
     }
     return print_checked(record, tables, missed, as_json=as_json)
+
+
+def _refuse_beside_case(options: dict[str, Any]) -> None:
+    """Check that no option of the paper's landings is given beside --case."""
+    given = {name: value for name, value in options.items() if name != "phase"}
+    names = {"file": "parameters", "pairs": "set", "test_data": "test-data"}
+    for name, value in given.items():
+        if value:
+            raise LandingError(
+                f"--{names.get(name, name)} and --case: a case has its own vehicle and numbers; "
+                "leave one out"
+            )
+
+
+def _cases(name: str, plot: Path | None, *, as_json: bool, force: bool) -> int:
+    """Print the cases that there are, or land one or all of them."""
+    from ..cases.case_file import case_names, find_case
+    from ..cases.compare import compare
+    from ..tables.case_tables import case_list, case_tables
+
+    check_writable(plot, ".png", force=force)
+    if not name:
+        if plot is not None:
+            raise LandingError("--plot needs a case: --case all, or one of those that are listed")
+        found = [find_case(known) for known in case_names()]
+        record = {"cases": [{"name": c.name, "title": c.title, "source": c.source} for c in found]}
+        return print_checked(record, lambda: case_list(found), [], as_json=as_json)
+    results = [compare(find_case(n)) for n in (case_names() if name == "all" else [name])]
+    if plot is not None:
+        from ..figures.case_figure import save_differences
+
+        save_differences(results, plot)
+    missed = [line for result in results for line in result.missed]
+    return print_checked(
+        {"cases": [result.record() for result in results]},
+        lambda: case_tables(results, every=name != "all"),
+        missed,
+        as_json=as_json,
+    )
 
 
 def _measured(tests: tuple[str, ...], modes: tuple[str, ...]) -> dict[str, History]:

@@ -70,12 +70,19 @@ def parse_toml(text: str, name: str, folder: Path | None = None) -> Parameters:
     """
     document = parse_document(text, name)
     try:
-        return _from_document(document, folder)
+        return parameters_of_document(document, folder)
     except LandingError as e:
         raise LandingError(f"{name}: {e}") from None
 
 
-def _from_document(document: dict[str, Any], folder: Path | None) -> Parameters:
+def parameters_of_document(document: dict[str, Any], folder: Path | None = None) -> Parameters:
+    """Parameters from a TOML document, as `read_toml`.
+
+    Names of files in it start from the `folder`; None: the present one.
+
+    Raises:
+        LandingError: Names or values are wrong.
+    """
     known = ("preset", "complete", "mode", *GROUPS)
     for key in document:
         if key not in known:
