@@ -40,6 +40,7 @@ HEIGHT = (
     | FEET
     | {
         *("ground.slope", "ground.slope_direction", "ground.step", "ground.terrain"),
+        *("ground.roughness", "ground.roughness_length", "ground.terrain_seed"),
         "vehicle.body_points",
     }
 )

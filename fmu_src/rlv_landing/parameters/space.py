@@ -18,8 +18,15 @@ ONLY_IN_SPACE = {
         *("inertia_xy", "inertia_xz", "inertia_yz"),
     ),
     Drop: ("heading", "roll", "roll_rate", "yaw_rate", "lateral_velocity"),
-    Ground: ("slope_direction", "step", "terrain"),
+    Ground: (
+        *("slope_direction", "step", "terrain"),
+        *("roughness", "roughness_length", "terrain_seed"),
+    ),
 }
+# the parameters that are whole numbers
+WHOLE_NUMBERS = ("vehicle.legs", "ground.terrain_seed")
+# roughness in parts of its length: slopes of 16 deg, root mean square along a line
+STEEPEST_ROUGHNESS = 0.2
 # a symmetric landing may have them, and does not depend on them
 NO_EFFECT_IN_A_PLANE = ("vehicle.leg_azimuth", "vehicle.inertia_roll", "vehicle.inertia_yaw")
 
@@ -36,6 +43,7 @@ def check_space(vehicle: Vehicle, drop: Drop, ground: Ground) -> None:
     if drop.mode == SPACE:
         check_azimuths(vehicle.leg_azimuths, int(vehicle.legs))
         _check_inertia(vehicle)
+        _check_roughness(ground)
         return
     for name, group in (("vehicle", vehicle), ("drop", drop), ("ground", ground)):
         defaults = {f.name: f.default for f in fields(group)}
@@ -48,6 +56,25 @@ def check_space(vehicle: Vehicle, drop: Drop, ground: Ground) -> None:
                     f"{name}.{what} = {told} needs drop.mode = {SPACE}; drop.mode = {drop.mode} "
                     f"is a symmetric landing, which has {usual}"
                 )
+
+
+def _check_roughness(ground: Ground) -> None:
+    """Check that rough ground has a whole seed, no steep sides, and no other height field."""
+    if not ground.terrain_seed.is_integer():
+        raise LandingError(f"ground.terrain_seed = {ground.terrain_seed:g} is not a whole number")
+    if ground.roughness == 0.0:
+        return
+    if ground.terrain:
+        raise LandingError(
+            f"ground.roughness = {ground.roughness:g} m and ground.terrain both say how high the "
+            "ground is; leave one out"
+        )
+    if ground.roughness > STEEPEST_ROUGHNESS * ground.roughness_length:
+        raise LandingError(
+            f"ground.roughness = {ground.roughness:g} m is above {STEEPEST_ROUGHNESS:g} of "
+            f"ground.roughness_length = {ground.roughness_length:g} m, too steep to land on; give "
+            "a longer one"
+        )
 
 
 def _check_inertia(v: Vehicle) -> None:

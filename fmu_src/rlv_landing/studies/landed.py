@@ -8,6 +8,7 @@ from typing import Any
 from ..errors import LandingError
 from ..parameters import Parameters
 from ..quantities import MODES, MOST_LEGS, SPACE, Interface, interface_of
+from .variables import check_legs
 
 MODE, LEGS = "drop.mode", "vehicle.legs"
 
@@ -45,6 +46,12 @@ def landed_modes(
 def interface_for(
     modes: Collection[str], parameters: Parameters, varied: Mapping[str, Iterable[Any]]
 ) -> Interface:
-    """The outputs of landings, on as many legs as one of them may have; else as `landed_modes`."""
-    legs = [parameters.vehicle.legs, *(v for v in varied.get(LEGS, ()) if isinstance(v, float))]
-    return interface_of(min(modes), int(max(v for v in legs if v <= MOST_LEGS)))
+    """The outputs of landings, on as many legs as one of them may have; else as `landed_modes`.
+
+    Raises:
+        LandingError: What is varied is of a leg that no landing has.
+    """
+    given = [parameters.vehicle.legs, *(v for v in varied.get(LEGS, ()) if isinstance(v, float))]
+    legs = int(max(v for v in given if v <= MOST_LEGS))
+    check_legs(varied, legs)
+    return interface_of(min(modes), legs)

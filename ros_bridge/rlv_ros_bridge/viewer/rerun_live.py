@@ -40,7 +40,10 @@ LONGEST_GAP = 2_000_000_000
 # Period of drawing [s], and of checking for signals [s].
 DRAW_SECONDS, POLL_SECONDS = 0.05, 0.1
 # Parameters of the node that say how its ground lies.
-GROUND = ("ground.slope", "ground.slope_direction", "ground.terrain")
+GROUND = (
+    *("ground.slope", "ground.slope_direction", "ground.terrain"),
+    *("ground.roughness", "ground.roughness_length", "ground.terrain_seed"),
+)
 
 
 class LiveScenes:

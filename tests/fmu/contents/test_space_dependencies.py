@@ -46,6 +46,9 @@ MOVED = FIVE_LEGS | {
     "main_strut.charge_pressure": 2e6,
     "auxiliary_strut.play_tension": 5e-3,
 }
+# rough ground of a seed, which a table leaves no place for
+ROUGH = {"ground.terrain": "", "ground.roughness": 0.02, "ground.roughness_length": 2.0}
+OF_ROUGH = ("ground.roughness", "ground.roughness_length", "ground.terrain_seed")
 # the deck's place and way count in these through the rigid vehicle's attitude, all but not at all
 MORE_DECLARED = {"status.phase", "energy.potential", "body.y", "body.q_w", "contact.force_y"}
 
@@ -107,17 +110,19 @@ def at_start() -> tuple[dict[str, set[str]], dict[str, set[str]]]:
     base = Parameters().with_values(MOVED)
     table = parameters_of("space")
     for own in ({}, DECK):
-        before = Landing(base, inputs=own).values()
         for name, q in table.items():
-            value = base[name]
+            whole = base.with_values(ROUGH) if name in OF_ROUGH else base
+            before = Landing(whole, inputs=own).values()
+            value = whole[name]
             if isinstance(value, str):
                 others = [c for c in q.choices if c != value] or TEXTS.get(name, [])
             else:
                 # these count by little in the short flight
                 part = 0.8 if "inertia" in name or "offset" in name else 0.99
                 others = [] if name == "vehicle.legs" else [value * part + 1e-4 * (value == 0.0)]
+                others = [1.0] if name == "ground.terrain_seed" else others
             for other in others:
-                after = Landing(base.with_values({name: other}), inputs=own).values()
+                after = Landing(whole.with_values({name: other}), inputs=own).values()
                 for output in changed(before, after):
                     parameters.setdefault(output, set()).add(name)
         observe_inputs(Landing(base, inputs=own), inputs, start=True)
