@@ -183,13 +183,13 @@ class Legged(System):
         return farthest / MOST_GATHERED
 
     def may_rest(self, u: Doubles, rates: Doubles, outputs: Doubles) -> bool:
-        """Whether it stands and is slow, with loads and ground that do not change.
+        """Whether it stands or lies, and is slow, with loads and ground that do not change.
 
         Its acceleration does not count: at rest an explicit method oscillates by a part of the
         tolerance.
         """
         phase = status_outputs(outputs, self._energies + ENERGY_OUTPUTS).phase
-        if is_phase(phase, Phase.FALLING) or is_phase(phase, Phase.TOPPLED):
+        if is_phase(phase, Phase.FALLING):
             return False
         if not is_slow(outputs[self._energies + KINETIC], self.mass):
             return False
@@ -203,10 +203,11 @@ class Legged(System):
         return True
 
     def rests(self, outputs: Doubles) -> bool:
-        """Where it has settled."""
-        return is_phase(
-            status_outputs(outputs, self._energies + ENERGY_OUTPUTS).phase, Phase.SETTLED
-        )
+        """Where it has settled, or lies still on its side: there the phase does not tell."""
+        phase = status_outputs(outputs, self._energies + ENERGY_OUTPUTS).phase
+        if is_phase(phase, Phase.TOPPLED):
+            return is_slow(outputs[self._energies + KINETIC], self.mass)
+        return is_phase(phase, Phase.SETTLED)
 
     def note(self, outputs: Doubles) -> None:
         """Keep the largest energy balance."""

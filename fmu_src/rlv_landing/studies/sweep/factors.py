@@ -225,6 +225,8 @@ def _check_range(q: Quantity, low: float, high: float, distribution: str) -> Non
     for bound in (low, high):
         if isfinite(bound) or distribution == "uniform":
             check_value(q, bound)
+        if q.name in WHOLE_NUMBERS and not bound.is_integer():
+            raise LandingError(f"factor {q.name}: {bound:g} is not a whole number")
 
 
 def _values(where: str, values: Any) -> list[Any]:
