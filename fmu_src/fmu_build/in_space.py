@@ -44,6 +44,7 @@ HEIGHT = (
     | SEA
     | {
         *("ground.slope", "ground.slope_direction", "ground.step", "ground.terrain"),
+        *("ground.roughness", "ground.roughness_length", "ground.terrain_seed"),
         "vehicle.body_points",
     }
 )

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from rlv_landing import Landing, LandingError, Parameters, load_preset
 from rlv_landing.assembly import touchdown_energy
-from rlv_landing.parameters import PARAMETER_QUANTITIES
+from rlv_landing.parameters import PARAMETER_QUANTITIES, parameters_of
 from rlv_landing.quantities import LEGS, MODES
 
 # what gives a vehicle its shape, and a landing its touchdown
@@ -54,7 +54,7 @@ def near(rng: random.Random) -> Parameters:
     """The preset with every positive number up to 3.3 times as large or small."""
     base = load_preset("yue2022-figures", rng.choice(sorted(MODES)))
     values = {}
-    for name, q in PARAMETER_QUANTITIES.items():
+    for name, q in parameters_of(base.drop.mode).items():
         if (
             q.kind == "string"
             or name in OTHERS

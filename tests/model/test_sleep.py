@@ -151,7 +151,7 @@ def test_sleep_belongs_to_the_state(mode, rested):
     assert other.statistics["asleep"] == 0
 
 
-def test_nothing_sleeps_in_flight_or_toppled(mode):
+def test_nothing_sleeps_in_flight_or_toppling(mode):
     flying = Landing(
         load_preset(FIGURES, mode).with_values(
             {"drop.contact_time": 4.0, "drop.vertical_velocity": -50.0}

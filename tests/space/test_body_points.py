@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 from space_vehicles import SPACE, TURNING, vehicle
 
-from rlv_landing import Landing, LandingError
+from rlv_landing import Landing, LandingError, Parameters
+from rlv_landing.core import Phase
 from rlv_landing.presets import parse_toml, to_toml
 from rlv_landing.summary import summarise
 
@@ -140,3 +141,21 @@ def test_an_array_that_is_no_list_of_points_is_refused(points: str, told: str) -
 def test_a_symmetric_landing_has_no_points() -> None:
     with pytest.raises(LandingError, match=r"body_points = .* needs drop.mode = space"):
         vehicle({"vehicle.body_points": "0 -1 0"})
+
+
+def test_a_vehicle_that_lies_on_its_side_sleeps_and_wakes() -> None:
+    """Time passes without steps there, as of one that stands; a load moves it again."""
+    rings = f"{ring(0.5, -1.0, 8)}; {ring(0.5, 2.0, 8)}"
+    over = {"drop.tilt": 0.3, "drop.pitch_rate": 2.0, "drop.horizontal_velocity": 3.0}
+    own = {"drop.contact_time": 0.0, "vehicle.body_points": rings, "ground.friction": 0.9}
+    landing = Landing(Parameters().for_mode("space").with_values(own | over), rtol=1e-4)
+    landing.advance_to(8.0)
+    assert landing.statistics["asleep"] == 1
+    assert landing.get("status.phase") == Phase.TOPPLED
+    steps, place = landing.statistics["steps"], landing.get("body.x")
+    landing.advance_to(1000.0)
+    assert landing.statistics["steps"] == steps
+    landing.set_inputs({"external.force_x": 1e4})
+    landing.advance_to(1000.5)
+    assert landing.statistics["asleep"] == 0
+    assert landing.get("body.x") > place + 0.1

@@ -10,6 +10,7 @@ from math import cos, sin
 from ..core import BodyPoint, HeightField
 from ..parameters import Parameters
 from ..parameters.surroundings import read_points, read_terrain
+from .rough_ground import rough_field
 
 NO_FIELD = HeightField(0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 1.0)
 
@@ -22,9 +23,15 @@ def body_points(parameters: Parameters) -> list[BodyPoint]:
 def height_field(parameters: Parameters) -> tuple[HeightField, array[float]]:
     """The height field, and its heights [m] with a node more on each side, row by row.
 
-    These nodes go on in a straight line, so that a plane is met to the field's edge.
+    The nodes beside a field of a table go on in a straight line, so that a plane is met to its
+    edge.
+
+    Raises:
+        LandingError: As `rough_field`.
     """
     ground = parameters.ground
+    if ground.roughness > 0.0:
+        return rough_field(parameters)
     if not ground.terrain:
         return NO_FIELD, array("d", [0.0])
     return _field(ground.terrain, ground.slope_direction)

@@ -66,10 +66,11 @@ def mechanism(parameters: Parameters) -> Mechanism:
     Raises:
         LandingError: The ground is no plane, or the parameters cannot start.
     """
-    if parameters.ground.terrain:
-        raise LandingError(
-            "ground.terrain cannot be exported, the ground is a plane there; leave it out"
-        )
+    for name in ("terrain", "roughness"):
+        if getattr(parameters.ground, name):
+            raise LandingError(
+                f"ground.{name} cannot be exported, the ground is a plane there; leave it out"
+            )
     body = spatial_model(parameters)
     if parameters.drop.mode != SPACE:
         body = body._replace(cg_x=0.0, cg_z=0.0)

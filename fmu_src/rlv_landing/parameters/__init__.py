@@ -6,12 +6,12 @@ from identified ones. Lengths down from the CG are positive depths, as in the pa
 
 from .drop import Drop, Integration
 from .ground import Ground
-from .one_leg import groups_of_a_leg
+from .one_leg import groups_of_a_leg, leg_of
 from .operators import operators_from_table
 from .parameters import Parameters
 from .sea import Sea
 from .surroundings import terrain_from_table, terrain_of
-from .table import GROUPS, PARAMETER_QUANTITIES, check_value, parameters_of
+from .table import GROUPS, PARAMETER_QUANTITIES, ParameterTable, check_value, parameters_of
 from .vehicle import AuxiliaryStrut, MainStrut, Vehicle
 
 __all__ = [
@@ -22,11 +22,13 @@ __all__ = [
     "Ground",
     "Integration",
     "MainStrut",
+    "ParameterTable",
     "Parameters",
     "Sea",
     "Vehicle",
     "check_value",
     "groups_of_a_leg",
+    "leg_of",
     "operators_from_table",
     "parameters_of",
     "terrain_from_table",

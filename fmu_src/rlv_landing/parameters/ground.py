@@ -34,6 +34,21 @@ class Ground:
         "x along its head, z in its first column, heights in m; mode = space",
         listed(),
     ] = ""
+    roughness: Annotated[
+        float,
+        "root mean square height of rough ground about the ground's plane, made of terrain_seed; "
+        "0: none; mode = space",
+        real("m", 0.0, 100.0, display_unit="mm"),
+    ] = 0.0
+    roughness_length: Annotated[
+        float,
+        "length of rough ground: heights so far apart are correlated by 1/e, and no wave of it is "
+        "shorter; mode = space",
+        real("m", 1e-3, 1e3),
+    ] = 1.0
+    terrain_seed: Annotated[
+        float, "whole number that rough ground is made of; mode = space", real("", 0.0, 2.0**31 - 1)
+    ] = 0.0
     gravity: Annotated[
         float, "gravitational acceleration", real("m/s2", 0.0, 50.0, "g", "closure")
     ] = 9.81

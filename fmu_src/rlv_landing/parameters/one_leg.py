@@ -17,7 +17,10 @@ LEG_NAME = re.compile(r"leg\[([1-9][0-9]*)\]\.([a-z_]+\.[a-z_0-9]+)")
 # groups that belong to a leg with all their parameters
 STRUTS = ("main_strut", "auxiliary_strut")
 # of the others, the parameters that do not: of the whole ground, and the legs' share of the vehicle
-OF_ALL = ("ground.slope", "ground.slope_direction", "ground.gravity", "ground.terrain")
+OF_ALL = (
+    *("ground.slope", "ground.slope_direction", "ground.gravity", "ground.terrain"),
+    *("ground.roughness", "ground.roughness_length", "ground.terrain_seed"),
+)
 OF_EACH = ("vehicle.footpad_mass",)
 
 
@@ -37,6 +40,12 @@ def split_leg(name: str) -> tuple[int, str] | None:
     group = found[2].split(".")[0]
     own = group in STRUTS or (group == "ground" and found[2] not in OF_ALL) or found[2] in OF_EACH
     return (int(found[1]), found[2]) if own else None
+
+
+def leg_of(name: str) -> int:
+    """The number of the leg that has the parameter of this name for itself; 0: none has."""
+    found = split_leg(name)
+    return found[0] if found else 0
 
 
 def read_overrides(text: str) -> dict[str, str]:

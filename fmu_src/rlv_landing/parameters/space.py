@@ -21,9 +21,16 @@ ONLY_IN_SPACE = {
     ),
     Leg: ("kind",),
     Drop: ("heading", "roll", "roll_rate", "yaw_rate", "lateral_velocity"),
-    Ground: ("slope_direction", "step", "terrain"),
+    Ground: (
+        *("slope_direction", "step", "terrain"),
+        *("roughness", "roughness_length", "terrain_seed"),
+    ),
     Sea: tuple(f.name for f in fields(Sea)),
 }
+# the parameters that are whole numbers
+WHOLE_NUMBERS = ("vehicle.legs", "ground.terrain_seed")
+# roughness in parts of its length: slopes of 16 deg, root mean square along a line
+STEEPEST_ROUGHNESS = 0.2
 # a symmetric landing may have them, and does not depend on them
 NO_EFFECT_IN_A_PLANE = (
     *("vehicle.leg_azimuth", "vehicle.inertia_roll", "vehicle.inertia_yaw"),
@@ -43,6 +50,7 @@ def check_space(vehicle: Vehicle, leg: Leg, drop: Drop, ground: Ground, sea: Sea
     if drop.mode == SPACE:
         check_azimuths(vehicle.leg_azimuths, int(vehicle.legs))
         _check_inertia(vehicle)
+        _check_roughness(ground)
         return
     groups: dict[str, Vehicle | Leg | Drop | Ground | Sea] = {
         "vehicle": vehicle,
@@ -62,6 +70,25 @@ def check_space(vehicle: Vehicle, leg: Leg, drop: Drop, ground: Ground, sea: Sea
                     f"{name}.{what} = {told} needs drop.mode = {SPACE}; drop.mode = {drop.mode} "
                     f"is a symmetric landing, which has {usual or 'none'}"
                 )
+
+
+def _check_roughness(ground: Ground) -> None:
+    """Check that rough ground has a whole seed, no steep sides, and no other height field."""
+    if not ground.terrain_seed.is_integer():
+        raise LandingError(f"ground.terrain_seed = {ground.terrain_seed:g} is not a whole number")
+    if ground.roughness == 0.0:
+        return
+    if ground.terrain:
+        raise LandingError(
+            f"ground.roughness = {ground.roughness:g} m and ground.terrain both say how high the "
+            "ground is; leave one out"
+        )
+    if ground.roughness > STEEPEST_ROUGHNESS * ground.roughness_length:
+        raise LandingError(
+            f"ground.roughness = {ground.roughness:g} m is above {STEEPEST_ROUGHNESS:g} of "
+            f"ground.roughness_length = {ground.roughness_length:g} m, too steep to land on; give "
+            "a longer one"
+        )
 
 
 def _check_inertia(v: Vehicle) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 from ..errors import LandingError
 from ..parameters import Parameters
 from ..quantities import MODES, MOST_LEGS, SPACE, Interface, interface_of
+from .variables import check_legs
 
 MODE, LEGS, KIND = "drop.mode", "vehicle.legs", "leg.kind"
 
@@ -48,7 +49,8 @@ def interface_for(
     """The outputs of landings, on as many legs as one of them may have; else as `landed_modes`.
 
     Raises:
-        LandingError: Landings on legs of different kinds, which have other responses.
+        LandingError: Landings on legs of different kinds, which have other responses; what is
+            varied is of a leg that no landing has.
     """
     kinds = sorted({str(kind) for kind in varied.get(KIND, ())}) or [parameters.leg.kind]
     if len(kinds) > 1:
@@ -56,6 +58,7 @@ def interface_for(
             f"a study lands on {' and '.join(kinds)} legs ({KIND}), which have other responses "
             "each; make a study of each"
         )
-    legs = [parameters.vehicle.legs, *(v for v in varied.get(LEGS, ()) if isinstance(v, float))]
-    most = int(max(v for v in legs if v <= MOST_LEGS))
+    given = [parameters.vehicle.legs, *(v for v in varied.get(LEGS, ()) if isinstance(v, float))]
+    most = int(max(v for v in given if v <= MOST_LEGS))
+    check_legs(varied, most)
     return interface_of(min(modes), most, kinds[0])

@@ -5,7 +5,7 @@ Every function raises LandingError, which names key, value, unit, limit and reme
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -39,9 +39,8 @@ def tables(document: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
     return value
 
 
-def refuse_unknown(given: Iterable[str], known: Iterable[str], what: str) -> None:
+def refuse_unknown(given: Iterable[str], known: Collection[str], what: str) -> None:
     """Refuse a key that is not known; the error names the nearest."""
-    known = list(known)
     for key in given:
         if key not in known:
             raise unknown(what, key, known)

@@ -7,7 +7,7 @@ from math import atan2, cos, hypot, pi, sin
 from typing import Any
 
 from ..errors import LandingError, unknown
-from ..parameters import PARAMETER_QUANTITIES, Parameters, parameters_of
+from ..parameters import PARAMETER_QUANTITIES, Parameters, ParameterTable, leg_of, parameters_of
 from ..parameters.space import NO_EFFECT_IN_A_PLANE
 from ..quantities import INPUTS_BY_NAME, MODES, SPACE, SPACE_INPUTS, Quantity
 
@@ -31,14 +31,16 @@ DIRECTION = Quantity(
 )
 POLAR = (SPEED.name, DIRECTION.name)
 _IN_SPACE = {q.name: q for q in SPACE_INPUTS}
-# every parameter, every input as a constant, and the polar velocity
-VARIABLES: dict[str, Quantity] = {
-    **PARAMETER_QUANTITIES,
-    **_IN_SPACE,
-    **INPUTS_BY_NAME,
-    SPEED.name: SPEED,
-    DIRECTION.name: DIRECTION,
-}
+# every parameter, that of one leg as well, every input as a constant, and the polar velocity
+VARIABLES = ParameterTable(
+    {
+        **PARAMETER_QUANTITIES,
+        **_IN_SPACE,
+        **INPUTS_BY_NAME,
+        SPEED.name: SPEED,
+        DIRECTION.name: DIRECTION,
+    }
+)
 _ONLY_IN_SPACE = {
     *(parameters_of(SPACE).keys() - parameters_of(min(MODES)).keys()),
     *POLAR,
@@ -71,7 +73,7 @@ def check_variables(names: Collection[str], modes: Iterable[str]) -> None:
     for mode in modes:
         lacking = _ONLY_IN_A_PLANE if mode == SPACE else _ONLY_IN_SPACE
         for name in names:
-            if name in lacking:
+            if name in lacking or (mode != SPACE and leg_of(name)):
                 needed = " or ".join(MODES) if mode == SPACE else SPACE
                 raise LandingError(
                     f"{name} needs drop.mode = {needed}, and the study lands with {mode}; "
@@ -84,6 +86,17 @@ def check_variables(names: Collection[str], modes: Iterable[str]) -> None:
             f"{polar[0]} and {given[0]} both give the horizontal velocity; take {ALONG} and "
             f"{ACROSS}, or {' and '.join(POLAR)}"
         )
+
+
+def check_legs(names: Iterable[str], legs: int) -> None:
+    """Check that no name is of a leg beyond the vehicle's `legs`.
+
+    Raises:
+        LandingError: One is.
+    """
+    for name in names:
+        if leg_of(name) > legs:
+            raise LandingError(f"{name} is of a leg that is not there: vehicle.legs = {legs}")
 
 
 def resolved(values: Mapping[str, Any], parameters: Parameters) -> dict[str, Any]:

@@ -45,6 +45,7 @@ DRAW_SECONDS, POLL_SECONDS = 0.05, 0.1
 # Parameters of the node that say how its ground lies, and moves at sea.
 GROUND = (
     *("ground.slope", "ground.slope_direction", "ground.terrain", "drop.contact_time"),
+    *("ground.roughness", "ground.roughness_length", "ground.terrain_seed"),
     *(name for name in PARAMETER_QUANTITIES if name.startswith("sea.")),
 )
 

@@ -56,6 +56,9 @@ MOVED = FIVE_LEGS | {
     "sea.deck_y": 5.0,
     "sea.deck_z": 2.0,
 }
+# rough ground of a seed, which a table leaves no place for
+ROUGH = {"ground.terrain": "", "ground.roughness": 0.02, "ground.roughness_length": 2.0}
+OF_ROUGH = ("ground.roughness", "ground.roughness_length", "ground.terrain_seed")
 # the deck's place and way count in these through the rigid vehicle's attitude, all but not at all
 MORE_DECLARED = {"status.phase", "energy.potential", "body.y", "body.q_w", "contact.force_y"}
 
@@ -124,19 +127,21 @@ def causes_at_start(
     # these change the outputs' names
     table = {n: q for n, q in parameters_of("space").items() if n not in ("vehicle.legs", KIND)}
     for own in decks:
-        before = Landing(base, inputs=own).values()
         for name, q in table.items():
-            value = base[name]
             if name == "vehicle.transverse_load_at" and base.leg.kind == "tripod":
                 continue
+            whole = base.with_values(ROUGH) if name in OF_ROUGH else base
+            before = Landing(whole, inputs=own).values()
+            value = whole[name]
             if isinstance(value, str):
                 others = [c for c in q.choices if c != value] or TEXTS.get(name, [])
             else:
                 # these count by little in the short flight
                 part = 0.8 if "inertia" in name or "offset" in name else 0.99
                 others = [value * part + 1e-4 * (value == 0.0)]
+                others = [1.0] if name == "ground.terrain_seed" else others
             for other in others:
-                after = Landing(base.with_values({name: other}), inputs=own).values()
+                after = Landing(whole.with_values({name: other}), inputs=own).values()
                 for output in changed(before, after, base.interface):
                     parameters.setdefault(output, set()).add(name)
         observe_inputs(Landing(base, inputs=own), inputs, start=True)

@@ -186,13 +186,13 @@ class Legged(System):
         return farthest / MOST_GATHERED
 
     def is_slow(self, outputs: Doubles) -> bool:
-        """Whether it stands and is slow.
+        """Whether it stands or lies, and is slow.
 
         Its acceleration does not count: at rest an explicit method oscillates by a part of the
         tolerance.
         """
         phase = status_outputs(outputs, self._energies + ENERGY_OUTPUTS).phase
-        if is_phase(phase, Phase.FALLING) or is_phase(phase, Phase.TOPPLED):
+        if is_phase(phase, Phase.FALLING):
             return False
         return is_slow(outputs[self._energies + KINETIC], self.mass)
 
@@ -210,10 +210,11 @@ class Legged(System):
         return True
 
     def rests(self, outputs: Doubles) -> bool:
-        """Where it has settled."""
-        return is_phase(
-            status_outputs(outputs, self._energies + ENERGY_OUTPUTS).phase, Phase.SETTLED
-        )
+        """Where it has settled, or lies still on its side: there the phase does not tell."""
+        phase = status_outputs(outputs, self._energies + ENERGY_OUTPUTS).phase
+        if is_phase(phase, Phase.TOPPLED):
+            return is_slow(outputs[self._energies + KINETIC], self.mass)
+        return is_phase(phase, Phase.SETTLED)
 
     def note(self, outputs: Doubles) -> None:
         """Keep the largest energy balance."""

@@ -61,7 +61,7 @@ class GroundShape:
         self._model = spatial_model(parameters)
         self._field, self._heights = height_field(parameters)
         self._direction = parameters.ground.slope_direction
-        self.is_field = bool(parameters.ground.terrain)
+        self.is_field = self._field.columns > 0.0
         # a plane seen from above is shorter by the cosine of its slope
         u, v = ((a / self._model.normal_y, b / self._model.normal_y) for a, b in (x, z))
         if self.is_field:

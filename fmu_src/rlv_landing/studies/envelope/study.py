@@ -26,6 +26,7 @@ from ..outcome import DEFAULT_SLIDE, SLIDE
 from ..variables import (
     POLAR,
     VARIABLES,
+    check_legs,
     check_variables,
     is_parameter,
     resolved,
@@ -135,6 +136,7 @@ class EnvelopeStudy:
         for name in given:
             if given.count(name) > 1:
                 raise LandingError(f"{name} is given twice, as an axis or in families; leave one")
+        check_legs(given, self.most_legs)
         for family in self.families:
             check_variables([*given, *self.inputs, *self.polar], [self.mode_of(family)])
             self.parameters_with(family)

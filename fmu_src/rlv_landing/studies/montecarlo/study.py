@@ -138,7 +138,8 @@ def _montecarlo(document: Mapping[str, Any], path: Path, text: str) -> MonteCarl
     dispersions = _dispersions(document, keys, path, mode, fixed)
     check_variables([*fixed, *dispersions.names], [mode])
     samples = _samples(keys, dispersions)
-    varied: dict[str, Any] = {f.name: f.values or (f.low, f.high) for f in dispersions.factors}
+    varied: dict[str, Any] = dict.fromkeys(dispersions.names, ())
+    varied.update({f.name: f.values or (f.low, f.high) for f in dispersions.factors})
     if dispersions.table is not None:
         varied.update(dispersions.table.design.columns)
     interface = interface_for([mode], parameters, varied)

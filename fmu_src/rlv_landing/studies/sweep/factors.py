@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import isfinite
+from math import ceil, floor, isfinite
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ...errors import LandingError, unknown
 from ...parameters import check_value
+from ...parameters.space import WHOLE_NUMBERS
 from ...quantities import Quantity, shown
 from ...text.values import check_together, is_number, to_si, unit_of
 from .. import toml_keys
@@ -35,6 +36,8 @@ class Factor:
     - uniform: evenly between `low` and `high`; in a grid `count` levels, both ends included.
     - normal: `mean` and `deviation`, cut off at `low` and `high`.
     - choice: each of `values` with the same probability.
+
+    Of parameters that are whole numbers, uniform is each of them, and normal the nearest.
     """
 
     quantity: Quantity
@@ -52,6 +55,10 @@ class Factor:
         """The quantity's name."""
         return self.quantity.name
 
+    @property
+    def _is_whole(self) -> bool:
+        return self.name in WHOLE_NUMBERS
+
     def quantiles(self, probabilities: Array) -> NDArray[Any]:
         """The distribution's quantiles at `probabilities`, 0 to 1."""
         if self.distribution == "choice":
@@ -66,7 +73,11 @@ class Factor:
                 (self.high - self.mean) / self.deviation,
             )
             drawn: Array = truncnorm.ppf(probabilities, low, high, self.mean, self.deviation)
-            return np.clip(drawn, self.low, self.high)
+            return np.clip(np.rint(drawn) if self._is_whole else drawn, self.low, self.high)
+        if self._is_whole:
+            first, count = ceil(self.low), floor(self.high) - ceil(self.low) + 1
+            steps: Array = np.minimum(np.floor(count * probabilities), count - 1)
+            return first + steps
         return np.clip(self.low + (self.high - self.low) * probabilities, self.low, self.high)
 
     def levels(self) -> NDArray[Any]:
@@ -214,6 +225,8 @@ def _check_range(q: Quantity, low: float, high: float, distribution: str) -> Non
     for bound in (low, high):
         if isfinite(bound) or distribution == "uniform":
             check_value(q, bound)
+        if q.name in WHOLE_NUMBERS and not bound.is_integer():
+            raise LandingError(f"factor {q.name}: {bound:g} is not a whole number")
 
 
 def _values(where: str, values: Any) -> list[Any]:
