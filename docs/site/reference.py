@@ -11,7 +11,7 @@ import rlv_landing
 from fmu_build.installing.neutral_fronts import describe_slave
 from rlv_landing.cli import cli
 from rlv_landing.parameters import PARAMETER_QUANTITIES
-from rlv_landing.quantities import MOST_LEGS, SPACE, Interface, Quantity, interface_of
+from rlv_landing.quantities import MOST_LEGS, SPACE, TRIPOD, Interface, Quantity, interface_of
 from rlv_ros_bridge.messages.tables import table_of
 from rlv_ros_bridge.messages.topics import CLOCK, VARIABLES
 
@@ -56,6 +56,7 @@ def _inputs_and_outputs() -> str:
     for title, interface in (
         ("Symmetric landings", interface_of("2-2")),
         ("Landings in space", interface_of(SPACE, MOST_LEGS)),
+        ("Landings in space on tripods", interface_of(SPACE, MOST_LEGS, TRIPOD)),
     ):
         text += f"\n## {title}: inputs\n\n{_quantities(interface.inputs)}"
         text += f"\n## {title}: outputs\n\n{_quantities(_of_one_leg(interface))}"

@@ -162,6 +162,53 @@ def test_urdf_places_joints_and_footpads_where_the_model_has_them(parameters: Pa
     assert sum(masses) == pytest.approx(_whole_mass(parameters), abs=0.02)
 
 
+def test_urdf_and_sdf_of_a_tripod_have_three_struts_that_meet() -> None:
+    parameters = five_legs().with_values({**PLANE, "leg.kind": "tripod"})
+    robot = yourdfpy.URDF.load(_file(urdf(parameters)), load_meshes=False)
+    robot.update_cfg(dict.fromkeys(robot.actuated_joint_names, 0.0))
+    landing = Landing(parameters)
+    turn, place = _pose(landing)
+    a = parameters.auxiliary_strut
+    for leg in range(1, 6):
+        foot = robot.get_transform(f"leg{leg}_footpad", "base_link")[:3, 3]
+        x, y, z = (landing.get(f"leg[{leg}].footpad.{axis}") for axis in "xyz")
+        assert turn.apply(foot.copy()) + place == pytest.approx([x, -z, y], abs=1e-9)
+        for end in ("main_end", "auxiliary2_end"):
+            near = robot.get_transform(f"leg{leg}_{end}", "base_link")[:3, 3]
+            assert near == pytest.approx(foot)
+        joints = [
+            robot.get_transform(f"leg{leg}_auxiliary{k}_upper", "base_link")[:3, 3] for k in (1, 2)
+        ]
+        assert np.linalg.norm(joints[0] - joints[1]) == pytest.approx(2.0 * a.joint_spread)
+        assert np.linalg.norm(joints[1] - foot) == pytest.approx(a.length)
+    # both hinges turn the strut across itself: the footpad moves in two directions
+    ways = []
+    for hinge in ("leg1_auxiliary1_hinge", "leg1_auxiliary1_hinge2"):
+        robot.update_cfg({**dict.fromkeys(robot.actuated_joint_names, 0.0), hinge: 1e-6})
+        moved = robot.get_transform("leg1_footpad", "base_link")[:3, 3]
+        robot.update_cfg(dict.fromkeys(robot.actuated_joint_names, 0.0))
+        ways.append((moved - robot.get_transform("leg1_footpad", "base_link")[:3, 3]) / 1e-6)
+    assert np.linalg.norm(np.cross(*ways)) > 0.9 * a.length**2
+    world = ET.fromstring(sdf(parameters)).find("world")
+    assert world is not None
+    model = world.find("model[@name='rlv_landing']")
+    assert model is not None
+    kinds = {j.get("name"): j.get("type") for j in model.iter("joint")}
+    for strut in ("main", "auxiliary1", "auxiliary2"):
+        assert kinds[f"leg3_{strut}_hinge"] == "universal"
+        assert kinds[f"leg3_{strut}"] == "prismatic"
+        first, second = (
+            np.array([float(word) for word in axis.text.split()])
+            for tag in ("axis", "axis2")
+            for axis in model.iterfind(f"joint[@name='leg3_{strut}_hinge']/{tag}/xyz")
+        )
+        assert first @ second == pytest.approx(0.0, abs=1e-12)
+    assert [kinds[f"leg3_{end}_end"] for end in ("main", "auxiliary2")] == ["ball", "ball"]
+    assert "leg3_auxiliary1_end" not in kinds
+    masses = [float(m.text) for m in model.iterfind("link/inertial/mass")]
+    assert sum(masses) == pytest.approx(_whole_mass(parameters), abs=0.03)
+
+
 def test_sdf_and_mjcf_have_the_same_inertia_joints_and_laws() -> None:
     parameters = five_legs().with_values(PLANE)
     world = ET.fromstring(sdf(parameters)).find("world")
@@ -244,9 +291,6 @@ def test_what_cannot_be_exported_is_refused(command, tmp_path) -> None:
     field = terrain_of([-9.0, 9.0], [-9.0, 9.0], [[0.0, 0.0], [0.0, 0.0]])
     with pytest.raises(LandingError, match=r"ground\.terrain cannot be exported"):
         mjcf(five_legs().with_values({"ground.terrain": field}))
-    for kind in (sdf, urdf):
-        with pytest.raises(LandingError, match=r"tripod is exported as MJCF alone: .*write --mjcf"):
-            kind(linear_vehicle().with_values({"leg.kind": "tripod"}))
     file = tmp_path / "stage.xml"
     none = command("export")
     assert (none.code, none.err.count("\n")) == (2, 1)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from ..errors import LandingError
-from ..quantities import RADIAL, TRIPOD
 from .linear import Linear
 from .mechanism import LegMechanism, Vector
 
@@ -20,13 +19,14 @@ FAR = 10.0
 
 
 class Rod(NamedTuple):
-    """A strut: it turns about the leg's axis at `joint`, and is shorter by its stroke.
+    """A strut: it turns about its axes at `joint`, and is shorter by its stroke.
 
     Attributes:
         name: Of the strut, as `leg1_main`.
         joint: Place on the body [m].
         foot: Place of the footpad [m].
         along: Direction of a positive stroke, from the footpad to the joint.
+        axes: Directions of the axes about which it turns: the leg's; of a tripod also one across.
         linear: Its spring and damper.
         least: Least stroke [m].
         most: Largest stroke [m].
@@ -36,6 +36,7 @@ class Rod(NamedTuple):
     joint: Vector
     foot: Vector
     along: Vector
+    axes: Sequence[Vector]
     linear: Linear
     least: float
     most: float
@@ -46,30 +47,29 @@ class Rod(NamedTuple):
         return -self.linear.preload / self.linear.stiffness
 
 
-def rods(leg: LegMechanism) -> tuple[Rod, Rod]:
-    """The main and the auxiliary strut of a leg.
-
-    Raises:
-        LandingError: It is a tripod, whose rods turn about no one axis.
-    """
-    if len(leg.auxiliary_joints) > 1:
-        raise LandingError(
-            f"leg.kind = {TRIPOD} is exported as MJCF alone: rods of SDF and URDF turn about one "
-            f"axis; write --mjcf, or leg.kind = {RADIAL}"
-        )
-    return (
+def rods(leg: LegMechanism) -> list[Rod]:
+    """The struts of a leg: the main one, the auxiliary one that carries the footpad, the others."""
+    joints = leg.auxiliary_joints
+    names = ["auxiliary"] if len(joints) == 1 else [f"auxiliary{k + 1}" for k in range(len(joints))]
+    return [
         _rod(leg, "main", leg.main_joint, leg.main, leg.stroke_max),
-        _rod(leg, "auxiliary", leg.auxiliary_joints[0], leg.auxiliary, FAR),
-    )
+        *(_rod(leg, name, joint, leg.auxiliary, FAR) for name, joint in zip(names, joints)),
+    ]
 
 
 def _rod(leg: LegMechanism, name: str, joint: Vector, linear: Linear, most: float) -> Rod:
     way = joint - leg.foot
+    along = way / float(np.linalg.norm(way))
+    axes = [leg.axis]
+    if len(leg.auxiliary_joints) > 1:
+        second = np.cross(along, leg.axis)
+        axes.append(second / float(np.linalg.norm(second)))
     return Rod(
         name=f"leg{leg.number}_{name}",
         joint=joint,
         foot=leg.foot,
-        along=way / float(np.linalg.norm(way)),
+        along=along,
+        axes=axes,
         linear=linear,
         least=0.0 if linear.preload > 0.0 else -FAR,
         most=most,

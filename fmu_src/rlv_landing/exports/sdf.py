@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from xml.etree.ElementTree import Element
 
 import numpy as np
@@ -35,9 +36,10 @@ def sdf(parameters: Parameters) -> str:
     for leg in made.legs:
         _leg(model, leg)
     notes = (
-        "SDF: each strut is a revolute joint, a rod of 1 g, and a prismatic joint with spring and",
-        "damper, 0 at full length and positive in compression; the main strut closes a loop at the",
-        "footpad. The start's velocity, which SDF does not carry, is",
+        "SDF: each strut is a revolute joint, of a tripod a universal one, a rod of 1 g, and a",
+        "prismatic joint with spring and damper, 0 at full length and positive in compression; the",
+        "main strut closes a loop at the footpad, of a tripod legN_auxiliary2 another, by balls.",
+        "The start's velocity, which SDF does not carry, is",
         f"{written(made.velocity)} m/s, inertial axes, and {written(made.spin)} rad/s, body axes.",
     )
     return document(root, made, notes)
@@ -67,14 +69,17 @@ def _link(model: Element, name: str, place: Vector, mass: float, inertia: Vector
 def _leg(model: Element, leg: LegMechanism) -> None:
     foot = f"leg{leg.number}_footpad"
     _contact(_link(model, foot, leg.foot, leg.mass, POINT), leg)
-    main, auxiliary = rods(leg)
-    for rod in (main, auxiliary):
+    main, carrier, *others = rods(leg)
+    for rod in (main, carrier, *others):
         _link(model, f"{rod.name}_upper", rod.joint, ROD_MASS, POINT)
-        _joint(model, f"{rod.name}_hinge", "revolute", "base_link", f"{rod.name}_upper", leg.axis)
-    _slide(model, auxiliary, foot)
-    _link(model, f"{main.name}_rod", leg.foot, ROD_MASS, POINT)
-    _slide(model, main, f"{main.name}_rod")
-    _joint(model, f"{main.name}_end", "revolute", f"{main.name}_rod", foot, leg.axis)
+        _joint(model, f"{rod.name}_hinge", "base_link", f"{rod.name}_upper", rod.axes)
+    _slide(model, carrier, foot)
+    for rod in (main, *others):
+        end = f"{rod.name}_rod"
+        _link(model, end, leg.foot, ROD_MASS, POINT)
+        _slide(model, rod, end)
+        # the footpad of a tripod turns with the strut that carries it
+        _joint(model, f"{rod.name}_end", end, foot, rod.axes if len(rod.axes) == 1 else ())
 
 
 def _contact(link: Element, leg: LegMechanism) -> None:
@@ -89,19 +94,25 @@ def _contact(link: Element, leg: LegMechanism) -> None:
     child(contact, "kd", written(leg.ground.damping))
 
 
+# by the number of axes about which a joint turns
+TURNING = ("ball", "revolute", "universal")
+
+
 def _joint(
-    model: Element, name: str, kind: str, parent: str, to: str, direction: Vector
-) -> Element:
-    joint = child(model, "joint", name=name, type=kind)
+    model: Element, name: str, parent: str, to: str, axes: Sequence[Vector], kind: str = ""
+) -> list[Element]:
+    """A joint that turns about its axes, about all where there are none; its axes."""
+    joint = child(model, "joint", name=name, type=kind or TURNING[len(axes)])
     child(joint, "parent", parent)
     child(joint, "child", to)
-    axis = child(joint, "axis")
-    child(axis, "xyz", written(direction), expressed_in="__model__")
-    return axis
+    made = [child(joint, tag) for tag, _ in zip(("axis", "axis2"), axes)]
+    for axis, direction in zip(made, axes):
+        child(axis, "xyz", written(direction), expressed_in="__model__")
+    return made
 
 
 def _slide(model: Element, rod: Rod, end: str) -> None:
-    axis = _joint(model, rod.name, "prismatic", f"{rod.name}_upper", end, rod.along)
+    (axis,) = _joint(model, rod.name, f"{rod.name}_upper", end, [rod.along], "prismatic")
     dynamics = child(axis, "dynamics")
     child(dynamics, "damping", written(rod.linear.damping))
     child(dynamics, "spring_reference", written(rod.free_stroke))

@@ -16,9 +16,10 @@ RADIUS = 0.03
 NO_LIMIT = {"effort": "1e9", "velocity": "1e3"}
 NOTES = (
     "URDF: a tree, so the main strut's rod ends at the footpad without a joint: close it there by",
-    "legN_main_end and legN_footpad, which coincide. Struts are prismatic joints, 0 at full length",
-    "and positive in compression. URDF has no springs: stiffness and free stroke stand in the",
-    "gazebo elements, as springStiffness and springReference.",
+    "legN_main_end and legN_footpad, which coincide. A tripod's struts have two hinges each on the",
+    "body, and legN_auxiliary2_end is left open, too. Struts are prismatic joints, 0 at full",
+    "length and positive in compression. URDF has no springs: stiffness and free stroke stand in",
+    "the gazebo elements, as springStiffness and springReference.",
 )
 
 
@@ -54,15 +55,26 @@ def _leg(root: Element, leg: LegMechanism) -> None:
     foot = _link(root, f"leg{leg.number}_footpad", leg.mass, POINT)
     for part in ("visual", "collision"):
         child(child(child(foot, part), "geometry"), "sphere", radius=RADIUS)
-    main, auxiliary = rods(leg)
-    _link(root, f"{main.name}_end", ROD_MASS, POINT)
-    for rod, end in ((main, f"{main.name}_end"), (auxiliary, f"leg{leg.number}_footpad")):
-        upper = f"{rod.name}_upper"
-        _link(root, upper, ROD_MASS, POINT)
-        hinge = _joint(root, f"{rod.name}_hinge", "revolute", "base_link", upper, rod.joint)
-        child(hinge, "axis", xyz=leg.axis)
+    main, carrier, *others = rods(leg)
+    for rod in (main, *others):
+        _link(root, f"{rod.name}_end", ROD_MASS, POINT)
+    for rod in (main, carrier, *others):
+        _hinge(root, rod)
+        _slide(root, rod, f"leg{leg.number}_footpad" if rod is carrier else f"{rod.name}_end")
+
+
+def _hinge(root: Element, rod: Rod) -> None:
+    """The joint on the body: a revolute one, of a tripod two with a cross between."""
+    upper = f"{rod.name}_upper"
+    parent, place = "base_link", rod.joint
+    names = (f"{rod.name}_cross", upper)[-len(rod.axes) :]
+    for k, (to, axis) in enumerate(zip(names, rod.axes), 1):
+        _link(root, to, ROD_MASS, POINT)
+        name = f"{rod.name}_hinge" if k == 1 else f"{rod.name}_hinge{k}"
+        hinge = _joint(root, name, "revolute", parent, to, place)
+        child(hinge, "axis", xyz=axis)
         child(hinge, "limit", lower=-np.pi, upper=np.pi, **NO_LIMIT)
-        _slide(root, rod, end)
+        parent, place = to, np.zeros(3)
 
 
 def _joint(root: Element, name: str, kind: str, parent: str, to: str, place: Vector) -> Element:

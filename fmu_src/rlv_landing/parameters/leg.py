@@ -67,12 +67,14 @@ def check_triangle(m: MainStrut, a: AuxiliaryStrut, kind: str) -> None:
     """
     length = in_plane_length(a, kind)
     apart = ((m.joint_radius - a.joint_radius) ** 2 + (m.joint_depth - a.joint_depth) ** 2) ** 0.5
-    across = "" if kind != TRIPOD else f" ({length:g} m in the leg's plane)"
+    across = spread = ""
+    if kind == TRIPOD:
+        across, spread = f" ({length:g} m in the leg's plane)", ", and auxiliary_strut.joint_spread"
     if not abs(m.length - length) < apart < m.length + length:
         raise LandingError(
             f"main_strut.length = {m.length:g} m and auxiliary_strut.length = {a.length:g} m"
             f"{across} do not meet at a footpad: their joints are {apart:g} m apart; "
-            "check lengths, joint radii and depths"
+            f"check lengths, joint radii and depths{spread}"
         )
     if kind != TRIPOD:
         return
