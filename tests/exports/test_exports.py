@@ -291,6 +291,8 @@ def test_what_cannot_be_exported_is_refused(command, tmp_path) -> None:
     field = terrain_of([-9.0, 9.0], [-9.0, 9.0], [[0.0, 0.0], [0.0, 0.0]])
     with pytest.raises(LandingError, match=r"ground\.terrain cannot be exported"):
         mjcf(five_legs().with_values({"ground.terrain": field}))
+    with pytest.raises(LandingError, match=r"sea\.wave_height = 2 m cannot be exported"):
+        mjcf(five_legs().with_values({**PLANE, "sea.wave_height": 2.0}))
     file = tmp_path / "stage.xml"
     none = command("export")
     assert (none.code, none.err.count("\n")) == (2, 1)

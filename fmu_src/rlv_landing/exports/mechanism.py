@@ -64,13 +64,22 @@ def mechanism(parameters: Parameters) -> Mechanism:
     """The linearised vehicle of a landing.
 
     Raises:
-        LandingError: The ground is no plane, or the parameters cannot start.
+        LandingError: The ground is no plane at rest, or the parameters cannot start.
     """
     for name in ("terrain", "roughness"):
         if getattr(parameters.ground, name):
             raise LandingError(
                 f"ground.{name} cannot be exported, the ground is a plane there; leave it out"
             )
+    if parameters.ground.terrain:
+        raise LandingError(
+            "ground.terrain cannot be exported, the ground is a plane there; leave it out"
+        )
+    if parameters.sea.wave_height > 0.0:
+        raise LandingError(
+            f"sea.wave_height = {parameters.sea.wave_height:g} m cannot be exported, the ground is "
+            "at rest there; set it to 0"
+        )
     body = spatial_model(parameters)
     if parameters.drop.mode != SPACE:
         body = body._replace(cg_x=0.0, cg_z=0.0)
