@@ -42,6 +42,21 @@ def test_rows_are_the_same_on_any_threads_grown_or_resumed(tmp_path, command):
     assert "20 runs of seed 5" in out
 
 
+def test_rows_go_to_a_file_of_ones_own_as_those_of_a_sweep(tmp_path, command):
+    study = write(tmp_path, samples=3)
+    for name in ("rows.csv", "rows.parquet"):
+        folder, _ = made(command, study, f"r-{name}", "--output", str(tmp_path / name))
+    table = rows(folder / "results.parquet")
+    assert rows(tmp_path / "rows.parquet") == table
+    head, *lines = (tmp_path / "rows.csv").read_text().splitlines()
+    assert len(lines) == 3
+    at = head.replace('"', "").split(",").index("margin.slid")
+    assert [float(line.split(",")[at]) for line in lines] == [r["margin.slid"] for r in table]
+    again = command("montecarlo", str(study), "--output", str(tmp_path / "rows.csv"))
+    assert again.code == 2
+    assert "--force" in again.err
+
+
 def test_a_study_that_changed_is_not_resumed_but_its_end_may_be_another(tmp_path, command):
     study = write(tmp_path, samples=3)
     folder, _ = made(command, study, "r")
@@ -194,6 +209,8 @@ def test_the_difference_of_two_studies_is_told_run_by_run(tmp_path, command):
         (["study.toml", "--toml", "x.toml"], "name it by --run K"),
         (["study.toml", "--run", "0", "--toml", "x.txt"], "must end in .toml"),
         (["study.toml", "--html", "x.txt"], "must end in .html"),
+        (["study.toml", "--output", "x.txt"], "must end in .csv or .parquet"),
+        (["study.toml", "--run", "0", "--output", "x.csv"], "leave one out"),
         (["nothing.toml"], "nothing.toml"),
         (["study.toml", "--samples", "0"], "--samples"),
     ],

@@ -16,7 +16,7 @@ from ..number_types import NumberRange, WholeNumber
 from ..one_landing import draw_landing, landing_text
 from ..options import HELP_NAMES, PICTURES, check_writable, force_option, plot_option
 from ..printing import FAILED, json_text, print_json
-from .study_run import RunOptions, run_montecarlo, run_options, warn_of_joint
+from .study_run import RunOptions, output_option, run_montecarlo, run_options, warn_of_joint
 from .sweep import show_plan
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 @click.command(context_settings=HELP_NAMES)
 @click.argument("study", metavar="STUDY.toml", required=False, type=click.Path(path_type=Path))
+@output_option()
 @run_options
 @click.option(
     "--samples",
@@ -63,7 +64,7 @@ if TYPE_CHECKING:
     metavar="PART",
     help="With --diff: change of a load that counts, in parts of its largest magnitude.",
 )
-@force_option("Overwrite a report, picture or TOML file that exists.")
+@force_option("Overwrite an output, report, picture or TOML file that exists.")
 def montecarlo(
     study: Path | None, diff: tuple[Path, Path] | None, again: int | None, **options: Any
 ) -> None:
@@ -89,7 +90,7 @@ def montecarlo(
 
     \b
     rlv-landing montecarlo study.toml --dry-run
-    rlv-landing montecarlo study.toml --results baseline
+    rlv-landing montecarlo study.toml --results baseline --output rows.csv
     rlv-landing montecarlo study.toml --results baseline --samples 10000 --resume
     rlv-landing montecarlo study.toml --run 1234 --plot worst.png
     rlv-landing montecarlo --diff baseline changed
@@ -101,9 +102,11 @@ def montecarlo(
     Exit codes: 0 done, or --diff finds the same; 1 ended before its time, or --diff finds other
     outcomes or loads; 2 bad input, 130 interrupted.
     """
+    from ...tables.rows_file import ENDINGS, write_rows
+
     toml, plot, force = options.pop("toml"), options.pop("plot"), options.pop("force")
     samples, html, tolerance = (options.pop(name) for name in ("samples", "html", "tolerance"))
-    no_report = options.pop("no_report")
+    no_report, output = options.pop("no_report"), options.pop("output")
     run = RunOptions(**options)
     if diff is not None:
         if study is not None or again is not None:
@@ -114,9 +117,12 @@ def montecarlo(
         raise LandingError("name a study, STUDY.toml, or two results folders by --diff A B")
     if again is None and (toml is not None or plot is not None):
         raise LandingError("--toml and --plot are of one run; name it by --run K")
+    if output is not None and again is not None:
+        raise LandingError("--output has the rows of all runs, and --run lands one; leave one out")
     if html is not None and no_report:
         raise LandingError("--html names a report, and --no-report writes none; leave one out")
-    for path, ending in ((html, ".html"), (toml, ".toml"), (plot, PICTURES)):
+    written = ((output, ENDINGS), (html, ".html"), (toml, ".toml"), (plot, PICTURES))
+    for path, ending in written:
         check_writable(path, ending, force=force)
     task = _task(study, samples)
     if again is not None:
@@ -128,7 +134,10 @@ def montecarlo(
         show_plan(task, run)
         return
     folder = run.results or Path(task.study.name)
-    _make(task, study, None if no_report else html or folder / "report.html", folder, run)
+    path = run_montecarlo(task, folder, run)
+    if output is not None:
+        write_rows(path, output)
+    _tell(task, study, path, None if no_report else html or folder / "report.html", run)
 
 
 def _task(study: Path, samples: int | None) -> MonteCarloTask:
@@ -150,17 +159,16 @@ def _with_samples(read: MonteCarlo, samples: int) -> MonteCarlo:
     return replace(read, samples=samples)
 
 
-def _make(
-    task: MonteCarloTask, study: Path, report: Path | None, folder: Path, run: RunOptions
+def _tell(
+    task: MonteCarloTask, study: Path, path: Path, report: Path | None, run: RunOptions
 ) -> None:
-    """Make the runs, and print and write what came of them."""
+    """Print and write what came of the runs, whose rows are in the file `path`."""
     from ...figures.montecarlo_report.page import write
     from ...studies.montecarlo.difference import SUMMARY
     from ...studies.montecarlo.summary import summarise
     from ...tables.montecarlo_tables import montecarlo_tables
 
-    read = task.montecarlo
-    path = run_montecarlo(task, folder, run)
+    read, folder = task.montecarlo, path.parent
     found = summarise(path, read)
     record = {"criterion": read.criterion, **found.record()}
     again = f"rlv-landing montecarlo {shlex.quote(str(study))} --run "

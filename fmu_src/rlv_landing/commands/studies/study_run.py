@@ -89,6 +89,17 @@ def run_options(command: F) -> F:
     return add_options(command, options)
 
 
+def output_option() -> Callable[[F], F]:
+    """The option --output: a file of one's own with all rows."""
+    return click.option(
+        "-o",
+        "--output",
+        metavar="FILE.csv|parquet",
+        type=click.Path(path_type=Path),
+        help="Write the rows to this file, too (SI units).",
+    )
+
+
 @contextmanager
 def engine_for(plan: Plan, options: RunOptions) -> Iterator[Engine]:
     """Threads of this process, or the cluster that --scheduler names.

@@ -11,7 +11,7 @@ import click
 
 from ..options import HELP_NAMES, check_writable, force_option
 from ..printing import print_json
-from .study_run import RunOptions, run_options, run_task, warn_of_joint
+from .study_run import RunOptions, output_option, run_options, run_task, warn_of_joint
 
 if TYPE_CHECKING:
     from ...studies.sweep.sweep_row import Task
@@ -19,13 +19,7 @@ if TYPE_CHECKING:
 
 @click.command(context_settings=HELP_NAMES)
 @click.argument("study", metavar="STUDY.toml", type=click.Path(path_type=Path))
-@click.option(
-    "-o",
-    "--output",
-    metavar="FILE.csv|parquet",
-    type=click.Path(path_type=Path),
-    help="Write the rows to this file, too (SI units).",
-)
+@output_option()
 @force_option("Overwrite --output if it exists.")
 @run_options
 def sweep(study: Path, *, output: Path | None, force: bool, **options: Any) -> None:
