@@ -71,10 +71,6 @@ def mechanism(parameters: Parameters) -> Mechanism:
             raise LandingError(
                 f"ground.{name} cannot be exported, the ground is a plane there; leave it out"
             )
-    if parameters.ground.terrain:
-        raise LandingError(
-            "ground.terrain cannot be exported, the ground is a plane there; leave it out"
-        )
     if parameters.sea.wave_height > 0.0:
         raise LandingError(
             f"sea.wave_height = {parameters.sea.wave_height:g} m cannot be exported, the ground is "
