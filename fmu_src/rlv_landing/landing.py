@@ -119,6 +119,15 @@ class Landing:
             "asleep": int(s.asleep),
         }
 
+    @property
+    def settled_since(self) -> float | None:
+        """Time [s] since when `status.phase` is settled; None where it is not.
+
+        It is the end of an internal step: it does not depend on samples.
+        """
+        s = self._solver
+        return float(s.rest_since) if s.rest_since <= self._time < s.rest_until else None
+
     def _repr_html_(self) -> str:
         """The table that notebooks show: the present outputs, with units and meanings."""
         from html import escape

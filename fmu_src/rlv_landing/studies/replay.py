@@ -91,6 +91,11 @@ class ReplayedHistory(History):
                 found.append(landing.outputs())
         return found
 
+    def settled_since(self) -> float | None:
+        """The time [s] since when the vehicle has settled at the end; None where it has not."""
+        with self._landing_at(float(self.time[-1])) as landing:
+            return landing.settled_since
+
     def first_time(self, holds: Holds, after: float, before: float) -> float:
         """The first time [s] at which something `holds` that does not end again.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..access import (
+    ACCELERATIONS,
     ATTITUDE,
     BODY,
     BODY_ACCELERATION,
@@ -78,6 +79,8 @@ class PlanarMotion(Legged):
         super().__init__(legs, places, (scale, relative), INPUTS, row, 0)
         self.mass += body.m_u
         self._energies = BODY_OUTPUTS
+        self._accelerations = ACCELERATIONS
+        self._axes = 3
         self._body = stored([body])
         self._loads = room(len(legs), PLANAR_LOADS)
         self._attitude = room(1, ATTITUDE)

@@ -19,6 +19,7 @@ from ..access import (
     LEG_OUTPUTS,
     POINT_STATE,
     ROTATION,
+    SPATIAL_ACCELERATIONS,
     SPATIAL_INPUTS,
     SPATIAL_OUTPUTS,
     STATUS_OUTPUTS,
@@ -121,6 +122,8 @@ class SpatialGround(Legged):
         super().__init__(legs, places, (scale, relative), SPATIAL_INPUTS, row, behind)
         self.mass += body.m_u
         self._energies = SPATIAL_OUTPUTS
+        self._accelerations = SPATIAL_ACCELERATIONS
+        self._axes = 6
         self.points = len(points)
         self._first_point = self.controlled - behind
         self.counted = self._first_point
