@@ -9,7 +9,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from .assembly import DeckMotion, begin, ground_motion, landing_system, waves_of
-from .core import DormandPrince, Exponential, Inputs, Solver, SpatialInputs
+from .core import DormandPrince, Exponential, Inputs, Phase, Solver, SpatialInputs
 from .errors import LandingError, unknown
 from .events.search import EventSearch
 from .inputs.driven import DrivenInputs, Setting, changed_setting
@@ -121,6 +121,17 @@ class Landing:
             "rhs_calls": int(s.rhs_calls),
             "asleep": int(s.asleep),
         }
+
+    @property
+    def settled_since(self) -> float | None:
+        """Time [s] since when `status.phase` is settled; None where it is not.
+
+        It is the end of an internal step: it does not depend on samples.
+        """
+        s = self._solver
+        # what lies on its side rests, too
+        rests = s.rest_since <= self._time < s.rest_until
+        return float(s.rest_since) if rests and self.get("status.phase") == Phase.SETTLED else None
 
     def _repr_html_(self) -> str:
         """The table that notebooks show: the present outputs, with units and meanings."""

@@ -10,6 +10,7 @@ from operator import attrgetter
 from typing import NamedTuple
 
 from .core import Fault, Solver, Spatial
+from .core.solvers.path import NEVER
 from .core.solvers.step_control import LEAST_PREVIOUS_ERROR, LONGEST_STEP
 from .errors import LandingError
 from .inputs.ground_way import Way, way_faults
@@ -48,6 +49,9 @@ class StateHeader(NamedTuple):
     dense_at: float  # where the last step's interpolant begins
     seen: float  # see `rlv_landing.core.solvers.watch`
     noted: float
+    calm_since: float  # see `rlv_landing.core.solvers.path` [s]
+    rest_since: float  # [s]
+    rest_until: float  # [s]
     asleep: float  # see `rlv_landing.core.solvers.rest`
     nearest: float  # [m]
     still: float
@@ -185,6 +189,9 @@ def _faults(h: StateHeader, dense: int) -> Iterator[str]:
         yield f"a next step of {h.h:g} s, outside (0, {LONGEST_STEP:g}] s"
     if not LEAST_PREVIOUS_ERROR <= h.error_old <= 1.0:
         yield f"an error of the last step of {h.error_old:g}, outside [{LEAST_PREVIOUS_ERROR:g}, 1]"
+    for name in ("calm_since", "rest_since", "rest_until"):
+        if not (h.t_start <= getattr(h, name) <= h.t or getattr(h, name) == NEVER):
+            yield f"{name} = {getattr(h, name):g} s, which is not a time until {h.t:g} s"
     for name in ("steps", "rejected", "rhs_calls", "still", "waited"):
         value = getattr(h, name)
         if not (0.0 <= value < LARGEST_COUNT and value.is_integer()):

@@ -43,7 +43,7 @@ class Hung(System):
     def may_rest(self, u, rates, outputs):
         return rates[0] == 0.0 and abs(outputs[1]) < 1e-3
 
-    def rests(self, outputs):
+    def rests(self, outputs, most):
         return abs(outputs[1]) < 1e-3
 
     def distance(self, shift):

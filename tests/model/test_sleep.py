@@ -58,6 +58,26 @@ def test_on_a_slope_it_falls_asleep_at_any_tolerance(preset, rtol, method):
     assert landing.get("status.phase") == Phase.SETTLED
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_what_rocks_settles_once_whatever_the_samples(mode, method):
+    """It rocks by up to 2 mm/s for some tenths of a second, and by less for longer."""
+    slope = {"ground.slope": 0.07, "drop.tilt": 0.07, "drop.contact_time": 0.0}
+    parameters = load_preset(FIGURES, mode).with_values(slope)
+    found = set()
+    for every in (1e-3, 7e-3):
+        landing = Landing(parameters, method=method)
+        assert landing.settled_since is None
+        history = landing.run(3.5, every)
+        settled = history["status.phase"] == Phase.SETTLED
+        since = landing.settled_since
+        assert np.count_nonzero(np.diff(settled)) == 1
+        assert 0.0 <= history.time[int(np.argmax(settled))] - since < every
+        found.add(since)
+    assert len(found) == 1
+    landing.set_inputs({"external.force_x": 500.0})
+    assert landing.settled_since is None
+
+
 def test_what_sleeps_has_settled_and_stands_still(rested):
     assert rested.get("status.phase") == Phase.SETTLED
     for name in ("body.ax", "body.ay", "body.pitch_acceleration"):

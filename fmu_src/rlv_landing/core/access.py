@@ -90,6 +90,10 @@ KINETIC = EnergyOutputs._fields.index("kinetic")
 DISSIPATED = EnergyOutputs._fields.index("dissipated")
 BALANCE = EnergyOutputs._fields.index("balance")
 
+# where the body's outputs have its accelerations
+ACCELERATIONS = BodyOutputs._fields.index("ax")
+SPATIAL_ACCELERATIONS = SpatialOutputs._fields.index("ax")
+
 # where the accounts have what friction has dissipated, the last of what is dissipated
 FRICTION = Accounts._fields.index("friction")
 # what the auxiliary struts have, the ground's normal damping, and the work of the ground

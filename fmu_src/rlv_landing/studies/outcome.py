@@ -144,7 +144,7 @@ def judged(
     elif first_slide < inf:
         name, time = "slid", first_slide
     elif phase[-1] == SETTLED:
-        name, time = "settled", _start_of_last_period(history, SETTLED)
+        name, time = "settled", _settled_since(history)
     elif isinstance(history, ReplayedHistory) and history.stands_from is not None:
         name, time = "standing", float(history.time[history.stands_from])
     else:
@@ -183,23 +183,24 @@ def _stroke(leg: int) -> str:
 def _until_toppled(history: History) -> tuple[float, History]:
     """Time at which a landing toppled [s], and the landing until the sample at that time."""
     first = _first_of_last_period(history["status.phase"], TOPPLED)
+    time = float(history.time[first])
     if not isinstance(history, ReplayedHistory) or first == 0:
-        return float(history.time[first]), history.until(first + 1)
-    time = _start_of_last_period(history, TOPPLED)
+        return time, history.until(first + 1)
+
+    def toppled(landing: Landing) -> bool:
+        return landing.get("status.phase") == TOPPLED
+
+    time = history.first_time(toppled, float(history.time[first - 1]), time)
     return time, history.ending_at(time)
 
 
-def _start_of_last_period(history: History, which: float) -> float:
-    """The time [s] from which on the phase is `which` until the end; exact where it can be."""
-    first = _first_of_last_period(history["status.phase"], which)
-    time = float(history.time[first])
-    if not isinstance(history, ReplayedHistory) or first == 0:
-        return time
-
-    def there(landing: Landing) -> bool:
-        return landing.get("status.phase") == which
-
-    return history.first_time(there, float(history.time[first - 1]), time)
+def _settled_since(history: History) -> float:
+    """The time [s] from which on the phase is settled until the end; exact where it can be."""
+    if isinstance(history, ReplayedHistory):
+        since = history.settled_since()
+        if since is not None:
+            return since
+    return float(history.time[_first_of_last_period(history["status.phase"], SETTLED)])
 
 
 def _first_beyond(time: Array, slip: Array, slide: float) -> float:

@@ -102,6 +102,11 @@ class ReplayedHistory(History):
             self._states.insert(before + 1, (t, landing.state()))
         return landing.outputs()
 
+    def settled_since(self) -> float | None:
+        """The time [s] since when the vehicle has settled at the end; None where it has not."""
+        with self._landing_at(float(self.time[-1])) as landing:
+            return landing.settled_since
+
     def first_time(self, holds: Holds, after: float, before: float) -> float:
         """The first time [s] at which something `holds` that does not end again.
 

@@ -45,9 +45,10 @@ from ..records import (
     LegState,
     LegStatus,
     Phase,
+    StatusOutputs,
     StiffPair,
 )
-from .status import is_phase, is_slow
+from .status import is_phase, is_slow, is_still, phase_at_rest
 from .system import System
 
 # Of a main strut's liquid, in parts: the excess that is left where it is; what is left of a larger
@@ -96,6 +97,8 @@ class Legged(System):
     _first_leg: int  # its place in the state
     _works: int  # their place in the state
     _energies: int  # their place in the outputs, behind the body's
+    _accelerations: int  # the body's place in the outputs
+    _axes: int  # how many they are
     _places: Records[LegPlace]
     _legs: Records[LegModel]
     _motions: Records[FootMotion]
@@ -127,6 +130,8 @@ class Legged(System):
         self._first_leg = self.controlled - LEG * groups - behind
         self._works = self.controlled + ACCOUNTS
         self._energies = 0
+        self._accelerations = 0
+        self._axes = 0
         self._places = stored(places)
         self._legs = stored(legs)
         self._motions = room(groups, FOOT_MOTION)
@@ -209,12 +214,21 @@ class Legged(System):
         """Whether the ground does not move at the inputs `u`."""
         return True
 
-    def rests(self, outputs: Doubles) -> bool:
-        """Where it has settled, or lies still on its side: there the phase does not tell."""
+    def rests(self, outputs: Doubles, most: float) -> bool:
+        """Whether it touches the ground and is still, see `is_still`; on its side, too."""
         phase = status_outputs(outputs, self._energies + ENERGY_OUTPUTS).phase
-        if is_phase(phase, Phase.TOPPLED):
-            return is_slow(outputs[self._energies + KINETIC], self.mass)
-        return is_phase(phase, Phase.SETTLED)
+        if is_phase(phase, Phase.FALLING):
+            return False
+        acceleration = 0.0
+        for i in range(self._axes):
+            acceleration += fabs(outputs[self._accelerations + i])
+        return is_still(outputs[self._energies + KINETIC], self.mass, acceleration, most)
+
+    def tell_rest(self, outputs: Doubles, at: int) -> None:
+        """Write the phase: settled, where it touches the ground and has not toppled."""
+        place = at + self._energies + ENERGY_OUTPUTS
+        status = status_outputs(outputs, place)
+        put(StatusOutputs(phase_at_rest(status.phase), status.stability_margin), outputs, place)
 
     def note(self, outputs: Doubles) -> None:
         """Keep the largest energy balance."""

@@ -45,7 +45,7 @@ class Planar(PlanarMotion):
         at += BODY_OUTPUTS
         self._put_energies(y, kinetic, self._potential_energy(y), out, at)
         at += ENERGY_OUTPUTS
-        self._put_status(y, dy, kinetic, out, at)
+        self._put_status(y, out, at)
         at += STATUS_OUTPUTS
         for i in range(self.groups):
             self._put_leg(i, y, out, at + LEG_OUTPUTS * i)
@@ -109,10 +109,8 @@ class Planar(PlanarMotion):
             height += footpad_moment(body, leg, leg_place(self._places, i), stands, m_d)
         return p.g * height
 
-    def _put_status(
-        self, y: Doubles, rates: Doubles, kinetic: float, out: Doubles, at: int
-    ) -> None:
-        """Write the phase and the stability margin to `out[at:]`.
+    def _put_status(self, y: Doubles, out: Doubles, at: int) -> None:
+        """Write the phase, which is not yet told to be settled, and the stability margin.
 
         The margin is the distance [m] from the whole vehicle's CG to the nearer of the outermost
         footpads, negative beyond.
@@ -134,8 +132,5 @@ class Planar(PlanarMotion):
             depth = max(depth, foot.depth)
         x = moment / mass
         margin = min(x - low, high - x)
-        r = body_state(rates, 0)
-        acceleration = fabs(r.vx) + fabs(r.vy) + fabs(r.pitch_rate)
-        upright = TURNED_OVER - fabs(body.pitch)
-        phase = phase_of(margin, upright, depth, kinetic, mass, acceleration)
+        phase = phase_of(margin, TURNED_OVER - fabs(body.pitch), depth)
         put(StatusOutputs(phase, margin), out, at)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ..access import (
+    ACCELERATIONS,
     ATTITUDE,
     BALANCE,
     BODY,
@@ -80,6 +81,8 @@ class PlanarMotion(Legged):
         self.mass += body.m_u
         self._energies = BODY_OUTPUTS
         self.unsought = self._energies + BALANCE
+        self._accelerations = ACCELERATIONS
+        self._axes = 3
         self._body = stored([body])
         self._loads = room(len(legs), PLANAR_LOADS)
         self._attitude = room(1, ATTITUDE)

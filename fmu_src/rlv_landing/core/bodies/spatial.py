@@ -64,7 +64,7 @@ class Spatial(SpatialMotion):
         at += SPATIAL_OUTPUTS
         self._put_energies(y, kinetic, self._potential_energy(y), out, at)
         at += ENERGY_OUTPUTS
-        self._put_status(y, dy, kinetic, turn, out, at)
+        self._put_status(y, turn, out, at)
         at += STATUS_OUTPUTS
         for i in range(self.groups):
             self._put_leg(i, y, out, at)
@@ -177,10 +177,8 @@ class Spatial(SpatialMotion):
             height += leg_model(self._legs, i).m_d * foot_loads_of(self._feet, i).y
         return p.g * height
 
-    def _put_status(
-        self, y: Doubles, rates: Doubles, kinetic: float, turn: Rotation, out: Doubles, at: int
-    ) -> None:
-        """Write the phase and the stability margin to `out[at:]`.
+    def _put_status(self, y: Doubles, turn: Rotation, out: Doubles, at: int) -> None:
+        """Write the phase, which is not yet told to be settled, and the stability margin.
 
         The margin is the distance [m], seen from above, from the whole vehicle's CG to the nearest
         edge of the polygon that the footpads span, negative beyond.
@@ -200,11 +198,7 @@ class Spatial(SpatialMotion):
         for i in range(self.points):
             depth = max(depth, foot_loads_of(self._point_loads, i).depth)
         margin = self._margin(x / mass, z / mass)
-        r = spatial_state(rates, 0)
-        acceleration = fabs(r.vx) + fabs(r.vy) + fabs(r.vz)
-        acceleration += fabs(r.spin_x) + fabs(r.spin_y) + fabs(r.spin_z)
-        phase = phase_of(margin, turn.y_y, depth, kinetic, mass, acceleration)
-        put(StatusOutputs(phase, margin), out, at)
+        put(StatusOutputs(phase_of(margin, turn.y_y, depth), margin), out, at)
 
     def _margin(self, x: float, z: float) -> float:
         """Distance [m] of a point seen from above to the nearest edge of the footpads' polygon.

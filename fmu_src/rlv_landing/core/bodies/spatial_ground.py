@@ -23,6 +23,7 @@ from ..access import (
     POINT_STATE,
     ROTATION,
     SECOND_STRUT_OUTPUTS,
+    SPATIAL_ACCELERATIONS,
     SPATIAL_INPUTS,
     SPATIAL_OUTPUTS,
     STATUS_OUTPUTS,
@@ -134,6 +135,8 @@ class SpatialGround(Legged):
         self.mass += body.m_u
         self._energies = SPATIAL_OUTPUTS
         self.unsought = self._energies + BALANCE
+        self._accelerations = SPATIAL_ACCELERATIONS
+        self._axes = 6
         self.points = len(points)
         self._first_across = self.controlled - behind
         self._first_point = self._first_across + across

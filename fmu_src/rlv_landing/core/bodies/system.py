@@ -137,9 +137,15 @@ class System:
         """
         return False
 
-    def rests(self, outputs: Doubles) -> bool:
-        """Whether these `outputs` are those of a system at rest."""
+    def rests(self, outputs: Doubles, most: float) -> bool:
+        """Whether these `outputs` are those of a system at rest.
+
+        It may move by so many times as much, at `most`, as what counts as rest.
+        """
         return False
+
+    def tell_rest(self, outputs: Doubles, at: int) -> None:
+        """Write to `outputs[at:]` that the system has come to rest."""
 
     def distance(self, shift: Doubles) -> float:
         """The farthest way [m] of all that a `shift` of the state moves."""

@@ -44,7 +44,7 @@ D1, D3, D4 = (
 D5, D6, D7 = 701980252875.0 / 199316789632.0, -1453857185.0 / 822651844.0, 69997945.0 / 29380423.0
 # the longest step near a rest, times the fastest rate of decay: at the limit of stability, 3.3,
 # oscillations of the tolerance's size stay for ever
-DAMPED = 1.0
+DAMPED = 0.8
 
 
 class DormandPrince(Solver):

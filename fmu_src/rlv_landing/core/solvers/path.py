@@ -12,6 +12,12 @@ from ..memory import Buffer, Doubles, copy, data
 
 # parts of an interpolant, each as long as the state
 PARTS = 5
+# [s]: after all times
+NEVER = 1e99
+# [s]: a system has come to rest when it has kept within a rest's bounds for so long, and stays so
+# until it moves so many times as much: what vibrates or rocks passes them twice in each period
+CALM = 0.02
+STAYS = 4.0
 
 
 class Path:
@@ -20,6 +26,10 @@ class Path:
     The last step leads from `t_old` to `t` [s], that before it from `t_before` to `t_old`. `dense`
     [2 x 5 n] holds their interpolants, the last step's from `dense_at` on. `u` [inputs] holds the
     inputs at `t_input`, which change from there at the rates `u_rate` [inputs].
+
+    The system is calm since `calm_since` [s], has come to rest at `rest_since` [s] and moves again
+    from `rest_until` [s] on. These are ends of internal steps, where it is judged: what is told of
+    it does not depend on when the outputs are read.
     """
 
     system: System
@@ -28,6 +38,9 @@ class Path:
     t_old: float
     t_before: float
     t_input: float
+    calm_since: float
+    rest_since: float
+    rest_until: float
     dense_at: int
     dense: Buffer
     u: Buffer
@@ -41,6 +54,9 @@ class Path:
         self.t_old = 0.0
         self.t_before = 0.0
         self.t_input = 0.0
+        self.calm_since = NEVER
+        self.rest_since = NEVER
+        self.rest_until = NEVER
         self.dense_at = 0
         self.dense = array("d", bytes(8 * 2 * PARTS * system.n))
         self.u = array("d", bytes(8 * system.inputs))
@@ -111,3 +127,40 @@ class Path:
     def _outputs_at(self, t: float, y: Doubles, out: Doubles, at: int) -> None:
         self._inputs_at(t)
         self.system.outputs(y, data(self.u_now), out, at)
+        if self._rested(t):
+            self.system.tell_rest(out, at)
+
+    def _rested(self, t: float) -> bool:
+        """Whether the system has come to rest by the time `t` [s] of the last step."""
+        return self.rest_since <= t < self.rest_until
+
+    def _judge_rest(self, outputs: Doubles) -> None:
+        """Judge by the `outputs` at the time `t` whether the system rests, and write it to them."""
+        self._forget_after(self.t)
+        if self._rested(self.t):
+            if not self.system.rests(outputs, STAYS):
+                self.rest_until = self.t
+                self.calm_since = NEVER
+        elif not self.system.rests(outputs, 1.0):
+            self.calm_since = NEVER
+        else:
+            self.calm_since = min(self.calm_since, self.t)
+            if self.t >= self.calm_since + CALM:
+                self._rest_from(self.t)
+        if self._rested(self.t):
+            self.system.tell_rest(outputs, 0)
+
+    def _rest_from(self, t: float) -> None:
+        """Note that the system has come to rest at time `t` [s], if it has not before."""
+        if not self._rested(t):
+            self.rest_since = t
+            self.rest_until = NEVER
+
+    def _forget_after(self, t: float) -> None:
+        """Forget what was judged after time `t` [s], at which the path has ended."""
+        if self.calm_since > t:
+            self.calm_since = NEVER
+        if self.rest_since > t:
+            self.rest_since = NEVER
+        if self.rest_until > t:
+            self.rest_until = NEVER

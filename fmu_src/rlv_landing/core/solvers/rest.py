@@ -93,10 +93,11 @@ class Rest(Watch):
         if not self._reach_rest(place):
             return False
         look = data(self._look)
-        self._outputs_at(self.t, place, look, 0)
+        self._inputs_at(self.t)
+        self.system.outputs(place, data(self.u_now), look, 0)
         if self.system.lost(data(self.last), look, LOSS_TIME) > 1.0:
             return False
-        return self.system.rests(look)
+        return self.system.rests(look, 1.0)
 
     def _reach_rest(self, y: Doubles) -> bool:
         """Move the state `y` to the equilibrium at the inputs at time `t`.

@@ -10,6 +10,7 @@ from math import inf
 from ..bodies.system import System
 from ..memory import Buffer, Doubles, copy, data, nogil
 from ..records import Fault
+from .path import NEVER
 from .step_control import (
     FIRST_STEP,
     LEAST_PREVIOUS_ERROR,
@@ -71,6 +72,7 @@ class Solver(Trial):
         self.spent = 0.0
         self.fault = Fault.NONE
         self.h = FIRST_STEP
+        self._forget_after(-NEVER)
         self.restart(t)
 
     def cut(self, t: float) -> None:
@@ -142,6 +144,7 @@ class Solver(Trial):
         self.t_before = self.t_old
         self.t_old = self.t
         self.t += h
+        self._judge_rest(data(self.last))
         self.steps += 1.0
         self._start_step()
 
@@ -174,6 +177,7 @@ class Solver(Trial):
         y, place = data(self.y), data(self._place)
         if self._found_rest(y):
             self._cut(self.t)
+            self._rest_from(self.t)
             copy(place, y, self.n)
             self._restart(self.t)
             self._watch(self.t)

@@ -128,6 +128,7 @@ class Watch(Path):
         self.seen = 1
         self.noted = True
         self.system.read(y, data(self.u_now), dy, data(self.last), 0)
+        self._judge_rest(data(self.last))
         # not read before there are steps; filled so that a saved state holds nothing from before
         copy(data(self.last), data(self.middle), self.row)
         copy(data(self.last), data(self.before), self.row)
