@@ -24,7 +24,7 @@ from ..access import (
     spatial_model,
     spatial_state,
 )
-from ..leg import leg_forces, leg_forces_on
+from ..leg import leg_forces_on
 from ..memory import Buffer, Doubles, Records, room
 from ..records import (
     BodyPoint,
@@ -216,15 +216,14 @@ class SpatialMotion(SpatialGround):
         ground = deck_velocity(now, rolling, above)
         velocity = less(added(Vector(s.vx, s.vy, s.vz), to_inertial(turn, moved)), ground)
         axes = rotation_of(self._ground, 0)
+        steep = 1.0
         if self._has_field:
             steep = self._meet_field(above, velocity, model.step, self._motions, i)
             axes = rotation_of(self._local, 0)
-            motion = foot_motion_of(self._motions, i)
-            keep(leg_forces_on(leg, motion, steep, model), self._forces, i)
         else:
             keep(motion_on_ground(axes, above, velocity, model.step), self._motions, i)
-            motion = foot_motion_of(self._motions, i)
-            keep(leg_forces(leg, motion, model), self._forces, i)
+        motion = foot_motion_of(self._motions, i)
+        keep(leg_forces_on(leg, motion, steep, model), self._forces, i)
         forces = leg_forces_of(self._forces, i)
         contact = to_inertial(axes, Vector(forces.f1, forces.normal, forces.f2))
         keep(

@@ -12,6 +12,7 @@ its address, one that was just made by value.
 """
 
 from .laws import (
+    AuxiliaryForce,
     AxialForce,
     Bearing,
     Chamber,
@@ -67,6 +68,7 @@ from .steps import Bend, Crest, PhiWeights, StiffPair
 __all__ = [
     "Accounts",
     "Attitude",
+    "AuxiliaryForce",
     "AxialForce",
     "Bearing",
     "Bend",
