@@ -55,7 +55,8 @@ typedef struct {
     double radial, vertical, tangential, body_x, body_y, body_moment;
     double dz1, dz2, dsx, dsz, decay1, decay2;
     double orifice, seal, stop, auxiliary, contact, friction, ground;
-    double mass, mass1, mass2, stroke, rate, auxiliary_stroke, depth, held;
+    double mass, mass1, mass2, stroke, rate, auxiliary_stroke, held;
+    double auxiliary_work, contact_work;
 #ifdef SPACE
     double foot[3], bias[3], height, strut_r, strut_h, moment;
 #endif
@@ -77,7 +78,7 @@ typedef struct {
     double rtol, t, t_old, t_input, h, error_old;
     double steps, rejected, rhs_calls;
     double start_energy, dissipated, balance, most_balance;
-    int cut; /* whether slopes of the interpolant written last were cut by more than next to nothing */
+    int cut; /* whether slopes of the interpolant written last were cut by a part that counts */
     double u[INPUTS], u_rate[INPUTS];
 #ifdef SPACE
     double turned[3], axes[3][3], turn[3][3], xx, xz, zz;
@@ -200,14 +201,16 @@ static double auxiliary(double s, double v, const Parameters *p, Loads *w)
     if (p->g_t + p->g_c > 0.0) {
         double slope_t, slope_c;
         double u_t = bearing(-s - p->g_t, p, &slope_t), u_c = bearing(s - p->g_c, p, &slope_c);
-        double pushes = pow(u_c, p->ek) * slope_c;
-        double spring = p->Ka * (pushes - pow(u_t, p->ek) * slope_t) - p->F_0;
+        double pushes = pow(u_c, p->ek), pulls = pow(u_t, p->ek);
+        double spring = p->Ka * (pushes * slope_c - pulls * slope_t) - p->F_0;
         double bears = MIN(1.0, slope_t + slope_c);
         double damping = p->Ca * (p->c_play + (1.0 - p->c_play) * bears);
         w->auxiliary = damping * v * v;
+        w->auxiliary_work = p->Ka * (pushes * u_c + pulls * u_t);
         return spring + p->k_play * s + damping * v;
     }
     double spring = p->Ka * pow(fabs(s), p->ek);
+    w->auxiliary_work = spring * fabs(s);
     if (s < 0.0)
         spring = -spring;
     w->auxiliary = p->Ca * v * v;
@@ -278,17 +281,12 @@ static Strut strut(double dr, double dh, double vr, double vh, double length)
 /* Energy that a leg's springs hold beside its liquid. */
 static double springs(const double *q, const Loads *w, const Parameters *p)
 {
-    double s = w->auxiliary_stroke, n = p->ek + 1.0, slope;
-    double held = p->Ka / n * pow(fabs(s), n);
+    double s = w->auxiliary_stroke, held = w->auxiliary_work / (p->ek + 1.0);
     if (p->g_t + p->g_c > 0.0)
-        held = MAX(0.0, p->Ka / n * (pow(bearing(-s - p->g_t, p, &slope), n) +
-                                     pow(bearing(s - p->g_c, p, &slope), n)) -
-                            p->U_0 - p->F_0 * s) +
-               0.5 * p->k_play * s * s;
+        held = MAX(0.0, held - p->U_0 - p->F_0 * s) + 0.5 * p->k_play * s * s;
     double past = w->stroke < 0.0 ? w->stroke : MAX(w->stroke - p->s_max, 0.0);
     held += 0.5 * p->K_stop * past * past;
-    if (w->depth > 0.0)
-        held += p->Kg * pow(w->depth, p->en + 1.0) / (p->en + 1.0);
+    held += w->contact_work / (p->en + 1.0);
     return held + 0.5 * p->K_t * (q[SX] * q[SX] + q[SZ] * q[SZ]);
 }
 

@@ -24,14 +24,14 @@ static void leg_loads(const double *y, const double *q, const Group *g, Angles a
     double slip_x = rx * a.cos_a - ry * a.sin_a, slip_z = vr * g->sin;
 
     double Fn = 0.0;
-    w->depth = d;
-    w->contact = 0.0;
+    w->contact = w->contact_work = 0.0;
     if (d > 0.0) {
         double elastic = p->Kg * pow(d, p->en);
         Fn = elastic + p->Cgmax * damping_ramp(d, p) * dv;
         if (Fn < 0.0)
             Fn = 0.0;
         w->contact = (Fn - elastic) * dv;
+        w->contact_work = elastic * d;
     }
     double F[2];
     friction(d, Fn, slip_x, slip_z, q + SX, p, w, F);

@@ -98,13 +98,13 @@ static void leg_loads(const Landing *s, const double *y, const double *q, const 
     Vector slip = to_body(s->axes, (Vector){y[VX] + v.x - ground.x, y[VY] + v.y - ground.y,
                                             y[VZ] + v.z - ground.z});
     double d = -to_body(s->axes, above).y, dv = -slip.y, Fn = 0.0, F[2];
-    w->depth = d;
     w->height = y[Y] + at.y;
-    w->contact = 0.0;
+    w->contact = w->contact_work = 0.0;
     if (d > 0.0) {
         double elastic = p->Kg * pow(d, p->en);
         Fn = MAX(elastic + p->Cgmax * damping_ramp(d, p) * dv, 0.0);
         w->contact = (Fn - elastic) * dv;
+        w->contact_work = elastic * d;
     }
     friction(d, Fn, slip.x, slip.z, q + SX, p, w, F);
     Vector contact = to_inertial(s->axes, (Vector){F[0], Fn, F[1]});

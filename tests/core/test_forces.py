@@ -10,11 +10,11 @@ from pytest import approx
 from rlv_landing import Parameters
 from rlv_landing.assembly import leg_models
 from rlv_landing.core.ground.kinds import ground_force
-from rlv_landing.core.ground.normal import damping_ramp, normal_force
+from rlv_landing.core.ground.normal import damping_ramp, normal_energy, normal_force
 from rlv_landing.core.ground.paper_friction import friction_along
 from rlv_landing.core.leg import leg_forces, liquid_excess, without_excess
 from rlv_landing.core.records import FootMotion, LegState
-from rlv_landing.core.struts.elastic import elastic
+from rlv_landing.core.struts.elastic import elastic, elastic_energy
 from rlv_landing.core.struts.end_stops import stop_force
 from rlv_landing.core.struts.liquid_spring import (
     chamber,
@@ -166,19 +166,36 @@ def test_the_pressure_difference_of_chambers_decays_at_the_rates_of_the_stiff_pa
 
 @given(st.floats(-0.01, 0.01), speeds)
 def test_auxiliary_strut_is_odd_and_dissipates(s, v):
-    force, power = elastic(s, v, P)
-    opposite, _ = elastic(-s, -v, P)
+    force, power, work = elastic(s, v, P)
+    opposite, _, same = elastic(-s, -v, P)
     assert opposite == approx(-force)
     assert power >= 0.0
+    assert same == work >= 0.0
 
 
 @given(st.floats(-0.01, 0.01), speeds)
 def test_ground_never_pulls_and_its_damping_dissipates(d, v):
-    force, power = normal_force(d, v, P)
+    force, power, work = normal_force(d, v, P)
     assert force >= 0.0
+    assert work >= 0.0
     assert power >= -1e-9 * max(1.0, abs(force * v))
     if d <= 0.0:
         assert force == 0.0
+
+
+@given(st.floats(1e-5, 0.01))
+def test_forces_are_the_slopes_of_the_energies_that_their_works_give(x):
+    step = 1e-3 * x
+
+    def ground(d):
+        return normal_energy(normal_force(d, 0.0, P).work, P)
+
+    def strut(s):
+        return elastic_energy(s, elastic(s, 0.0, P).work, P)
+
+    for energy, force in ((ground, normal_force(x, 0.0, P)), (strut, elastic(x, 0.0, P))):
+        slope = (energy(x + step) - energy(x - step)) / (2.0 * step)
+        assert slope == approx(force.force, rel=1e-5)
 
 
 def test_damping_ramp_is_smooth_at_both_ends():

@@ -10,7 +10,7 @@ from math import fabs, sqrt
 from .ground.kinds import friction_energy, ground_force_on
 from .ground.normal import normal_energy
 from .records import FootMotion, LegForces, LegModel, LegState, LegStatus, StrutMotion
-from .struts.kinds import auxiliary_strut, auxiliary_strut_energy, main_strut, main_strut_status
+from .struts.kinds import auxiliary_strut, auxiliary_strut_held, main_strut, main_strut_status
 
 # how little is left, in parts, of an excess of liquid that has been taken off
 NOTHING_LEFT = 1e-12
@@ -90,19 +90,18 @@ def forces_between(
         liquid_mass=strut.liquid_mass,
         mass_1=strut.mass_1,
         mass_2=strut.mass_2,
+        auxiliary_work=link.work,
+        contact_work=ground.work,
     )
 
 
-def leg_status(leg: LegState, forces: LegForces, depth: float, p: LegModel) -> LegStatus:
-    """The energies that one leg holds, and its main strut's chambers.
-
-    `depth` is the footpad's penetration [m].
-    """
+def leg_status(leg: LegState, forces: LegForces, p: LegModel) -> LegStatus:
+    """The energies that one leg holds, and its main strut's chambers."""
     strut = main_strut_status(forces.stroke, leg.z1, leg.z2, p)
     return LegStatus(
         stop=strut.held_by_stop,
-        auxiliary=auxiliary_strut_energy(forces.auxiliary_stroke, p),
-        contact=normal_energy(depth, p),
+        auxiliary=auxiliary_strut_held(forces.auxiliary_stroke, forces.auxiliary_work, p),
+        contact=normal_energy(forces.contact_work, p),
         friction=friction_energy(leg.q1, leg.q2, p),
         pressure_upper=strut.pressure_upper,
         pressure_lower=strut.pressure_lower,

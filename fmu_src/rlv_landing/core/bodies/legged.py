@@ -262,7 +262,6 @@ class Legged(System):
                 leg_status(
                     leg_state(y, self._first_leg + LEG * i),
                     leg_forces_of(self._forces, i),
-                    foot_loads_of(self._feet, i).depth,
                     leg_model(self._legs, i),
                 ),
                 self._status,

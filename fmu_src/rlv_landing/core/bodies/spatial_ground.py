@@ -288,7 +288,7 @@ class SpatialGround(Legged):
         self.more_friction = 0.0
         for i in range(self.points):
             q = point_state(y, self._first_point + POINT_STATE * i)
-            self.more_contact += normal_energy(foot_loads_of(self._point_loads, i).depth, law)
+            self.more_contact += normal_energy(ground_force_of(self._point_forces, i).work, law)
             self.more_friction += friction_energy(q.q1, q.q2, law)
 
     def _project_points(self, y: Doubles) -> None:

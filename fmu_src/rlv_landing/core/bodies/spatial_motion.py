@@ -25,7 +25,7 @@ from ..access import (
     spatial_model,
     spatial_state,
 )
-from ..leg import leg_forces, leg_forces_on
+from ..leg import leg_forces_on
 from ..memory import Buffer, Doubles, Records, room
 from ..records import (
     BodyPoint,
@@ -231,10 +231,8 @@ class SpatialMotion(TripodMotion):
         motion = foot_motion_of(self._motions, i)
         if self._tripod:
             self._keep_tripod_forces(i, y, steep)
-        elif self._has_field:
-            keep(leg_forces_on(leg, motion, steep, model), self._forces, i)
         else:
-            keep(leg_forces(leg, motion, model), self._forces, i)
+            keep(leg_forces_on(leg, motion, steep, model), self._forces, i)
         forces = leg_forces_of(self._forces, i)
         contact = to_inertial(axes, Vector(forces.f1, forces.normal, forces.f2))
         keep(

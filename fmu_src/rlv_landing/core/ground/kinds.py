@@ -45,4 +45,4 @@ def ground_force_on(
     n = normal_force(foot.depth, foot.depth_rate, p)
     normal = n.force * steep
     f = friction(foot, normal, q1, q2, p)
-    return GroundForce(normal, f.f1, f.f2, f.dq1, f.dq2, n.dissipated, f.dissipated)
+    return GroundForce(normal, f.f1, f.f2, f.dq1, f.dq2, n.dissipated, f.dissipated, n.work)

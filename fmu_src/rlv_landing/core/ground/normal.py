@@ -20,16 +20,14 @@ def damping_ramp(d: float, p: LegModel) -> float:
 def normal_force(d: float, v: float, p: LegModel) -> NormalForce:
     """The ground at penetration `d` [m] growing at `v` [m/s]; it never pulls. Eqs. (14), (15)."""
     if d <= 0.0:
-        return NormalForce(0.0, 0.0)
+        return NormalForce(0.0, 0.0, 0.0)
     elastic = p.Kg * pow(d, p.en)
     force = elastic + p.Cgmax * damping_ramp(d, p) * v
     if force < 0.0:
         force = 0.0
-    return NormalForce(force, (force - elastic) * v)
+    return NormalForce(force, (force - elastic) * v, elastic * d)
 
 
-def normal_energy(d: float, p: LegModel) -> float:
-    """Energy [J] that the ground's elasticity holds at penetration `d` [m]."""
-    if d > 0.0:
-        return p.Kg * pow(d, p.en + 1.0) / (p.en + 1.0)
-    return 0.0
+def normal_energy(work: float, p: LegModel) -> float:
+    """Energy [J] that the ground's elasticity holds where its force gave `work` [J]."""
+    return work / (p.en + 1.0)

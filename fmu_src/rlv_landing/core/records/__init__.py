@@ -12,6 +12,7 @@ its address, one that was just made by value.
 """
 
 from .laws import (
+    AuxiliaryForce,
     AxialForce,
     Bearing,
     Chamber,
@@ -71,6 +72,7 @@ __all__ = [
     "AcrossForces",
     "AcrossState",
     "Attitude",
+    "AuxiliaryForce",
     "AxialForce",
     "Bearing",
     "Bend",

@@ -54,10 +54,18 @@ class StrutStatus(NamedTuple):
 
 
 class AxialForce(NamedTuple):
-    """The result of an auxiliary strut law, and of the end stops of a main strut."""
+    """The result of the end stops of a main strut."""
 
     force: float  # [N] compression positive
     dissipated: float  # [W]
+
+
+class AuxiliaryForce(NamedTuple):
+    """The result of an auxiliary strut law."""
+
+    force: float  # [N] compression positive
+    dissipated: float  # [W]
+    work: float  # what the law's energy is worked out from: elastic force times elongation [J]
 
 
 class Bearing(NamedTuple):
@@ -100,6 +108,7 @@ class NormalForce(NamedTuple):
 
     force: float  # on the footpad along n [N]
     dissipated: float  # [W]
+    work: float  # elastic force times penetration [J]
 
 
 class Friction(NamedTuple):
@@ -136,3 +145,4 @@ class GroundForce(NamedTuple):
     dq2: float  # [m/s]
     dissipated: float  # by the normal damping [W]
     friction: float  # dissipated by friction [W]
+    work: float  # elastic force along n times penetration [J]

@@ -40,6 +40,8 @@ class LegForces(NamedTuple):
     liquid_mass: float  # [kg]
     mass_1: float  # see StrutForce
     mass_2: float
+    auxiliary_work: float  # see AuxiliaryForce [J]
+    contact_work: float  # see GroundForce [J]
 
 
 class AcrossForces(NamedTuple):

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from ..records import AxialForce, LegModel, StrutForce, StrutStatus
+from ..records import AuxiliaryForce, LegModel, StrutForce, StrutStatus
 
 
 class MainStrutLaw(NamedTuple):
@@ -25,11 +25,12 @@ class MainStrutLaw(NamedTuple):
 class AuxiliaryStrutLaw(NamedTuple):
     """A law of the auxiliary strut.
 
-    It has what the strut gives at (stroke, rate), and the energy [J] that it holds at a stroke.
+    It has what the strut gives at (stroke, rate), and the energy [J] that it holds at (stroke, work
+    given there).
     """
 
-    force: Callable[[float, float, LegModel], AxialForce]
-    energy: Callable[[float, LegModel], float]
+    force: Callable[[float, float, LegModel], AuxiliaryForce]
+    energy: Callable[[float, float, LegModel], float]
 
 
 MAIN_STRUTS: dict[str, MainStrutLaw] = {}

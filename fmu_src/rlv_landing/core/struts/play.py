@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from math import pow, sqrt
 
-from ..records import AxialForce, Bearing, LegModel
+from ..records import AuxiliaryForce, Bearing, LegModel
 from .laws import AUXILIARY_STRUTS, AuxiliaryStrutLaw
 
 # part of the whole play over which the faces come to bear
@@ -27,7 +27,7 @@ def bearing(x: float, p: LegModel) -> Bearing:
     return Bearing(u, u / root)
 
 
-def elastic_with_play(s: float, v: float, p: LegModel) -> AxialForce:
+def elastic_with_play(s: float, v: float, p: LegModel) -> AuxiliaryForce:
     """The strut at stroke `s` [m] and stroke rate `v` [m/s].
 
     With the elongation e = -s, tension positive,
@@ -37,23 +37,23 @@ def elastic_with_play(s: float, v: float, p: LegModel) -> AxialForce:
     """
     tension = bearing(-s - p.g_t, p)
     compression = bearing(s - p.g_c, p)
-    pushes = pow(compression.u, p.ek) * compression.slope
-    faces = p.Ka * (pushes - pow(tension.u, p.ek) * tension.slope) - p.F_0
+    pushes = pow(compression.u, p.ek)
+    pulls = pow(tension.u, p.ek)
+    faces = p.Ka * (pushes * compression.slope - pulls * tension.slope) - p.F_0
+    work = p.Ka * (pushes * compression.u + pulls * tension.u)
     borne = min(1.0, tension.slope + compression.slope)
     damping = p.Ca * (p.c_play + (1.0 - p.c_play) * borne)
-    return AxialForce(faces + p.k_play * s + damping * v, damping * v * v)
+    return AuxiliaryForce(faces + p.k_play * s + damping * v, damping * v * v, work)
 
 
-def elastic_with_play_energy(s: float, p: LegModel) -> float:
-    """Energy that the spring holds at stroke `s` [m], in J.
+def elastic_with_play_energy(s: float, work: float, p: LegModel) -> float:
+    """Energy that the spring holds at stroke `s` [m], where it gave `work`, in J.
 
     With the elongation e = -s,
     H(e) - H(0) - T(0) e + k_play e^2/2, H = Ka/(ek + 1) (u+^(ek + 1) + u-^(ek + 1)).
     H is convex and its slope is T, so that it is never negative; rounding near e = 0 is cut off.
     """
-    n = p.ek + 1.0
-    borne = pow(bearing(-s - p.g_t, p).u, n) + pow(bearing(s - p.g_c, p).u, n)
-    faces = p.Ka / n * borne - p.U_0 - p.F_0 * s
+    faces = work / (p.ek + 1.0) - p.U_0 - p.F_0 * s
     return max(0.0, faces) + 0.5 * p.k_play * s * s
 
 
