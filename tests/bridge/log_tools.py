@@ -173,8 +173,8 @@ def assert_bytes_are_known(reader: LogReader) -> None:
         topic = resolve(reader.namespace, name)
         messages = list(islice(reader.messages([topic]), 10))
         known = KnownBytes(messages[0], decode, fields, run.vehicle)
+        longer = replace(messages[0], data=messages[0].data + bytes(LONGEST))
         with pytest.raises(LandingError, match="is longer than"):
-            longer = replace(messages[0], data=messages[0].data + bytes(LONGEST))
             KnownBytes(longer, decode, fields, run.vehicle)
         assert known.of(messages[9].log_time, values[9]) == messages[9].data, topic
         assert known.of(messages[9].log_time + 1, values[9]) != messages[9].data, topic

@@ -22,8 +22,8 @@ from ...messages.wire import (
 )
 from ..reader import LogMessage
 
-# A longer message is not learned, which takes a decoding of it for each word; a landing's have a few
-# hundred bytes, those of many legs a thousand or two.
+# A longer message is not learned, which takes a decoding of it for each word. A landing's have a
+# few hundred bytes, those of many legs a thousand or two.
 LONGEST = 8192
 DOUBLE = struct.Struct("<d")
 STAMP_PATHS = ("header.stamp.sec", "header.stamp.nanosec")
