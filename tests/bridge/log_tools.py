@@ -9,6 +9,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+import pytest
 from mcap.data_stream import RecordBuilder
 from mcap.reader import make_reader
 from mcap.records import (
@@ -25,9 +26,10 @@ from mcap.records import (
 from mcap.stream_reader import StreamReader
 from mcap.writer import Writer
 
+from rlv_landing.errors import LandingError
 from rlv_ros_bridge.logs.reader import Decoder, LogReader
 from rlv_ros_bridge.logs.recorder import RecordedTopic, Recorder
-from rlv_ros_bridge.logs.verification.known_bytes import KnownBytes
+from rlv_ros_bridge.logs.verification.known_bytes import LONGEST, KnownBytes
 from rlv_ros_bridge.logs.verification.repeat import RepeatedRun
 from rlv_ros_bridge.messages.qos import TELEMETRY
 from rlv_ros_bridge.messages.tables import table_of
@@ -171,6 +173,9 @@ def assert_bytes_are_known(reader: LogReader) -> None:
         topic = resolve(reader.namespace, name)
         messages = list(islice(reader.messages([topic]), 10))
         known = KnownBytes(messages[0], decode, fields, run.vehicle)
+        longer = replace(messages[0], data=messages[0].data + bytes(LONGEST))
+        with pytest.raises(LandingError, match="is longer than"):
+            KnownBytes(longer, decode, fields, run.vehicle)
         assert known.of(messages[9].log_time, values[9]) == messages[9].data, topic
         assert known.of(messages[9].log_time + 1, values[9]) != messages[9].data, topic
         other = {output: value + 0.125 for output, value in values[9].items()}

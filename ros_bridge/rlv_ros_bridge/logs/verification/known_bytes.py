@@ -22,6 +22,9 @@ from ...messages.wire import (
 )
 from ..reader import LogMessage
 
+# A longer message is not learned, which takes a decoding of it for each word. A landing's have a
+# few hundred bytes, those of many legs a thousand or two.
+LONGEST = 8192
 DOUBLE = struct.Struct("<d")
 STAMP_PATHS = ("header.stamp.sec", "header.stamp.nanosec")
 
@@ -43,7 +46,8 @@ class KnownBytes:
         values: How many numbers and texts a message has.
 
     Raises:
-        LandingError: The places of its numbers or its stamp are not found.
+        LandingError: The places of its numbers or its stamp are not found, or it is longer than
+            `LONGEST`.
     """
 
     def __init__(
@@ -53,6 +57,8 @@ class KnownBytes:
         fields: Sequence[Field],
         vehicle: Vehicle,
     ) -> None:
+        if len(message.data) > LONGEST:
+            raise LandingError(f"a message of {len(message.data)} bytes is longer than {LONGEST}")
         decoded = dict(leaves(decode(message)))
         self.values = len(decoded)
         self._conversions = [(field.conversion(vehicle), field.outputs) for field in fields]
