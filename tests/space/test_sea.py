@@ -151,6 +151,11 @@ def test_a_table_gives_amplitude_and_lead_between_its_rows() -> None:
     angle = w * (waves_of(parameters).start + times) + phase
     places, _ = summed(parameters, times)
     assert places[1] == pytest.approx((a * heave * np.exp(1j * angle)).real.sum(axis=0), abs=1e-12)
+    # a turn more is the same direction
+    around = text.replace(f"directions 0.0 {pi / 2!r}", f"directions {-2 * pi!r} {-1.5 * pi!r}")
+    assert around != text
+    turned = vehicle(values | {"sea.operators": around})
+    assert summed(turned, times)[0] == pytest.approx(places, abs=1e-12)
     assert places[0] == pytest.approx((-0.5 * a * np.sin(angle)).sum(axis=0), abs=1e-12)
     assert places[3] == pytest.approx((2.0 * pi / 180 * a * np.sin(angle)).sum(axis=0), abs=1e-12)
 
