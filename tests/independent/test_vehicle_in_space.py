@@ -181,6 +181,7 @@ def deck_of(parameters: Parameters) -> Callable[[float], tuple[Array, Array]]:
         (AT_SEA, 0.04),
         pytest.param(THREE, 0.2, marks=LONG),
         pytest.param(FIVE, 0.2, marks=LONG),
+        pytest.param(AT_SEA, 0.3, marks=LONG),
     ],
 )
 def test_a_landing_that_rolls_and_yaws_is_that_of_the_newton_euler_model(

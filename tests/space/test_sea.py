@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from space_vehicles import SPACE, TURNING, vehicle
 
-from rlv_landing import Landing, LandingError, Parameters
+from rlv_landing import Landing, LandingError, Parameters, land_many
 from rlv_landing.assembly.sea import HARMONICS, uniform, wave_components, waves_of
 from rlv_landing.core.bodies.sea import FREEDOMS, WAVE
 from rlv_landing.parameters import operators_from_table
@@ -151,6 +151,11 @@ def test_a_table_gives_amplitude_and_lead_between_its_rows() -> None:
     angle = w * (waves_of(parameters).start + times) + phase
     places, _ = summed(parameters, times)
     assert places[1] == pytest.approx((a * heave * np.exp(1j * angle)).real.sum(axis=0), abs=1e-12)
+    # a turn more is the same direction
+    around = text.replace(f"directions 0.0 {pi / 2!r}", f"directions {-2 * pi!r} {-1.5 * pi!r}")
+    assert around != text
+    turned = vehicle(values | {"sea.operators": around})
+    assert summed(turned, times)[0] == pytest.approx(places, abs=1e-12)
     assert places[0] == pytest.approx((-0.5 * a * np.sin(angle)).sum(axis=0), abs=1e-12)
     assert places[3] == pytest.approx((2.0 * pi / 180 * a * np.sin(angle)).sum(axis=0), abs=1e-12)
 
@@ -262,6 +267,22 @@ def test_a_file_names_a_table_and_all_digits_are_kept(tmp_path: Path) -> None:
     again = parse_toml(to_toml(parameters), "again")
     assert again.sea == parameters.sea
     assert Landing(again).values() == Landing(parameters).values()
+
+
+def test_moments_and_seeds_of_a_sea_are_what_a_study_may_vary() -> None:
+    upright = vehicle(SPACE | SEA | {"drop.contact_time": 0.0, "drop.vertical_velocity": -2.5})
+    states = {"sea.time": [5.0, 6.0, 5.0, 5.0], "sea.seed": [1.0, 1.0, 2.0, 1.9]}
+    found = land_many(upright, states, until=0.1)
+    assert found.errors == (None,) * 4
+    loads = found["legs.main_strut.force.min"]
+    # of a seed the whole part counts
+    assert len(set(loads)) == 3
+    assert loads[0] == loads[3]
+    first = upright.with_values({"sea.time": 5.0, "sea.seed": 1.0})
+    landing = Landing(first, rtol=1e-4)
+    landing.advance_to(0.1)
+    forces = [landing.extremes()[f"leg[{leg}].main_strut.force"].minimum for leg in (1, 2, 3, 4)]
+    assert loads[0] == pytest.approx(min(forces), rel=1e-3)
 
 
 GOOD = table([0.1, 1.0, 3.0], [1.0, 0.7, 0.0])

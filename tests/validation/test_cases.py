@@ -75,6 +75,14 @@ def test_an_own_file_is_a_case_with_units_pages_and_an_exit_code(command, tmp_pa
     assert "source: a table" in missed.out
 
 
+def test_a_case_that_cannot_start_is_named(command, tmp_path: Path) -> None:
+    file = tmp_path / "upwards.toml"
+    file.write_text(SHORT.replace("VALUE", "1").replace("-3.0", "3.0"))
+    done = command("validate", "--case", str(file))
+    assert (done.code, done.err.count("\n")) == (2, 1)
+    assert "upwards: drop.contact_time = 0.2 s of free flight would pass" in done.err
+
+
 def test_cases_are_listed_and_options_of_the_paper_s_landings_refused(command) -> None:
     listed = command("validate", "--case")
     assert listed.code == 0
@@ -110,6 +118,8 @@ def test_cases_are_listed_and_options_of_the_paper_s_landings_refused(command) -
         ("contact = 1", "contact = 1, at = 0.1", "unknown key of number 2 'at'"),
         ("[drop]", "[dorp]", "unknown key 'dorp'"),
         ("number = [", "closed_form = 'none'\nnumber = [", "unknown closed form 'none'"),
+        ("number = [", 'number = [{ outcome = "flown" },', "unknown outcome 'flown'"),
+        ('"VALUE"', "nan", "body.vy = nan is not finite"),
         ("number = [", "inputs = 3\nnumber = [", "inputs must be a table"),
     ],
 )

@@ -21,7 +21,7 @@ from ..core.bodies.sea import FREEDOMS
 from ..errors import LandingError
 from ..parameters import Parameters, Sea
 from ..parameters.operators import FREEDOMS as NAMES
-from ..parameters.operators import TURNS, Operators, read_operators
+from ..parameters.operators import TURNS, Operators, read_operators, turned_into
 from ..parameters.sea import HIGHEST, LOWEST, WAVE_GRAVITY
 from ..quantities import SPACE
 
@@ -198,7 +198,8 @@ def _slope(u: float) -> float:
 def _from_table(table: Operators, sea: Sea, frequency: float) -> list[complex]:
     """The operators of a table, linear between its nodes as complex numbers."""
     i, part = _between(table.frequencies, frequency)
-    j, aside = _between(table.directions, sea.direction)
+    turned = turned_into(table, sea.direction)
+    j, aside = _between(table.directions, sea.direction if turned is None else turned)
     found = [0j] * FREEDOMS
     for row, share in ((j, 1.0 - aside), (j + 1, aside)):
         for column, weight in ((i, share * (1.0 - part)), (i + 1, share * part)):

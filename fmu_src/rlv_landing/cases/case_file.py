@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from ..landing import DEFAULT_RTOL
 from ..parameters import GROUPS, Parameters
 from ..presets import parameters_of_document
 from ..quantities import Interface, Quantity, interface_of
+from ..studies.outcome import SEVERITY
 from ..text.files import parse_document, read_text
 from ..text.values import is_number, parse_value, to_si
 from .closed_forms import CLOSED_FORMS
@@ -147,6 +149,9 @@ def _case(name: str, document: dict[str, Any], folder: Path) -> Case:
     if not isinstance(listed, list) or not all(isinstance(entry, dict) for entry in listed):
         raise LandingError("number must be a list of tables: number = [{ output = ..., ... }]")
     outcomes = [str(entry["outcome"]) for entry in listed if "outcome" in entry]
+    for told in outcomes:
+        if told not in SEVERITY:
+            raise unknown("outcome", told, SEVERITY)
     if len(outcomes) > 1:
         raise LandingError("a landing has one outcome; leave one")
     numbers = [n for k, entry in enumerate(listed, 1) for n in _numbers(k, entry, interface, until)]
@@ -239,7 +244,10 @@ def _number(q: Quantity, value: Any) -> float:
         )
     if q in (TIME, RELATIVE, RTOL):
         return float(parse_value(q, value))
-    return to_si(q, value)
+    number = to_si(q, value)
+    if not isfinite(number):
+        raise LandingError(f"{q.name} = {value!r} is not finite; give a number")
+    return number
 
 
 def _text(document: Mapping[str, Any], key: str) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ..errors import LandingError
+from ..errors import IntegrationError, LandingError
 from ..landing import Landing
 from ..outputs import Extreme
 from ..studies.outcome import outcome
@@ -27,7 +27,9 @@ class Compared:
         if self.ours is None:
             return float("inf")
         off = abs(self.ours - self.number.theirs)
-        return off / self.number.tolerance if self.number.tolerance > 0.0 else off * float("inf")
+        if self.number.tolerance > 0.0:
+            return off / self.number.tolerance
+        return 0.0 if off == 0.0 else float("inf")
 
     @property
     def within(self) -> bool:
@@ -101,6 +103,15 @@ def compare(case: Case) -> Result:
     Raises:
         LandingError, IntegrationError: It cannot be landed.
     """
+    try:
+        return _compare(case)
+    except IntegrationError as e:
+        raise IntegrationError(f"{case.name}: {e}") from None
+    except LandingError as e:
+        raise LandingError(f"{case.name}: {e}") from None
+
+
+def _compare(case: Case) -> Result:
     landing = Landing(case.parameters, rtol=case.rtol, inputs=case.inputs)
     wanted = {t for n in case.numbers for t in (n.at, n.since) if t is not None}
     values: dict[float, Mapping[str, float]] = {}
@@ -144,7 +155,4 @@ def _ours(
 
 def _outcome(case: Case) -> str:
     landing = Landing(case.parameters, rtol=case.rtol, inputs=case.inputs)
-    try:
-        return outcome(whole_landing(landing, case.until)).name
-    except LandingError as e:
-        return f"none: {e}"
+    return outcome(whole_landing(landing, case.until)).name

@@ -86,6 +86,7 @@ def cli(context: click.Context) -> None:
     rlv-landing parameters --toml > mine.toml      a parameter file to edit
     rlv-landing export --mjcf stage.xml            the linearised vehicle for MuJoCo; SDF, URDF
     rlv-landing validate --html report.html        every printed number and figure beside ours
+    rlv-landing validate --case all                landings of others and closed forms beside ours
     rlv-landing identify --work identification     estimate parameters from landings
     rlv-landing audit                              energy, mass, momentum, rest, convergence
     rlv-landing sweep study.toml                   many landings: factors in, rows of responses out

@@ -122,12 +122,19 @@ def check_covered(text: str, band: tuple[float, float], direction: float) -> Non
             f"{band[0]:.4g} to {band[1]:.4g} rad/s (sea.peak_period); give rows up to there, zeros "
             "where the ship does not answer"
         )
-    first, last = found.directions[0], found.directions[-1]
-    if not first - SAME_DIRECTION <= direction <= last + SAME_DIRECTION:
+    if turned_into(found, direction) is None:
+        first, last = found.directions[0], found.directions[-1]
         raise LandingError(
             f"sea.direction = {direction / DEGREE:g} deg is outside the directions of {OPERATORS}, "
             f"{first / DEGREE:g} to {last / DEGREE:g} deg; give one of these, or rows for it"
         )
+
+
+def turned_into(found: Operators, direction: float) -> float | None:
+    """A direction [rad], by whole turns, among those of operators; None where it is outside."""
+    low, high = found.directions[0] - SAME_DIRECTION, found.directions[-1] + SAME_DIRECTION
+    turns = (direction, direction + 2.0 * pi, direction - 2.0 * pi)
+    return next((turned for turned in turns if low <= turned <= high), None)
 
 
 def operators_from_table(text: str, name: str) -> str:

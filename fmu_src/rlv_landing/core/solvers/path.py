@@ -65,16 +65,15 @@ class Path:
 
     def inputs_at(self, t: float) -> None:
         """Write the inputs at time `t` [s] to `u_now`, without what they are by themselves."""
-        self._given_at(t)
-
-    def _given_at(self, t: float) -> None:
         self.system.inputs_after(
             data(self.u), data(self.u_rate), t - self.t_input, data(self.u_now)
         )
 
     def _inputs_at(self, t: float) -> None:
         """Write the inputs that act at time `t` [s] to `u_now`."""
-        self._given_at(t)
+        self.system.inputs_after(
+            data(self.u), data(self.u_rate), t - self.t_input, data(self.u_now)
+        )
         if self.system.at_sea:
             self.system.add_sea(t, data(self.u_now))
 
