@@ -22,7 +22,9 @@ from rlv_landing.exports.linear import (
     orifice_pressure,
     stroke_rate,
 )
+from rlv_landing.exports.mechanism import mechanism
 from rlv_landing.exports.mjcf import mjcf
+from rlv_landing.exports.rods import ROD_MASS
 from rlv_landing.exports.sdf import sdf
 from rlv_landing.exports.urdf import urdf
 from rlv_landing.parameters import terrain_of
@@ -207,6 +209,39 @@ def test_urdf_and_sdf_of_a_tripod_have_three_struts_that_meet() -> None:
     assert "leg3_auxiliary1_end" not in kinds
     masses = [float(m.text) for m in model.iterfind("link/inertial/mass")]
     assert sum(masses) == pytest.approx(_whole_mass(parameters), abs=0.03)
+
+
+def test_mujoco_reads_the_urdf_with_our_mass_inertia_and_free_fall() -> None:
+    """A second reader of URDF: its tree as a floating body, joints free, at full length."""
+    parameters = five_legs().with_values(PLANE)
+    kept = '<mujoco><compiler fusestatic="false"/></mujoco></robot>'
+    spec = mujoco.MjSpec.from_string(urdf(parameters).replace("</robot>", kept))
+    spec.body("base_link").add_freejoint()
+    for geom in spec.geoms:
+        geom.contype = geom.conaffinity = 0
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    made = mechanism(parameters)
+    light = 3 * ROD_MASS * len(made.legs)
+    whole = parameters.whole_mass
+    assert model.body_mass.sum() == pytest.approx(whole + light, rel=1e-12)
+    mujoco.mj_forward(model, data)
+    center = sum(leg.mass * leg.foot for leg in made.legs) / whole
+    found = data.subtree_com[model.body("base_link").id]
+    assert found == pytest.approx(center, abs=2.0 * light / whole)
+    # nothing but gravity: the whole falls, and no strut moves
+    assert data.qacc[:3] == pytest.approx([0.0, 0.0, -9.81], abs=1e-9)
+    assert data.qacc[3:] == pytest.approx(0.0, abs=1e-9)
+    tensor = made.inertia + sum(
+        leg.mass * (leg.foot @ leg.foot * np.eye(3) - np.outer(leg.foot, leg.foot))
+        for leg in made.legs
+    )
+    for axis in (*np.eye(3), *Rotation.random(3, rng=1).as_matrix()[:, 0]):
+        data.qvel[:] = 0.0
+        data.qvel[3:6] = axis
+        mujoco.mj_forward(model, data)
+        mujoco.mj_energyVel(model, data)
+        assert 2.0 * data.energy[1] == pytest.approx(axis @ tensor @ axis, rel=1e-3)
 
 
 def test_sdf_and_mjcf_have_the_same_inertia_joints_and_laws() -> None:

@@ -71,9 +71,10 @@ def test_a_landing_that_cannot_be_made_is_a_row_with_its_error():
         ({"external.moment": [0.0]}, {}, "needs drop.mode = 2-2 or 1-2-1"),
         ({"drop.roll": [0.0], "drop.roll [deg]": [0.0]}, {}, "two columns of drop.roll"),
         ({"drop.roll": [0.0]}, {"responses": ["outcom"]}, "did you mean outcome?"),
+        ({"drop.roll": [0.0]}, {"every": 0.2, "until": 0.1}, "no landing would have a second"),
         ({"drop.roll": [0.0]}, {"every": 0.0}, "every = 0 s is outside"),
         ({"drop.roll": [0.0]}, {"until": -1.0}, "until = -1 s is outside"),
-        ({"drop.roll": [0.0]}, {"workers": 0}, "workers = 0 must be 1 or more"),
+        ({"drop.roll": [0.0]}, {"workers": 0}, "workers = 0 must be a whole number of 1"),
         ({"drop.roll": [0.0]}, {"limits": {"main_strut.forc": 1.0}}, "did you mean main_strut"),
     ],
 )
@@ -95,3 +96,30 @@ def test_progress_counts_to_the_end_and_ctrl_c_ends_a_batch():
     interrupted_after(
         0.2, lambda: land_many(SPACE, {"drop.roll": [0.0] * 100_000}, until=0.5, workers=1)
     )
+
+
+@pytest.mark.parametrize(
+    ("states", "told"),
+    [
+        (None, "the states are a NoneType; give columns by name"),
+        ([1, 2], "the states are no mappings"),
+        ("states.csv", "the states are no mappings"),
+        ({"drop.tilt": 0.1}, "drop.tilt = 0.1 is one value"),
+        ({"drop.tilt": np.array(0.1)}, "is one value"),
+    ],
+)
+def test_what_is_no_states_is_refused(states, told):
+    with pytest.raises(LandingError, match=told):
+        land_many(Parameters(), states, until=0.01)
+
+
+def test_what_is_no_number_is_the_error_of_its_row():
+    given = [True, 1j, [0.1], None, "a", float("nan"), 0.1]
+    found = land_many(Parameters(), {"drop.tilt": given}, until=0.01, every=1e-2)
+    assert [error is None for error in found.errors] == [False] * 6 + [True]
+
+
+@pytest.mark.parametrize("workers", [float("nan"), 1.5, True, 0, "2"])
+def test_workers_are_a_whole_number(workers):
+    with pytest.raises(LandingError, match=r"workers = .* must be a whole number of 1 or more"):
+        land_many(Parameters(), {"drop.tilt": [0.1]}, until=0.01, workers=workers)

@@ -29,6 +29,7 @@ from .sweep.study import ENDS, NUMBERS, UNTIL
 from .sweep.sweep import threads
 from .sweep.sweep_row import MODE, Plan
 from .variables import check_variables, variable
+from .whole_landing import check_samples
 
 if TYPE_CHECKING:
     import pandas
@@ -47,6 +48,7 @@ PEAKS = (
 # peaks do not depend on the samples' distance; sliding and rest are found to it [s]
 EVERY = 1e-2
 RTOL = 1e-4
+STATES = "give columns by name, or a sequence of mappings"
 
 
 @dataclass(frozen=True)
@@ -187,6 +189,8 @@ def _design(states: Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]], m
     """The states as columns in SI; a value that is no number stays, and is its row's error."""
     if isinstance(states, Sequence):
         states = _transposed(states)
+    elif not hasattr(states, "keys"):
+        raise LandingError(f"the states are a {type(states).__name__}; {STATES}")
     columns: dict[str, NDArray[Any]] = {}
     for heading in states:
         name, unit = split_heading(str(heading))
@@ -197,8 +201,8 @@ def _design(states: Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]], m
             raise LandingError(f"the states have two columns of {name}; leave one")
         own = None if q.choices else unit_of(q, unit)
         columns[name] = column(
-            number_in_si(q, float(v), own) if own is not None and _is_real(v) else v
-            for v in states[heading]
+            number_in_si(q, float(v), own) if own is not None and _is_real(v) else _kept(v)
+            for v in _values(str(heading), states[heading])
         )
     check_variables([*columns], [mode])
     lengths = {name: len(values) for name, values in columns.items()}
@@ -212,6 +216,8 @@ def _design(states: Mapping[str, Sequence[Any]] | Sequence[Mapping[str, Any]], m
 
 
 def _transposed(states: Sequence[Mapping[str, Any]]) -> dict[str, list[Any]]:
+    if isinstance(states, str) or not all(isinstance(state, Mapping) for state in states):
+        raise LandingError(f"the states are no mappings; {STATES}")
     names = list(states[0]) if states else []
     for number, state in enumerate(states):
         if set(state) != set(names):
@@ -221,6 +227,18 @@ def _transposed(states: Sequence[Mapping[str, Any]]) -> dict[str, list[Any]]:
                 "give every state all of them"
             )
     return {name: [state[name] for state in states] for name in names}
+
+
+def _values(heading: str, given: Any) -> list[Any]:
+    try:
+        return list((given,) if isinstance(given, str) else given)
+    except TypeError:
+        raise LandingError(f"{heading} = {given!r} is one value; {STATES}") from None
+
+
+def _kept(value: Any) -> Any:
+    """A value that is no number, so that its landing is refused: as an array's entry it may be."""
+    return value if isinstance(value, str) or value is None else repr(value)
 
 
 def _is_real(value: Any) -> bool:
@@ -234,8 +252,11 @@ def _check_numbers(
         check_value(NUMBERS[name], value)
     if until is not None:
         check_value(UNTIL, until)
-    if workers is not None and workers < 1:
-        raise LandingError(f"workers = {workers} must be 1 or more")
+    check_samples(every, until)
+    if workers is None:
+        return
+    if isinstance(workers, bool) or not isinstance(workers, (int, np.integer)) or workers < 1:
+        raise LandingError(f"workers = {workers!r} must be a whole number of 1 or more")
 
 
 def _column(q: Quantity, values: Sequence[Any]) -> NDArray[Any]:

@@ -74,6 +74,21 @@ def text(keys: Mapping[str, Any], key: str, default: str) -> str:
     return value
 
 
+def folder_name(keys: Mapping[str, Any], default: str) -> str:
+    """The key `name`, which names the results folder.
+
+    Raises:
+        LandingError: It is no name of a folder beside others.
+    """
+    name = text(keys, "name", default)
+    if name in (".", "..") or Path(name).name != name or not name.isprintable():
+        raise LandingError(
+            f"name = {name!r} names no folder of its own; take one without '/' and control "
+            "characters"
+        )
+    return name
+
+
 def texts(keys: Mapping[str, Any], key: str) -> list[str] | None:
     """A list of texts, not empty and without repetition; None where it is missing."""
     value = keys.get(key)

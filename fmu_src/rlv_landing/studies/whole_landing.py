@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..audit.rest import LONGEST_WAIT, REST_AFTER
+from ..errors import LandingError
 from ..landing import Landing
 from ..outputs import layout_of
 from ..sampling import Samples
@@ -72,6 +73,20 @@ def whole_landing(
     return ReplayedHistory(
         whole, landing, states, stands_from=len(whole) - len(parts[-1].rows) if stood else None
     )
+
+
+def check_samples(every: float, until: float | None) -> None:
+    """Check that a landing until `until` [s] has two samples that are `every` [s] apart.
+
+    Raises:
+        LandingError: It has one, at its start.
+    """
+    longest = LONGEST_WAIT if until is None else until
+    if every > longest:
+        raise LandingError(
+            f"every = {every:g} s is above until = {longest:g} s; "
+            "no landing would have a second sample"
+        )
 
 
 def most_samples(until: float | None, every: float, *, decided: bool) -> float:

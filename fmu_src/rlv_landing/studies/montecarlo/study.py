@@ -26,6 +26,7 @@ from ..sweep.responses import LEGS_PEAKS, expand, known_responses, suited
 from ..sweep.states_table import read_states
 from ..sweep.study import UNTIL, Study, read_end
 from ..variables import VARIABLES, check_variables
+from ..whole_landing import check_samples
 from .covariance import read_correlated
 from .dispersions import Dispersions, Table
 from .grades import Grade, read_grades
@@ -152,13 +153,13 @@ def _montecarlo(document: Mapping[str, Any], path: Path, text: str) -> MonteCarl
     if criterion == "limit" and not limits:
         raise LandingError('criterion = "limit" needs [limits]; add for example main_strut.force')
     numbers = {name: toml_keys.number(keys, q) for name, q in NUMBERS.items()}
+    until = toml_keys.number(keys, UNTIL) if "until" in keys else None
+    check_samples(numbers["every"], until)
     _check_numbers(loads, interface)
     bounded = [name for g in grades for name in (*g.most, *g.least)]
     asked = expand(toml_keys.texts(keys, "responses") or (), interface)
     always = expand(ALWAYS, interface)
-    name = toml_keys.text(keys, "name", path.stem)
-    if Path(name).name != name:
-        raise LandingError(f"name = {name!r} names a folder; take one without '/'")
+    name = toml_keys.folder_name(keys, path.stem)
     sweep = Study(
         name=name,
         method="montecarlo",
@@ -167,7 +168,7 @@ def _montecarlo(document: Mapping[str, Any], path: Path, text: str) -> MonteCarl
         parameters=parameters,
         modes=(mode,),
         interface=interface,
-        until=toml_keys.number(keys, UNTIL) if "until" in keys else None,
+        until=until,
         responses=tuple(dict.fromkeys((*always, *loads, *bounded, *asked))),
         limits={name: float(v) for name, v in limits.items()},
         fixed=fixed,

@@ -11,7 +11,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from ...audit.rest import LONGEST_WAIT
 from ...choices import choose_parameters
 from ...effort import duration_text
 from ...errors import LandingError, unknown
@@ -24,6 +23,7 @@ from ..landed import interface_for, landed_modes
 from ..limits import LIMITS
 from ..outcome import SLIDE
 from ..variables import VARIABLES, check_variables
+from ..whole_landing import check_samples
 from .design import LEAST_SECONDS, Design, drawn, grid
 from .factors import LARGEST, Factor, read_factor
 from .responses import expand
@@ -204,11 +204,9 @@ def _study(document: dict[str, Any], path: Path, text: str) -> Study:
         grid(factors)
     numbers = {name: toml_keys.number(keys, q) for name, q in NUMBERS.items()}
     until = toml_keys.number(keys, UNTIL) if "until" in keys else None
-    _check_samples_apart(numbers["every"], until)
+    check_samples(numbers["every"], until)
     limits = toml_keys.values(toml_keys.table(document, "limits"), LIMITS, "limit")
-    name = toml_keys.text(keys, "name", path.stem)
-    if Path(name).name != name:
-        raise LandingError(f"name = {name!r} names a folder; take one without '/'")
+    name = toml_keys.folder_name(keys, path.stem)
     return Study(
         name=name,
         method=method,
@@ -249,16 +247,6 @@ def _check_given_once(given: list[str]) -> None:
     for name in given:
         if given.count(name) > 1:
             raise LandingError(f"{name} is given twice, in [set] or as a [[factor]]; leave one")
-
-
-def _check_samples_apart(every: float, until: float | None) -> None:
-    """Check that a landing that ends at `until` [s] has two samples that are `every` [s] apart."""
-    longest = LONGEST_WAIT if until is None else until
-    if every > longest:
-        raise LandingError(
-            f"every = {every:g} s is above until = {longest:g} s; "
-            "no landing would have a second sample"
-        )
 
 
 def _states(
