@@ -27,10 +27,12 @@ def scaled(parameters: Parameters, mass: float) -> Parameters:
     for 1 m: their stiffness keeps the force at a scaled deflection.
     """
     factor = (mass / parameters.vehicle.mass) ** (1.0 / 3.0)
+    # the ship is no part of a landing without waves
+    scene = "sea." if parameters.sea.wave_height == 0.0 else ()
     values = {
         name: value * factor ** power(PARAMETER_QUANTITIES[name].unit)
         for name, value in parameters.items()
-        if not isinstance(value, str)
+        if not isinstance(value, str) and not name.startswith(scene)
     }
     for group in ("auxiliary_strut", "ground"):
         exponent = getattr(parameters, group).exponent
