@@ -93,20 +93,23 @@ class Trial(Rest):
     def _error(self) -> float:
         """Error of the step just computed, in units of the tolerance.
 
-        It is the root mean square over the controlled states, as a mean of those that count.
+        It is the root mean square over the controlled states, as a mean of those that count. The
+        deviation is in these units afterwards.
         """
         y, end, deviation = data(self.y), data(self.y_new), data(self.deviation)
         scale, relative = data(self.system.scale), data(self.system.relative)
         ceiling = data(self.ceiling)
         self.system.weigh(ceiling)
-        total = 0.0
+        rtol = self.rtol
         m = self.system.controlled
+        # without branches, so that the compiler takes several states at once
         for i in range(m):
-            limit = self.rtol * scale[i]
-            if relative[i] > 0.0:
-                limit = min(self.rtol * (scale[i] + max(fabs(y[i]), fabs(end[i]))), ceiling[i])
-            e = deviation[i] / limit
-            total += e * e
+            size = max(fabs(y[i]), fabs(end[i]))
+            limit = min(rtol * (scale[i] + size), ceiling[i])
+            deviation[i] /= limit if relative[i] > 0.0 else rtol * scale[i]
+        total = 0.0
+        for i in range(m):
+            total += deviation[i] * deviation[i]
         return sqrt(total / self.system.counted)
 
     def _fastest(self, one: Doubles, k_one: Doubles, other: Doubles, k_other: Doubles) -> float:
