@@ -34,7 +34,8 @@ def whole_landing(
 ) -> ReplayedHistory:
     """Land from now until the vehicle is at rest, has toppled, or `until` [s].
 
-    The state is checked every 0.25 s. The vehicle is at rest where `status.phase` is settled then.
+    The state is checked every 0.25 s. The vehicle is at rest where `status.phase` is settled then;
+    at sea, where it has been so for one period of the waves' peak.
     It has toppled where it was toppled at every sample of the last 0.25 s: one that is beyond its
     feet for a moment may still come back. What is not decided 10 s after its first contact, such as
     a heavy vehicle that rocks, is sampled every 10 ms from then on, or every `every` [s] if that is
@@ -108,11 +109,14 @@ def _until_decided(
     """The landing in parts, until it is decided or `until` [s]; see `whole_landing`."""
     layout = layout_of(landing.parameters.drop.mode, landing.interface.output_names)
     phase = layout.places["status.phase"][0]
-    contact = landing.parameters.drop.contact_time
+    contact, calm = landing.parameters.drop.contact_time, _calm_time(landing)
     for end, step in ((min(until, contact + REST_AFTER), every), (until, max(every, LATER_EVERY))):
         for part in _checked(landing, end, step, keep):
             yield part
-            if _is_decided(part.rows[:, phase]) or (stands is not None and stands(part.rows)):
+            told = part.rows[:, phase]
+            if np.all(told == TOPPLED) or (stands is not None and stands(part.rows)):
+                return
+            if told[-1] == SETTLED and _settled_for(landing) >= calm:
                 return
 
 
@@ -126,5 +130,13 @@ def _checked(
         yield landing.samples(min(start + checks * samples * every, end), every, keep)
 
 
-def _is_decided(phase: Array) -> bool:
-    return bool(phase[-1] == SETTLED or np.all(phase == TOPPLED))
+def _calm_time(landing: Landing) -> float:
+    """How long [s] a vehicle must have been settled to be at rest: through one wave of the peak."""
+    sea = landing.parameters.sea
+    return sea.peak_period if sea.wave_height > 0.0 else 0.0
+
+
+def _settled_for(landing: Landing) -> float:
+    """How long [s] the landing has been settled; below 0 where it is not."""
+    since = landing.settled_since
+    return -1.0 if since is None else landing.time - since

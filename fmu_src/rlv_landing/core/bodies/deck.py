@@ -67,13 +67,31 @@ def ground_axes(turn: DeckTurn, p: SpatialModel) -> Rotation:
     )
 
 
+def about_axes(turn: DeckTurn, roll: float, yaw: float, tilt: float) -> Vector:
+    """The vector with these parts along the axes of the deck's angles, in inertial axes."""
+    # the yaw's axis is tilted and rolled, the roll's is tilted
+    x = roll
+    y = turn.cos_r * yaw
+    z = turn.sin_r * yaw
+    return Vector(turn.cos_t * x + turn.sin_t * y, turn.cos_t * y - turn.sin_t * x, z - tilt)
+
+
 def deck_spin(u: SpatialInputs, turn: DeckTurn) -> Vector:
     """Angular velocity of the deck [rad/s], inertial axes."""
-    # the yaw's axis is tilted and rolled, the roll's is tilted
-    x = u.roll_rate
-    y = turn.cos_r * u.yaw_rate
-    z = turn.sin_r * u.yaw_rate
-    return Vector(turn.cos_t * x + turn.sin_t * y, turn.cos_t * y - turn.sin_t * x, z - u.tilt_rate)
+    return about_axes(turn, u.roll_rate, u.yaw_rate, u.tilt_rate)
+
+
+def deck_spin_rate(u: SpatialInputs, turn: DeckTurn, second: Vector) -> Vector:
+    """Angular acceleration of the deck [rad/s2], inertial axes.
+
+    `second` are the second derivatives of roll, yaw and tilt. Tilt carries the roll's axis, both
+    carry the yaw's.
+    """
+    tilting = about_axes(turn, 0.0, 0.0, u.tilt_rate)
+    rolling = about_axes(turn, u.roll_rate, 0.0, 0.0)
+    yawing = about_axes(turn, 0.0, u.yaw_rate, 0.0)
+    carried = added(cross(tilting, rolling), cross(added(tilting, rolling), yawing))
+    return added(about_axes(turn, second.x, second.y, second.z), carried)
 
 
 def from_origin(u: SpatialInputs, point: Vector) -> Vector:
@@ -84,6 +102,11 @@ def from_origin(u: SpatialInputs, point: Vector) -> Vector:
 def deck_velocity(u: SpatialInputs, spin: Vector, place: Vector) -> Vector:
     """The ground's velocity [m/s] at a place from the deck's origin, whose `spin` is in rad/s."""
     return added(Vector(u.surge_rate, u.heave_rate, u.sway_rate), cross(spin, place))
+
+
+def deck_acceleration(origin: Vector, spin: Vector, spin_rate: Vector, place: Vector) -> Vector:
+    """The ground's acceleration [m/s2] at a place from the deck's origin, whose own is `origin`."""
+    return added(origin, added(cross(spin_rate, place), cross(spin, cross(spin, place))))
 
 
 def motion_on_ground(axes: Rotation, place: Vector, velocity: Vector, step: float) -> FootMotion:

@@ -83,6 +83,10 @@ class Legged(System):
         rounding: How far rounding may put the balance off [J].
         mass: The whole vehicle's [kg].
         more_contact, more_friction: What contacts of the body itself hold as the legs' do [J].
+        ground_moves: Whether the ground moved at the end of the last step.
+        relative_kinetic: If so, the kinetic energy of the motion relative to it there [J].
+        relative_acceleration: And the sum of the body's accelerations less the ground's
+            [m/s2, rad/s2].
         more_auxiliary: What the legs' second auxiliary struts hold, where they have two [J].
     """
 
@@ -94,6 +98,9 @@ class Legged(System):
     more_contact: float
     more_friction: float
     more_auxiliary: float
+    ground_moves: bool
+    relative_kinetic: float
+    relative_acceleration: float
     _first_leg: int  # its place in the state
     _works: int  # their place in the state
     _energies: int  # their place in the outputs, behind the body's
@@ -126,6 +133,9 @@ class Legged(System):
         self.more_contact = 0.0
         self.more_friction = 0.0
         self.more_auxiliary = 0.0
+        self.ground_moves = False
+        self.relative_kinetic = 0.0
+        self.relative_acceleration = 0.0
         # so many states of others stand behind the legs'
         self._first_leg = self.controlled - LEG * groups - behind
         self._works = self.controlled + ACCOUNTS
@@ -191,7 +201,7 @@ class Legged(System):
         return farthest / MOST_GATHERED
 
     def is_slow(self, outputs: Doubles) -> bool:
-        """Whether it stands or lies, and is slow.
+        """Whether it stands or lies, and is slow, relative to the ground.
 
         Its acceleration does not count: at rest an explicit method oscillates by a part of the
         tolerance.
@@ -199,7 +209,13 @@ class Legged(System):
         phase = status_outputs(outputs, self._energies + ENERGY_OUTPUTS).phase
         if is_phase(phase, Phase.FALLING):
             return False
-        return is_slow(outputs[self._energies + KINETIC], self.mass)
+        return is_slow(self._kinetic_on_ground(outputs), self.mass)
+
+    def _kinetic_on_ground(self, outputs: Doubles) -> float:
+        """The kinetic energy [J] of the motion relative to the ground, at a step's end."""
+        if self.ground_moves:
+            return self.relative_kinetic
+        return outputs[self._energies + KINETIC]
 
     def may_rest(self, u: Doubles, rates: Doubles, outputs: Doubles) -> bool:
         """Whether it stands and is slow, with loads and ground that do not change."""
@@ -215,14 +231,17 @@ class Legged(System):
         return True
 
     def rests(self, outputs: Doubles, most: float) -> bool:
-        """Whether it touches the ground and is still, see `is_still`; on its side, too."""
+        """Whether it touches the ground and is still on it, see `is_still`; on its side, too."""
         phase = status_outputs(outputs, self._energies + ENERGY_OUTPUTS).phase
         if is_phase(phase, Phase.FALLING):
             return False
         acceleration = 0.0
-        for i in range(self._axes):
-            acceleration += fabs(outputs[self._accelerations + i])
-        return is_still(outputs[self._energies + KINETIC], self.mass, acceleration, most)
+        if self.ground_moves:
+            acceleration = self.relative_acceleration
+        else:
+            for i in range(self._axes):
+                acceleration += fabs(outputs[self._accelerations + i])
+        return is_still(self._kinetic_on_ground(outputs), self.mass, acceleration, most)
 
     def tell_rest(self, outputs: Doubles, at: int) -> None:
         """Write the phase: settled, where it touches the ground and has not toppled."""

@@ -40,7 +40,8 @@ class Planar(PlanarMotion):
     def read(self, y: Doubles, u: Doubles, dy: Doubles, out: Doubles, at: int) -> None:
         """Write all outputs to `out[at:]`, from what `rhs` has kept of the legs."""
         self._keep_status(y)
-        kinetic = self._kinetic_energy(y)
+        body = body_state(y, 0)
+        kinetic = self._kinetic_energy(y, body.vx, body.vy, body.pitch_rate)
         self._put_body(y, dy, out, at)
         at += BODY_OUTPUTS
         self._put_energies(y, kinetic, self._potential_energy(y), out, at)
@@ -74,23 +75,50 @@ class Planar(PlanarMotion):
             at,
         )
 
-    def _kinetic_energy(self, y: Doubles) -> float:
-        """Kinetic energy [J] of body and footpads."""
-        p = body_model(self._body, 0)
-        body = body_state(y, 0)
-        turn = attitude_of(self._attitude, 0)
-        vx = body.vx * turn.cos_p - body.vy * turn.sin_p
-        vy = body.vx * turn.sin_p + body.vy * turn.cos_p
-        twice = (
-            p.m_u * (body.vx * body.vx + body.vy * body.vy)
-            + p.I_u * body.pitch_rate * body.pitch_rate
+    def follow_ground(self, t: float, y: Doubles, dy: Doubles, u: Doubles, rates: Doubles) -> None:
+        """Keep the motion relative to the ground, which moves as a rigid body.
+
+        Of the acceleration, what the ground's has at the CG is taken off.
+        """
+        now = inputs(u, 0)
+        change = inputs(rates, 0)
+        self.ground_moves = (
+            now.heave_rate != 0.0
+            or now.tilt_rate != 0.0
+            or change.heave_rate != 0.0
+            or change.tilt_rate != 0.0
         )
+        if not self.ground_moves:
+            return
+        s = body_state(y, 0)
+        r = body_state(dy, 0)
+        w = now.tilt_rate
+        height = s.y - now.heave
+        vx = s.vx - w * height
+        vy = s.vy - now.heave_rate + w * s.x
+        self.relative_kinetic = self._kinetic_energy(y, vx, vy, s.pitch_rate - w)
+        ax = change.tilt_rate * height - w * w * s.x
+        ay = change.heave_rate - change.tilt_rate * s.x - w * w * height
+        self.relative_acceleration = (
+            fabs(r.vx - ax) + fabs(r.vy - ay) + fabs(r.pitch_rate - change.tilt_rate)
+        )
+
+    def _kinetic_energy(self, y: Doubles, x: float, h: float, rate: float) -> float:
+        """Kinetic energy [J] of body and footpads.
+
+        The CG's velocity is `x`, `h` [m/s], inertial axes, the pitch rate `rate` [rad/s].
+        """
+        p = body_model(self._body, 0)
+        turn = attitude_of(self._attitude, 0)
+        vx = x * turn.cos_p - h * turn.sin_p
+        vy = x * turn.sin_p + h * turn.cos_p
+        twice = p.m_u * (x * x + h * h) + p.I_u * rate * rate
         for i in range(self.groups):
             m_d = leg_model(self._legs, i).m_d
             twice += footpad_kinetic_energy(
                 vx,
                 vy,
-                body.pitch_rate,
+                rate,
                 leg_state(y, BODY + LEG * i),
                 leg_place(self._places, i),
                 m_d,

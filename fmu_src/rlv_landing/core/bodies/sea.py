@@ -61,6 +61,18 @@ def add_series(terms: Doubles, dt: float, now: Doubles, at: int) -> None:
         now[at + 2 * j + 1] += rate
 
 
+def add_curvatures(terms: Doubles, dt: float, rates: Doubles) -> None:
+    """Add each freedom's acceleration `dt` [s] from a window's middle to `rates`."""
+    for j in range(FREEDOMS):
+        place = terms[TERMS * j + TERMS - 1]
+        rate = half = 0.0
+        for n in range(TERMS - 1):
+            half = half * dt + rate
+            rate = rate * dt + place
+            place = place * dt + terms[TERMS * j + TERMS - 2 - n]
+        rates[j] += 2.0 * half
+
+
 class Sea:
     """The motion of a deck in a sea.
 
@@ -91,13 +103,23 @@ class Sea:
 
     def add_to(self, t: float, now: Doubles, at: int) -> None:
         """Add each freedom's place [m, rad] and its rate at time `t` [s] to `now[at:]`."""
+        dt = self._in_window(t)
+        add_series(data(self._terms), dt, now, at)
+
+    def add_accelerations(self, t: float, rates: Doubles) -> None:
+        """Add each freedom's acceleration [m/s2, rad/s2] at time `t` [s] to `rates` [FREEDOMS]."""
+        dt = self._in_window(t)
+        add_curvatures(data(self._terms), dt, rates)
+
+    def _in_window(self, t: float) -> float:
+        """Open the window of the time `t` [s]; return how far that is from its middle [s]."""
         time = self._start + t
         number = floor(time / self._window)
         middle = (number + 0.5) * self._window
         if number != self._at:
             self._at = number
             open_window(data(self._waves), self.count, middle, data(self._terms))
-        add_series(data(self._terms), time - middle, now, at)
+        return time - middle
 
     def places(self, times: Buffer, count: int, rows: Buffer) -> None:
         """Write each freedom's place and rate at so many `times` [s] to `rows`."""

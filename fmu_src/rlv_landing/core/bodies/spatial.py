@@ -6,12 +6,14 @@ from math import asin, atan2, fabs, inf, sqrt
 
 from ..access import (
     ACROSS,
+    DECK_INPUTS,
     ENERGY_OUTPUTS,
     LEG,
     LEG_OUTPUTS,
     SPATIAL_OUTPUTS,
     STATUS_OUTPUTS,
     across_state,
+    deck_turn_of,
     foot_loads_of,
     leg_model,
     leg_place,
@@ -23,9 +25,11 @@ from ..access import (
     spatial_model,
     spatial_state,
 )
-from ..memory import Doubles
+from ..memory import Doubles, data
 from ..records import LegLoadOutputs, Rotation, SpatialOutputs, StatusOutputs, Vector
 from ..vectors import added, cross, dot, length_of, less, to_body
+from .deck import deck_acceleration, deck_spin, deck_spin_rate, deck_velocity, from_origin
+from .sea import FREEDOMS
 from .spatial_legs import cg_of, foot_place, moved_across
 from .spatial_motion import SpatialMotion
 from .status import phase_of
@@ -59,7 +63,9 @@ class Spatial(SpatialMotion):
         self._keep_point_energies(y)
         if self._tripod:
             self._keep_second_energies()
-        kinetic = self._kinetic_energy(y, turn)
+        s = spatial_state(y, 0)
+        velocity = to_body(turn, Vector(s.vx, s.vy, s.vz))
+        kinetic = self._kinetic_energy(y, velocity, Vector(s.spin_x, s.spin_y, s.spin_z))
         self._put_body(y, dy, turn, out, at)
         at += SPATIAL_OUTPUTS
         self._put_energies(y, kinetic, self._potential_energy(y), out, at)
@@ -146,12 +152,44 @@ class Spatial(SpatialMotion):
             at,
         )
 
-    def _kinetic_energy(self, y: Doubles, turn: Rotation) -> float:
-        """Kinetic energy [J] of body and footpads."""
-        p = spatial_model(self._body, 0)
+    def follow_ground(self, t: float, y: Doubles, dy: Doubles, u: Doubles, rates: Doubles) -> None:
+        """Keep the motion relative to the deck, which moves as a rigid body.
+
+        Of the acceleration, what the deck's has at the CG is taken off.
+        """
+        second = data(self._deck_accelerations)
+        self.ground_moves = self.at_sea
+        for j in range(FREEDOMS):
+            rate = DECK_INPUTS + 2 * j + 1
+            second[j] = rates[rate]
+            if u[rate] != 0.0 or second[j] != 0.0:
+                self.ground_moves = True
+        if not self.ground_moves:
+            return
+        if self.at_sea:
+            self._sea.add_accelerations(t, second)
+        now = spatial_inputs(u, 0)
         s = spatial_state(y, 0)
-        spin = Vector(s.spin_x, s.spin_y, s.spin_z)
-        velocity = to_body(turn, Vector(s.vx, s.vy, s.vz))
+        r = spatial_state(dy, 0)
+        turn = rotation_of(self._turn, 0)
+        deck = deck_turn_of(self._deck, 0)
+        rolling = deck_spin(now, deck)
+        angular = deck_spin_rate(now, deck, Vector(second[3], second[4], second[5]))
+        above = from_origin(now, Vector(s.x, s.y, s.z))
+        velocity = less(Vector(s.vx, s.vy, s.vz), deck_velocity(now, rolling, above))
+        spin = less(Vector(s.spin_x, s.spin_y, s.spin_z), to_body(turn, rolling))
+        self.relative_kinetic = self._kinetic_energy(y, to_body(turn, velocity), spin)
+        origin = Vector(second[0], second[1], second[2])
+        ground = deck_acceleration(origin, rolling, angular, above)
+        a = less(Vector(r.vx, r.vy, r.vz), ground)
+        turning = less(Vector(r.spin_x, r.spin_y, r.spin_z), to_body(turn, angular))
+        self.relative_acceleration = (
+            fabs(a.x) + fabs(a.y) + fabs(a.z) + fabs(turning.x) + fabs(turning.y) + fabs(turning.z)
+        )
+
+    def _kinetic_energy(self, y: Doubles, velocity: Vector, spin: Vector) -> float:
+        """Kinetic energy [J] of body and footpads at these of the CG, body axes [m/s, rad/s]."""
+        p = spatial_model(self._body, 0)
         turning = Vector(
             p.I_x * spin.x + p.I_xy * spin.y + p.I_xz * spin.z,
             p.I_xy * spin.x + p.I_y * spin.y + p.I_yz * spin.z,

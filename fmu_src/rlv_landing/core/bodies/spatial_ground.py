@@ -74,7 +74,7 @@ from .deck import (
     steepness,
 )
 from .legged import Legged
-from .sea import Sea
+from .sea import FREEDOMS, Sea
 from .spatial_legs import cg_of
 
 
@@ -115,6 +115,8 @@ class SpatialGround(Legged):
     # how many outputs a leg has
     _leg_row: int
     _sea: Sea
+    # of surge, heave, sway, roll, yaw, tilt
+    _deck_accelerations: Buffer
 
     def __init__(
         self,
@@ -161,6 +163,7 @@ class SpatialGround(Legged):
         self._point_forces = room(len(points), GROUND_FORCE)
         self._point_loads = room(len(points), FOOT_LOADS)
         self._sea = sea
+        self._deck_accelerations = array("d", bytes(8 * FREEDOMS))
         self.at_sea = sea.count > 0
         if points and not friction_only_takes(leg_model(self._law, 0)):
             self.rising = FRICTION

@@ -123,6 +123,17 @@ class System:
             self.rhs(y, u, rates)
         self.read(y, u, rates, out, at)
 
+    def follow_ground(self, t: float, y: Doubles, dy: Doubles, u: Doubles, rates: Doubles) -> None:
+        """Keep how the system moves relative to its ground, for `is_slow` and `rests`.
+
+        Args:
+            t: Time [s] of an end of a step, where `rhs` was called last.
+            y: The state there.
+            dy: Its rate.
+            u: The inputs there.
+            rates: The rates that were given for them.
+        """
+
     def is_slow(self, outputs: Doubles) -> bool:
         """Whether the system is so slow with these `outputs` that it may be near a rest."""
         return False

@@ -111,7 +111,17 @@ class Solver(Trial):
 
     def _recompute_derived(self) -> None:
         self._derivatives(self.t, data(self.y), data(self.k1))
+        self._follow_ground()
         self._start_step()
+
+    def _follow_ground(self) -> None:
+        """Let the system know its motion relative to the ground at time `t`.
+
+        The right-hand side was called last there.
+        """
+        self.system.follow_ground(
+            self.t, data(self.y), data(self.k1), data(self.u_now), data(self.u_rate)
+        )
 
     def _start_step(self) -> None:
         """Take from the system what a method needs at the start of a step.
@@ -144,6 +154,7 @@ class Solver(Trial):
         self.t_before = self.t_old
         self.t_old = self.t
         self.t += h
+        self._follow_ground()
         self._judge_rest(data(self.last))
         self.steps += 1.0
         self._start_step()
