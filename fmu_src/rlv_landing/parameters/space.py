@@ -18,17 +18,17 @@ ONLY_IN_SPACE = {
         *("inertia_xy", "inertia_xz", "inertia_yz"),
     ),
     Drop: ("heading", "roll", "roll_rate", "yaw_rate", "lateral_velocity"),
-    Ground: (
-        *("slope_direction", "step", "terrain"),
-        *("roughness", "roughness_length", "terrain_seed"),
-    ),
+    Ground: ("slope_direction", "step", "terrain", "roughness", "terrain_seed"),
 }
 # the parameters that are whole numbers
 WHOLE_NUMBERS = ("vehicle.legs", "ground.terrain_seed")
 # roughness in parts of its length: slopes of 16 deg, root mean square along a line
 STEEPEST_ROUGHNESS = 0.2
 # a symmetric landing may have them, and does not depend on them
-NO_EFFECT_IN_A_PLANE = ("vehicle.leg_azimuth", "vehicle.inertia_roll", "vehicle.inertia_yaw")
+NO_EFFECT_IN_A_PLANE = (
+    *("vehicle.leg_azimuth", "vehicle.inertia_roll", "vehicle.inertia_yaw"),
+    "ground.roughness_length",
+)
 
 
 def check_space(vehicle: Vehicle, drop: Drop, ground: Ground) -> None:
