@@ -19,7 +19,7 @@ DEFAULT_PRESET = "yue2022-figures"
 NOT_OF_A_VEHICLE = {
     *(name for name in PARAMETER_QUANTITIES if name.startswith("solver.")),
     *(name for name, q in PARAMETER_QUANTITIES.items() if q.kind == "string" and not q.choices),
-    "ground.step",
+    *("ground.step", "ground.roughness", "ground.roughness_length", "ground.terrain_seed"),
 }
 OVERRIDES = "vehicle.leg_overrides"
 
