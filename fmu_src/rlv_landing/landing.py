@@ -35,9 +35,9 @@ METHODS: dict[str, type[Solver]] = {"exponential": Exponential, "dormand-prince"
 # samples between two calls of `progress` in a run
 SLICE = 250
 # and the longest time between them [s]: a study looks between samples from the state at such a call
-SLICE_TIME = 0.05
-# and in the first SLICE_TIME of a landing: first contacts are looked for there
-FIRST_SLICE_TIME = 0.01
+SLICE_TIME = 0.125
+# and until EARLY from a landing's start: first contacts are looked for there
+EARLY, EARLY_SLICE_TIME = 0.05, 0.01
 
 
 class Landing:
@@ -357,7 +357,7 @@ class Landing:
         Args:
             until: Time to land to [s].
             every: Time between two samples [s].
-            progress: Called with the time reached [s], every 250 samples or 0.05 s.
+            progress: Called with the time reached [s], every 250 samples or 0.125 s.
 
         Returns:
             The outputs every `every` [s], the present time included.
@@ -444,7 +444,7 @@ class Landing:
         samples, numbers = len(rows), rows.reshape(-1)
         reached = 0
         while reached < samples:
-            span = SLICE_TIME if self._time >= SLICE_TIME else FIRST_SLICE_TIME
+            span = SLICE_TIME if self._time >= EARLY else EARLY_SLICE_TIME
             most = max(1, min(SLICE, round(span / every)))
             # the first sample is where the last slice before it ended
             goal = min(reached + most + (not reached), samples)

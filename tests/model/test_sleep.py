@@ -78,6 +78,21 @@ def test_what_rocks_settles_once_whatever_the_samples(mode, method):
     assert landing.settled_since is None
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_a_copy_of_what_sleeps_or_was_pushed_in_space_is_a_landing(method):
+    """At a loose tolerance, too: the way to the rest, and states inside steps, turn the body."""
+    slope = {"ground.slope": 0.09, "ground.slope_direction": 1.0, "drop.contact_time": 0.0}
+    landing = Landing(load_preset(FIGURES, "space").with_values(slope), rtol=1e-2, method=method)
+    landing.advance_to(0.0213)
+    landing.set_inputs({"external.force_z": 90.0})
+    assert copy.copy(landing).values() == landing.values()
+    landing.advance_to(LONG)
+    assert landing.statistics["asleep"] == 1
+    assert copy.copy(landing).values() == landing.values()
+    q = [landing.get(f"body.q_{axis}") for axis in "wxyz"]
+    assert np.linalg.norm(q) == approx(1.0, abs=1e-12)
+
+
 def test_what_sleeps_has_settled_and_stands_still(rested):
     assert rested.get("status.phase") == Phase.SETTLED
     for name in ("body.ax", "body.ay", "body.pitch_acceleration"):

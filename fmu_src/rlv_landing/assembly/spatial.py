@@ -70,11 +70,10 @@ def spatial_system(parameters: Parameters, kind: type[Spatial] = Spatial) -> Spa
     places = spatial_places(parameters)
     points = body_points(parameters)
     scale, relative = state_sizes(BODY_SCALE, len(places), parameters, len(points))
+    body, law = spatial_model(parameters), leg_model(parameters)
+    legs = [law] * len(places)
     if parameters.vehicle.leg_overrides:
         legs = [leg_model(parameters, leg) for leg in range(1, len(places) + 1)]
-    else:
-        legs = [leg_model(parameters)] * len(places)
-    body, law = spatial_model(parameters), leg_model(parameters)
     met = (points, law, *height_field(parameters), waves_of(parameters).kernel())
     return kind(body, legs, places, scale, relative, met)
 

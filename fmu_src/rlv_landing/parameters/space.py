@@ -21,10 +21,7 @@ ONLY_IN_SPACE = {
     ),
     Leg: ("kind",),
     Drop: ("heading", "roll", "roll_rate", "yaw_rate", "lateral_velocity"),
-    Ground: (
-        *("slope_direction", "step", "terrain"),
-        *("roughness", "roughness_length", "terrain_seed"),
-    ),
+    Ground: ("slope_direction", "step", "terrain", "roughness", "terrain_seed"),
     Sea: tuple(f.name for f in fields(Sea)),
 }
 # the parameters that are whole numbers
@@ -35,6 +32,7 @@ STEEPEST_ROUGHNESS = 0.2
 NO_EFFECT_IN_A_PLANE = (
     *("vehicle.leg_azimuth", "vehicle.inertia_roll", "vehicle.inertia_yaw"),
     "auxiliary_strut.joint_spread",
+    "ground.roughness_length",
 )
 
 

@@ -20,6 +20,7 @@ NOT_OF_A_VEHICLE = {
     *(name for name in PARAMETER_QUANTITIES if name.startswith(("solver.", "sea."))),
     *(name for name, q in PARAMETER_QUANTITIES.items() if q.kind == "string" and not q.choices),
     *("ground.step", "leg.kind", "auxiliary_strut.joint_spread"),
+    *("ground.roughness", "ground.roughness_length", "ground.terrain_seed"),
 }
 OVERRIDES = "vehicle.leg_overrides"
 # the table of what all legs have alike, and of single legs' tables by number

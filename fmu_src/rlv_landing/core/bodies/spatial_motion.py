@@ -7,8 +7,10 @@ from collections.abc import Sequence
 
 from ..access import (
     ACROSS,
+    ACROSS_FORCES,
     LEG,
     SPATIAL_ATTITUDE,
+    SPATIAL_LOADS,
     across_state,
     deck_turn_of,
     foot_motion_of,
@@ -98,6 +100,9 @@ class SpatialMotion(TripodMotion):
         met: tuple[Sequence[BodyPoint], LegModel, HeightField, Buffer, Sea],
     ) -> None:
         super().__init__(body, legs, places, scale, relative, met)
+        self._tripod = body.tripod > 0.0
+        self._across = room(len(legs), ACROSS_FORCES)
+        self._loads = room(len(legs), SPATIAL_LOADS)
         self._attitude = room(1, SPATIAL_ATTITUDE)
         # the force that keeps each footpad in its leg's plane, along t [N]
         self._transverse = array("d", bytes(8 * len(legs)))

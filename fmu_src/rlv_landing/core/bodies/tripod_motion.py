@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from ..access import (
     ACROSS,
-    ACROSS_FORCES,
     AUXILIARY_ACCOUNT,
     LEG,
-    SPATIAL_LOADS,
     across_forces_of,
     across_state,
     foot_motion_of,
@@ -22,24 +18,18 @@ from ..access import (
     spatial_loads_of,
     spatial_model,
 )
-from ..memory import Buffer, Doubles, Records, room
+from ..memory import Doubles, Records
 from ..records import (
     AcrossForces,
     AcrossState,
-    BodyPoint,
-    HeightField,
-    LegModel,
-    LegPlace,
     SecondStrutOutputs,
     SpatialAttitude,
     SpatialLoads,
-    SpatialModel,
     Vector,
 )
 from ..struts.kinds import auxiliary_strut_energy
 from ..tripod import across_forces, tripod_forces
 from ..vectors import added, cross, dot, less, scaled, solved
-from .sea import Sea
 from .spatial_ground import SpatialGround
 from .spatial_legs import along_across, cg_of, force_on_body, in_leg
 
@@ -49,25 +39,12 @@ class TripodMotion(SpatialGround):
 
     No force keeps a footpad in its leg's plane, so that each footpad and the body are accelerated
     by the forces on it alone: m (a + w' x rho + b + rho'') = F and m_u a = f, I w' + w x I w = t.
+    A subclass makes the room for what is kept.
     """
 
     _tripod: bool
     _across: Records[AcrossForces]
     _loads: Records[SpatialLoads]
-
-    def __init__(
-        self,
-        body: SpatialModel,
-        legs: Sequence[LegModel],
-        places: Sequence[LegPlace],
-        scale: Buffer,
-        relative: Buffer,
-        met: tuple[Sequence[BodyPoint], LegModel, HeightField, Buffer, Sea],
-    ) -> None:
-        super().__init__(body, legs, places, scale, relative, met)
-        self._tripod = body.tripod > 0.0
-        self._across = room(len(legs), ACROSS_FORCES)
-        self._loads = room(len(legs), SPATIAL_LOADS)
 
     def _keep_tripod_forces(self, i: int, y: Doubles, steep: float) -> None:
         """Keep the forces of leg `i`, on ground of this steepness."""

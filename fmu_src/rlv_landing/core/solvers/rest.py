@@ -136,6 +136,7 @@ class Rest(Watch):
         for i in range(m):
             shift[i] *= self._scale(y, i)
             y[i] += shift[i]
+        self.system.normalise(y)
         return self.system.distance(shift)
 
     def _linearise(self, y: Doubles) -> None:

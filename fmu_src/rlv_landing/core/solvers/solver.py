@@ -96,6 +96,7 @@ class Solver(Trial):
         self.t_before = t
         self.t_input = t
         self.error_old = LEAST_PREVIOUS_ERROR
+        self.system.normalise(data(self.y))
         self._stand_still(data(self.y))
         self.h = min(self.h, FIRST_STEP)
         self.spent = max(self.spent - FREE_TRIES, 0.0)
