@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import cos, sin
 from typing import Any
 
@@ -39,7 +40,7 @@ DRIVEN = {
 def phases(landing: Landing, until: float) -> list[int]:
     """The phases one after another, by samples 10 ms apart."""
     told = landing.run(until, 0.01)["status.phase"].astype(int)
-    return [int(told[0]), *(int(b) for a, b in zip(told, told[1:]) if a != b)]
+    return [int(told[0]), *(int(b) for a, b in pairwise(told) if a != b)]
 
 
 @pytest.mark.parametrize("mode", ["space", "2-2"])

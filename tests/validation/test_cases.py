@@ -24,6 +24,7 @@ contact_time = "200 ms"
 vertical_velocity = -3.0
 pitch_rate = 0.0
 """
+FORM = SHORT.split("number", maxsplit=1)[0] + "closed_form = 'tip_over'\ndrop.mode = 'space'\n"
 
 
 @pytest.mark.parametrize("name", case_names())
@@ -120,6 +121,8 @@ def test_cases_are_listed_and_options_of_the_paper_s_landings_refused(command) -
         ("contact = 1", "contact = 1, at = 0.1", "unknown key of number 2 'at'"),
         ("[drop]", "[dorp]", "unknown key 'dorp'"),
         ("number = [", "closed_form = 'none'\nnumber = [", "unknown closed form 'none'"),
+        (SHORT, f"{FORM}[leg]\nkind = 'tripod'", r"tip_over: leg\.kind = tripod; it is for radial"),
+        (SHORT, f"{FORM}[leg.2.ground]\nstep = 0.1", r"leg\[2\]\.ground\.step is one leg's own"),
         ("number = [", 'number = [{ outcome = "flown" },', "unknown outcome 'flown'"),
         ('"VALUE"', "nan", "body.vy = nan is not finite"),
         ("number = [", "inputs = 3\nnumber = [", "inputs must be a table"),

@@ -16,7 +16,7 @@ from ..quantities import Interface, Quantity, interface_of
 from ..studies.outcome import SEVERITY
 from ..text.files import parse_document, read_text
 from ..text.values import is_number, parse_value, to_si
-from .closed_forms import CLOSED_FORMS
+from .closed_forms import closed_form
 
 FOLDER = Path(__file__).parent
 TIME = Quantity("s", "", 0.0, 1e4, name="time")
@@ -157,9 +157,7 @@ def _case(name: str, document: dict[str, Any], folder: Path) -> Case:
     numbers = [n for k, entry in enumerate(listed, 1) for n in _numbers(k, entry, interface, until)]
     form = _text(document, "closed_form")
     if form:
-        if form not in CLOSED_FORMS:
-            raise unknown("closed form", form, CLOSED_FORMS)
-        for output, at, since, theirs, tolerance in CLOSED_FORMS[form](parameters, until):
+        for output, at, since, theirs, tolerance in closed_form(form, parameters, until):
             quantity = _output(interface, output)
             numbers.append(Number(quantity, theirs, tolerance, at, since))
     if not numbers and not outcomes:

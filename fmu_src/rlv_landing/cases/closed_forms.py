@@ -11,8 +11,9 @@ from math import atan2, cos, hypot, pi, sin, sqrt
 from typing import NamedTuple
 
 from ..core import Phase
-from ..errors import LandingError
+from ..errors import LandingError, unknown
 from ..parameters import Parameters
+from ..quantities import TRIPOD
 from ..touchdown import footpad_at_rest
 
 Told = Iterator[tuple[str, float, float | None, float, float]]
@@ -162,3 +163,27 @@ CLOSED_FORMS: dict[str, Callable[[Parameters, float], Told]] = {
     "standing_on_slope": standing_on_slope,
     "tip_over": tip_over,
 }
+# those that know nothing of the legs
+OF_ANY_LEGS = ("free_fall",)
+
+
+def closed_form(name: str, p: Parameters, until: float) -> Told:
+    """What the closed form of this name tells of a landing that ends at `until` [s].
+
+    Raises:
+        LandingError: There is no such form, or the vehicle is not one that it is for.
+    """
+    if name not in CLOSED_FORMS:
+        raise unknown("closed form", name, CLOSED_FORMS)
+    if name not in OF_ANY_LEGS:
+        if p.leg.kind == TRIPOD:
+            raise LandingError(
+                f"closed form {name}: leg.kind = tripod; it is for radial legs; write leg.kind = "
+                "radial, or numbers of your own"
+            )
+        if p.overrides:
+            raise LandingError(
+                f"closed form {name}: {min(p.overrides)} is one leg's own; it is for legs that are "
+                "alike; leave it out, or write numbers of your own"
+            )
+    return CLOSED_FORMS[name](p, until)
