@@ -32,7 +32,9 @@ landing.set_inputs(
     {"ground.sway_rate": 0.3, "ground.tilt_rate": -0.2},
 )
 landing.advance_to(0.012 if sys.argv[4] == "radial" else 0.004)
-print(*(float(v).hex() for v in (*landing.state(), *landing.values())), sep="\\n")
+system = landing._solver.system
+relative = (system.relative_kinetic, system.relative_acceleration)
+print(*(float(v).hex() for v in (*landing.state(), *landing.values(), *relative)), sep="\\n")
 """
 
 

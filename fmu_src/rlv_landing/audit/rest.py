@@ -22,7 +22,7 @@ REST_AFTER, LONGEST_WAIT, DECAY, DRIFT_TIME = 10.0, 60.0, 30.0, 5.0
 def rest(case: Case) -> tuple[dict[str, float], list[Check]]:
     """The state at rest, 10 s after first contact, and the checks of rest.
 
-    It is looked for on a deck without a sea, on which nothing rests.
+    It is looked for on a deck without a sea, on which what has settled still moves with the deck.
     A vehicle that neither rests nor has toppled by then, and that friction can hold, is given up to
     60 s to settle, and 30 s more. The state has the time since when the vehicle has been settled
     (NaN if it is not, or has toppled), and how fast a footpad drifts in the 5 s after that; if it
