@@ -190,7 +190,7 @@ class Legged(System):
                 farthest = max(farthest, excess)
         return farthest / MOST_GATHERED
 
-    def is_slow(self, outputs: Doubles) -> bool:
+    def is_slow(self, outputs: Doubles, most: float) -> bool:
         """Whether it stands or lies, and is slow.
 
         Its acceleration does not count: at rest an explicit method oscillates by a part of the
@@ -199,11 +199,11 @@ class Legged(System):
         phase = status_outputs(outputs, self._energies + ENERGY_OUTPUTS).phase
         if is_phase(phase, Phase.FALLING):
             return False
-        return is_slow(outputs[self._energies + KINETIC], self.mass)
+        return is_slow(outputs[self._energies + KINETIC], most * self.mass)
 
     def may_rest(self, u: Doubles, rates: Doubles, outputs: Doubles) -> bool:
         """Whether it stands and is slow, with loads and ground that do not change."""
-        if not self.is_slow(outputs):
+        if not self.is_slow(outputs, 1.0):
             return False
         for i in range(self.inputs):
             if rates[i] != 0.0:
