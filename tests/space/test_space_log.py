@@ -97,7 +97,9 @@ def test_the_planar_fmu_does_not_repeat_it(recorded: Path, fmu: Path, command) -
     assert done.err.count("\n") == 1
 
 
-def log_with_inputs(folder: Path, decks: list[SpatialInputs], kind: str = "radial") -> LogReader:
+def log_with_inputs(
+    folder: Path, decks: list[SpatialInputs], kind: str = "radial", stop_time: float = STOP_TIME
+) -> LogReader:
     """A log as the node writes it, of a landing on a ship and in gusts, in all directions.
 
     `decks` gets where the deck is at each sample; the legs are of a `kind`.
@@ -115,7 +117,7 @@ def log_with_inputs(folder: Path, decks: list[SpatialInputs], kind: str = "radia
         "mode": "space",
         "namespace": "/landing",
         "step_size": "0.001",
-        "stop_time": repr(STOP_TIME),
+        "stop_time": repr(stop_time),
         **build_metadata(Path("none")),
     }
     attachments = {"parameters.toml": to_toml(parameters).encode()}
@@ -133,7 +135,7 @@ def log_with_inputs(folder: Path, decks: list[SpatialInputs], kind: str = "radia
                 recorder.write(f"/landing/{topic.name}", k * 1_000_000, data)
 
     change_inputs(0)
-    for k in range(round(STOP_TIME * 1e3) + 1):
+    for k in range(round(stop_time * 1e3) + 1):
         landing.advance_to(k * 1e-3)
         decks.append(deck_of(landing.ground_places()))
         messages = packer.pack(k * 1_000_000, landing.values())
@@ -141,7 +143,7 @@ def log_with_inputs(folder: Path, decks: list[SpatialInputs], kind: str = "radia
             recorder.write(f"/landing/{topic.name}", k * 1_000_000, messages[part])
         if k:
             change_inputs(k)
-    recorder.close(peak_texts(landing_peaks(landing), STOP_TIME))
+    recorder.close(peak_texts(landing_peaks(landing), stop_time))
     return LogReader(folder)
 
 
@@ -155,12 +157,14 @@ def test_a_run_with_all_inputs_is_repeated_bit_for_bit(space_fmu: Path, tmp_path
 
 
 def test_a_run_on_tripods_is_repeated_bit_for_bit(tmp_path: Path) -> None:
-    reader = log_with_inputs(tmp_path / "log", [], "tripod")
+    reader = log_with_inputs(tmp_path / "log", [], "tripod", 0.12)
     found = verify(reader, None)
     assert (found.first, found.other_bits) == (None, 0)
     assert found.peaks == len(interface_of("space", 5, "tripod").peaks)
     history = log_history(tmp_path / "log")
-    assert history["leg[5].auxiliary_strut_2.force"].max() > 100.0
+    assert (
+        max(np.ptp(history[f"leg[{leg}].auxiliary_strut_2.force"]) for leg in range(1, 6)) > 100.0
+    )
 
 
 def test_a_film_of_it_shows_the_deck_as_it_moved(command, tmp_path: Path) -> None:

@@ -200,7 +200,7 @@ class Legged(System):
                 farthest = max(farthest, excess)
         return farthest / MOST_GATHERED
 
-    def is_slow(self, outputs: Doubles) -> bool:
+    def is_slow(self, outputs: Doubles, most: float) -> bool:
         """Whether it stands or lies, and is slow, relative to the ground.
 
         Its acceleration does not count: at rest an explicit method oscillates by a part of the
@@ -209,7 +209,7 @@ class Legged(System):
         phase = status_outputs(outputs, self._energies + ENERGY_OUTPUTS).phase
         if is_phase(phase, Phase.FALLING):
             return False
-        return is_slow(self._kinetic_on_ground(outputs), self.mass)
+        return is_slow(self._kinetic_on_ground(outputs), most * self.mass)
 
     def _kinetic_on_ground(self, outputs: Doubles) -> float:
         """The kinetic energy [J] of the motion relative to the ground, at a step's end."""
@@ -219,7 +219,7 @@ class Legged(System):
 
     def may_rest(self, u: Doubles, rates: Doubles, outputs: Doubles) -> bool:
         """Whether it stands and is slow, with loads and ground that do not change."""
-        if not self.is_slow(outputs):
+        if not self.is_slow(outputs, 1.0):
             return False
         for i in range(self.inputs):
             if rates[i] != 0.0:

@@ -134,8 +134,11 @@ class System:
             rates: The rates that were given for them.
         """
 
-    def is_slow(self, outputs: Doubles) -> bool:
-        """Whether the system is so slow with these `outputs` that it may be near a rest."""
+    def is_slow(self, outputs: Doubles, most: float) -> bool:
+        """Whether the system is so slow with these `outputs` that it may be near a rest.
+
+        It may have so many times the kinetic energy, at `most`.
+        """
         return False
 
     def may_rest(self, u: Doubles, rates: Doubles, outputs: Doubles) -> bool:

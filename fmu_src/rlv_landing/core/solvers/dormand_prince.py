@@ -45,6 +45,9 @@ D5, D6, D7 = 701980252875.0 / 199316789632.0, -1453857185.0 / 822651844.0, 69997
 # the longest step near a rest, times the fastest rate of decay: at the limit of stability, 3.3,
 # oscillations of the tolerance's size stay for ever
 DAMPED = 0.8
+# in parts of a slow system's kinetic energy: below it, a vibration that nothing damps is kept up by
+# steps longer than a sixth of its period, which the method does not damp
+VIBRATES = 100.0
 
 
 class DormandPrince(Solver):
@@ -58,6 +61,7 @@ class DormandPrince(Solver):
         self.k5 = array("d", bytes(8 * self.n))
         self.k6 = array("d", bytes(8 * self.n))
         self.exponent = 0.2 - 0.75 * BETA
+        self.damped_below = VIBRATES
 
     def _try_step(self, h: float) -> None:
         """Write the seven stages and the new state of a step of `h` [s]."""

@@ -29,7 +29,8 @@ class Solver(Trial):
 
     `y` [n] is the state at `t` (s), the end of the last internal step; `advance` moves `t` to or
     past a time, `interpolate` gives the state at any time inside the last step. `exponent` is that
-    of the step control; each method sets it.
+    of the step control; each method sets it. Steps damp what decays
+    fastest below `damped_below` times the kinetic energy of a slow system.
 
     `limit` is how many tries of a step a second may take: `spent` counts those beyond that rate,
     which may be as many as a second has. `fault` is a `Fault`: with one, no more steps are taken.
@@ -40,6 +41,7 @@ class Solver(Trial):
     """
 
     exponent: float
+    damped_below: float
     limit: float
     spent: float
     fault: int
@@ -51,6 +53,7 @@ class Solver(Trial):
     def __init__(self, system: System, rtol: float) -> None:
         super().__init__(system, rtol)
         self.exponent = 0.0
+        self.damped_below = 1.0
         self.limit = inf
         self.spent = 0.0
         self.fault = Fault.NONE
@@ -201,7 +204,7 @@ class Solver(Trial):
         if h < SHORTEST_STEP or self.t + h <= self.t:
             self.fault = Fault.COLLAPSED
             return
-        slow = self.system.is_slow(data(self.last))
+        slow = self.system.is_slow(data(self.last), self.damped_below)
         self._try_step(h)
         longest = LONGEST_STEP
         if slow:

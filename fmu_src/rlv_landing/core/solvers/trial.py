@@ -20,8 +20,9 @@ SHORTEST_JUDGED = 1e-10
 BULGE = 0.002
 # at looser tolerances the inside of every step is judged
 LOOSE = 1e-4
-# so small a cut of an interpolant's parts, in parts of its state's scale, is no reason to judge it:
-# the value inside changes by 4/27 of it at most, and a step may lose a thousand times as much
+# so small a cut of an interpolant's slopes, in parts of its state's scale, is no reason to judge
+# it: the value inside changes by 4/27 of it at most, a hundredth of what a step may lose where
+# little was lost before, and it is no loss at the step's end
 UNSEEN = 1e-8
 # [parts of the states' scales]: stages that differ by no more tell no rate
 TELLS_NOTHING = 1e-13
