@@ -222,5 +222,5 @@ def test_the_studies_that_are_shown_can_be_read(tmp_path: Path):
     )
     study = read_montecarlo(tmp_path / "study.toml")
     assert (study.samples, study.width, study.worst, len(study.grades)) == (2000, 0.02, 3, 1)
-    assert len(study.dispersions.names) == 9
+    assert len(study.dispersions.names) == 10
     assert read_montecarlo(ROOT / "examples/touchdown_study/montecarlo.toml").width == 0.04
