@@ -90,6 +90,11 @@ def test_a_ground_message_is_the_decks_motion_and_back_digit_for_digit(
         ),
         (read_ground, JointState(name=["ground_heave"], position=[]), "1 names, 0 positions"),
         (read_ground, JointState(), "0 names"),
+        (
+            read_ground,
+            JointState(name=["ground_heave", "ground_heave"], position=[0.0, 1.0]),
+            "names the joint 'ground_heave' twice",
+        ),
     ],
 )
 def test_a_bad_input_is_refused_with_its_reason(

@@ -31,6 +31,8 @@ from rlv_ros_bridge.logs.reader import LogReader
 from rlv_ros_bridge.messages.qos import parse_qos
 from rlv_ros_bridge.messages.rclpy_qos import qos_profile
 from rlv_ros_bridge.messages.topics import CLOCK, LATCHED, RECORDED, STRUTS, TF, resolve
+from rlv_ros_bridge.node.land import land
+from rlv_ros_bridge.ros.setup import StopFlag
 
 # `struts` last: a node that waits for a match on it finds the others matched. What is latched came
 # before.
@@ -132,6 +134,19 @@ def test_a_signal_in_mid_landing_leaves_a_complete_log(
     assert received == logged[: len(received)]
     assert cut_off or len(received) == len(logged)
     assert f"interrupted: {len(logged)} samples" in out
+
+
+def test_a_signal_before_the_landing_begins_leaves_no_landing_and_no_log(
+    fmu: Path, tmp_path: Path, domain: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, value in environment(domain).items():
+        monkeypatch.setenv(name, value)
+    folder = tmp_path / "log"
+    with StopFlag() as stop:
+        signal.raise_signal(signal.SIGINT)
+        assert land({"fmu": str(fmu), "record": str(folder)}, [], stop) is None
+        assert stop.number == signal.SIGINT
+    assert not folder.exists()
 
 
 def wall(out: str) -> float:

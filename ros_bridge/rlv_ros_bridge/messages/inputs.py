@@ -135,8 +135,8 @@ def read_ground(message: Any, table: InputTable = PLANAR) -> dict[str, float]:
     A joint that it does not name stays as it is. Without velocities they are positions alone.
 
     Raises:
-        LandingError: an unknown joint, positions or velocities that do not fit the names, not
-            finite, out of bounds.
+        LandingError: an unknown joint, one named twice, positions or velocities that do not fit
+            the names, not finite, out of bounds.
     """
     names, positions, velocities = (
         list(message.name),
@@ -156,6 +156,8 @@ def read_ground(message: Any, table: InputTable = PLANAR) -> dict[str, float]:
                 f"ground has no joint {name!r}; its joints are {' and '.join(table.joints)}"
             )
         joint = table.joints[name]
+        if joint.position in values:
+            raise LandingError(f"ground names the joint {name!r} twice; name each once")
         values[joint.position] = joint.sign * positions[i]
         if velocities:
             values[joint.rate] = joint.sign * velocities[i]

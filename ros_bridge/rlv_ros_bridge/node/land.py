@@ -36,7 +36,7 @@ def land(
         namespace: namespace of the node and its topics.
 
     Returns:
-        The figures of the last landing; None where there was none.
+        The figures of the last landing; None where there was none, as after a signal before it.
 
     Raises:
         LandingError: bad parameters, or the landing failed.
@@ -52,9 +52,11 @@ def land(
             node.destroy_node()
 
 
-def _land_once(node: LandingNode, spinner: Spinner, stop: StopFlag) -> RunSummary:
+def _land_once(node: LandingNode, spinner: Spinner, stop: StopFlag) -> RunSummary | None:
     _trigger(node, spinner, node.trigger_configure)
     try:
+        if stop:
+            return None
         _trigger(node, spinner, node.trigger_activate)
         _wait_for_end(node, stop)
         if node.failure is not None:
