@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import radians
+from pathlib import Path
 
 import pytest
 from five_legs import five_legs
@@ -16,6 +17,7 @@ from rlv_landing.audit.momentum import contact, flight
 from rlv_landing.audit.rest import rest
 from rlv_landing.audit.spatial_momentum import spatial_impulse, spatial_momentum
 from rlv_landing.history import History
+from rlv_landing.presets import read_toml
 from rlv_landing.tables.study_tables import audit_tables
 
 END = 0.5
@@ -52,6 +54,17 @@ def test_what_settles_shortly_before_the_end_may_decay_before_its_drift_is_measu
     state, checks = rest(loaded)
     assert 5.0 < state["settled_since"] - three.drop.contact_time < 10.0
     assert [c.id for c in checks if not c.passed] == []
+
+
+def test_the_liquid_mass_is_not_asked_of_dampers_without_liquid() -> None:
+    lander = read_toml(Path(__file__).parents[2] / "examples" / "tripod_lander.toml").with_values(
+        {"drop.contact_time": 0.0}
+    )
+    checks = energy(cases(lander)[0], 0.2)[1]
+    assert [c.id for c in checks if not c.passed] == []
+    assert [c.id for c in checks if not c.applies] == ["liquid_mass"]
+    mixed = lander.with_values({"leg[2].main_strut.kind": "liquid-spring"})
+    assert all(c.applies and c.passed for c in energy(cases(mixed)[0], 0.2)[1])
 
 
 @pytest.mark.parametrize("legs", [3, 8])

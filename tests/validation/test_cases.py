@@ -135,3 +135,18 @@ def test_what_is_no_case_is_refused(before: str, after: str, message: str, tmp_p
     with pytest.raises(LandingError, match=message) as caught:
         read_case(file)
     assert str(file) in str(caught.value) or "mine.toml" in str(caught.value)
+
+
+def test_a_case_may_have_tripods_and_inputs_by_dotted_keys(tmp_path: Path) -> None:
+    lander = Path(__file__).parents[2] / "examples" / "tripod_lander.toml"
+    output = "leg[1].auxiliary_strut_2.force"
+    file = tmp_path / "lander.toml"
+    for inputs in ("external.force_x = '0.1 kN'", "'external.force_x' = 100.0"):
+        file.write_text(
+            "title = 'a lander'\nsource = 'a table'\nuntil = 1.0\n"
+            f"number = [{{ output = '{output}', peak = 'max', value = 1e3, relative = 1.0 }}]\n"
+            f"{lander.read_text()}\n[inputs]\n{inputs}\n"
+        )
+        case = read_case(file)
+        assert case.inputs == {"external.force_x": 100.0}
+        assert [number.quantity.name for number in case.numbers] == [output]

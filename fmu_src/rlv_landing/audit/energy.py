@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..history import History
 from ..landing import DEFAULT_RTOL
@@ -29,7 +30,7 @@ def energy(case: Case, until: float) -> tuple[dict[str, tuple[float, float]], li
     return terms, [
         Check("energy", imbalance(history)),
         Check("energy_default", imbalance(case.landing(DEFAULT_RTOL).run(until))),
-        Check("liquid_mass", mass_change(history)),
+        Check("liquid_mass", mass_change(history), applies=bool(_liquid_masses(history))),
     ]
 
 
@@ -57,9 +58,15 @@ def largest_fall(history: History) -> float:
 
 
 def mass_change(history: History) -> float:
-    """Largest change of a damper's liquid mass, of that at the start."""
+    """Largest change of a damper's liquid mass, of that at the start; 0 where none has liquid."""
+    changes = (float(np.abs(m / m[0] - 1.0).max()) for m in _liquid_masses(history))
+    return max(changes, default=0.0)
+
+
+def _liquid_masses(history: History) -> list[NDArray[np.float64]]:
+    """The liquid mass over time [kg] of each damper that has liquid at the start."""
     masses = (history[f"leg[{leg}].main_strut.liquid_mass"] for leg in history.legs)
-    return max(float(np.abs(m / m[0] - 1.0).max()) for m in masses)
+    return [m for m in masses if m[0] > 0.0]
 
 
 def _part(value: float, history: History) -> float:

@@ -12,8 +12,9 @@ from ..errors import LandingError, unknown
 from ..landing import DEFAULT_RTOL
 from ..parameters import GROUPS, Parameters
 from ..presets import parameters_of_document
-from ..quantities import Interface, Quantity, interface_of
+from ..quantities import Interface, Quantity
 from ..studies.outcome import SEVERITY
+from ..studies.toml_keys import by_dotted_name
 from ..text.files import parse_document, read_text
 from ..text.values import is_number, parse_value, to_si
 from .closed_forms import closed_form
@@ -143,7 +144,7 @@ def _case(name: str, document: dict[str, Any], folder: Path) -> Case:
             raise LandingError(f"a case needs {key}; write {key} = ...")
     vehicle = {key: value for key, value in document.items() if key in ABOUT_VEHICLE}
     parameters = parameters_of_document(vehicle, folder)
-    interface = interface_of(parameters.drop.mode, int(parameters.vehicle.legs))
+    interface = parameters.interface
     until = _number(TIME, document["until"])
     listed = document.get("number", [])
     if not isinstance(listed, list) or not all(isinstance(entry, dict) for entry in listed):
@@ -171,7 +172,9 @@ def _case(name: str, document: dict[str, Any], folder: Path) -> Case:
         source=_text(document, "source"),
         differences=_text(document, "differences"),
         parameters=parameters,
-        inputs={what: _input(interface, what, value) for what, value in inputs.items()},
+        inputs={
+            what: _input(interface, what, value) for what, value in by_dotted_name(inputs).items()
+        },
         until=until,
         rtol=_number(RTOL, document.get("rtol", DEFAULT_RTOL)),
         numbers=tuple(numbers),
