@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import radians
+from pathlib import Path
 
 import pytest
 from five_legs import five_legs
@@ -52,6 +53,13 @@ def test_what_settles_shortly_before_the_end_may_decay_before_its_drift_is_measu
     state, checks = rest(loaded)
     assert 5.0 < state["settled_since"] - three.drop.contact_time < 10.0
     assert [c.id for c in checks if not c.passed] == []
+
+
+def test_struts_without_liquid_keep_the_bound_on_its_mass() -> None:
+    lander = Path(__file__).parents[2] / "examples" / "tripod_lander.toml"
+    checks = energy(cases(Landing.from_toml(lander).parameters)[0], END)[1]
+    assert [c.id for c in checks if not c.passed] == []
+    assert {c.id: c.value for c in checks}["liquid_mass"] == 0.0
 
 
 @pytest.mark.parametrize("legs", [3, 8])

@@ -57,9 +57,9 @@ def largest_fall(history: History) -> float:
 
 
 def mass_change(history: History) -> float:
-    """Largest change of a damper's liquid mass, of that at the start."""
+    """Largest change of a damper's liquid mass, of that at the start; 0 without liquid."""
     masses = (history[f"leg[{leg}].main_strut.liquid_mass"] for leg in history.legs)
-    return max(float(np.abs(m / m[0] - 1.0).max()) for m in masses)
+    return max((float(np.abs(m / m[0] - 1.0).max()) for m in masses if m.any()), default=0.0)
 
 
 def _part(value: float, history: History) -> float:
