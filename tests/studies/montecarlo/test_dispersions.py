@@ -14,7 +14,7 @@ from montecarlo_studies import write
 from scipy.stats import binom, kstest, truncnorm
 
 from rlv_landing.errors import LandingError
-from rlv_landing.studies.montecarlo.covariance import Correlated
+from rlv_landing.studies.montecarlo.covariance import Correlated, read_correlated
 from rlv_landing.studies.montecarlo.dispersions import Dispersions, Runs, unit_numbers
 from rlv_landing.studies.montecarlo.intervals import order_statistics, wilson
 from rlv_landing.studies.montecarlo.study import read_montecarlo
@@ -99,6 +99,14 @@ def test_a_covariance_that_is_none_is_refused(matrix, message):
         Correlated(NAMES[:2], (0.0, 0.0), matrix)
 
 
+@pytest.mark.parametrize("keys", [(), ("deviation",), ("correlation",), ("matrix", "deviation")])
+def test_a_covariance_is_given_by_a_matrix_or_by_deviation_and_correlation(keys):
+    known = {"matrix": [[1.0]], "deviation": [1.0], "correlation": [[1.0]]}
+    read = {"names": [NAMES[0]], "mean": [0.0], **{key: known[key] for key in keys}}
+    with pytest.raises(LandingError, match="needs matrix, or deviation and correlation; give one"):
+        read_correlated(read)
+
+
 @pytest.mark.parametrize(
     ("successes", "runs", "low", "high"),
     [(0, 10, 0.0, 0.277533), (10, 10, 0.722467, 1.0), (81, 263, 0.2553, 0.3662)],
@@ -143,7 +151,7 @@ FACTOR = '[[factor]]\nname = "drop.roll_rate"\nlow = -0.1\nhigh = 0.1\n'
         (("[0.3, 0.0, 1.0]]", "[0.3, 0.0]]"), "2 for 3 names; give one for each"),
         (("deviation = [1.0,", "deviation = [-1.0,"), "deviation of drop.tilt = -1 is below 0"),
         (("deviation = [1.0,", 'deviation = ["a",'), "must be a list of numbers"),
-        (("deviation = [1.0, 1.5, 0.2]\n", ""), "must be a list of numbers"),
+        (("deviation = [1.0, 1.5, 0.2]\n", ""), "needs matrix, or deviation and correlation"),
         (("mean = [0.0,", "mean = [200.0,"), "drop.tilt = 3.49066 rad is outside"),
         (('"deg", "deg", "m/s"', '"deg", "m", "m/s"'), "wrong unit"),
         (('"drop.roll", "drop', '"drop.rol", "drop'), "did you mean drop.roll?"),

@@ -115,7 +115,8 @@ def read_correlated(keys: Mapping[str, Any]) -> Correlated | None:
     values = tuple(
         float(check_value(q, to_si(q, v, u))) for q, v, u in zip(quantities, mean, units)
     )
-    if ("matrix" in keys) == ("deviation" in keys or "correlation" in keys):
+    given = tuple(key in keys for key in ("matrix", "deviation", "correlation"))
+    if given not in ((True, False, False), (False, True, True)):
         raise LandingError("[covariance] needs matrix, or deviation and correlation; give one")
     if "matrix" in keys:
         matrix = _square(keys, "matrix", names)
