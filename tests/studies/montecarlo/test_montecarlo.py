@@ -13,6 +13,7 @@ from study_tools import rows, start, wait_for
 
 from rlv_landing import Landing
 from rlv_landing.presets import read_toml
+from rlv_landing.studies.montecarlo.difference import Side, difference
 from rlv_landing.studies.montecarlo.intervals import wilson
 from rlv_landing.studies.montecarlo.run import STEP
 
@@ -172,6 +173,18 @@ def test_the_frozen_baseline_is_reached(tmp_path, command):
     assert found["paired"] == 16
     # parameters that are new do not vary
     assert {setting["name"] for setting in found["settings"]} <= {"parameters"}
+
+
+def test_a_parameter_that_differs_is_told_with_its_group():
+    """It is also where another group has a parameter of that name and value."""
+    text = "[main_strut]\nstiffness = {}\n\n[ground]\nstiffness = 5.0\n"
+    sides = []
+    for value in (4.0, 5.0):
+        about = {"responses": [], "points": "", "parameters": text.format(value)}
+        sides.append(Side(Path(f"{value}"), about, (), "toppled", 0.95, ()))
+    assert difference(*sides, 0.001).settings == (
+        ("parameters", "main_strut.stiffness = 4.0", "main_strut.stiffness = 5.0"),
+    )
 
 
 def test_the_difference_of_two_studies_is_told_run_by_run(tmp_path, command):

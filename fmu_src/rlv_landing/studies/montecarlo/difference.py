@@ -209,11 +209,22 @@ def _settings(a: Mapping[str, Any], b: Mapping[str, Any]) -> list[tuple[str, str
         if key in NO_CHANGE or a.get(key) == b.get(key):
             continue
         if key == "parameters":
-            lines = [set(str(side.get(key, "")).splitlines()) for side in (a, b)]
+            lines = [_named_lines(str(side.get(key, ""))) for side in (a, b)]
             before, after = sorted(lines[0] - lines[1]), sorted(lines[1] - lines[0])
             found.append((key, "; ".join(before), "; ".join(after)))
         else:
             found.append((key, json.dumps(a.get(key)), json.dumps(b.get(key))))
+    return found
+
+
+def _named_lines(toml: str) -> set[str]:
+    """The lines of a parameter file, each with its table's name before it."""
+    table, found = "", set()
+    for line in toml.splitlines():
+        if line.startswith("["):
+            table = f"{line.strip('[]')}."
+        elif line:
+            found.add(f"{table}{line}")
     return found
 
 
