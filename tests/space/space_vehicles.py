@@ -17,6 +17,16 @@ TURNING = SPACE | {
     "drop.lateral_velocity": 0.25,
     "drop.contact_time": 0.02,
 }
+# a body without symmetry
+UNEVEN = {
+    "vehicle.inertia_roll": 150.0,
+    "vehicle.inertia_yaw": 60.0,
+    "vehicle.inertia_xy": 8.0,
+    "vehicle.inertia_xz": -5.0,
+    "vehicle.inertia_yz": 4.0,
+    "vehicle.cg_offset_x": 0.05,
+    "vehicle.cg_offset_z": -0.03,
+}
 
 
 def vehicle(values: dict[str, Any], mode: str = "2-2") -> Parameters:

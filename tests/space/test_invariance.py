@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
-from space_vehicles import TURNING, vehicle
+from space_vehicles import TURNING, UNEVEN, vehicle
 
 from rlv_landing import Landing, Parameters
 
@@ -145,21 +145,18 @@ def momenta(landing: Landing, parameters: Parameters) -> Array:
 
 
 def test_a_tumbling_flight_keeps_momentum_angular_momentum_and_energy() -> None:
-    tumbling: dict[str, Any] = TURNING | {
-        "ground.gravity": 0.0,
-        "drop.contact_time": 3.0,
-        "drop.vertical_velocity": -5.0,
-        "drop.pitch_rate": 0.9,
-        "drop.roll_rate": -0.6,
-        "drop.yaw_rate": 0.8,
-        "vehicle.inertia_roll": 150.0,
-        "vehicle.inertia_yaw": 60.0,
-        "vehicle.inertia_xy": 8.0,
-        "vehicle.inertia_xz": -5.0,
-        "vehicle.inertia_yz": 4.0,
-        "vehicle.cg_offset_x": 0.05,
-        "vehicle.cg_offset_z": -0.03,
-    }
+    tumbling: dict[str, Any] = (
+        TURNING
+        | UNEVEN
+        | {
+            "ground.gravity": 0.0,
+            "drop.contact_time": 3.0,
+            "drop.vertical_velocity": -5.0,
+            "drop.pitch_rate": 0.9,
+            "drop.roll_rate": -0.6,
+            "drop.yaw_rate": 0.8,
+        }
+    )
     parameters = vehicle(tumbling)
     landing = Landing(parameters, rtol=1e-9)
     first = momenta(landing, parameters)

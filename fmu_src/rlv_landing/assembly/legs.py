@@ -81,8 +81,13 @@ def state_sizes(
         [ACROSS_SCALE] * tripods,
         energy,
     )
-    none = [0.0] * len(body), [IN_PLANE] * tripods, [AT_REST] * points
-    relative = flat_state(none[0], [LEG_RELATIVE] * groups, NO_ENERGY, none[2], none[1])
+    relative = flat_state(
+        [0.0] * len(body),
+        [LEG_RELATIVE] * groups,
+        NO_ENERGY,
+        [AT_REST] * points,
+        [IN_PLANE] * tripods,
+    )
     return scale, relative
 
 
